@@ -35,7 +35,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import (
     TrueRobot,
@@ -104,7 +104,7 @@ def main() -> None:
 
 def legs_predicted(robot: Robot, runs: list[Run]) -> str:
     """Seconds for one prediction of all legs, by the package and by plain Python."""
-    laid = concatenated(match_finely(runs, robot, 1.0))
+    laid = concatenated(match_for_fit(runs, robot, 1.0))
     model = Model(robot, tuple({} for _ in runs))
     begun = time.perf_counter()
     ours = predict_all(model, laid)

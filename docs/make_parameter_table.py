@@ -7,7 +7,7 @@ python docs/make_parameter_table.py
 
 from __future__ import annotations
 
-from werrimbi_odom.files.parameters import PARAMETERS, Parameter
+from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter
 
 
 def markdown_table() -> str:
@@ -16,12 +16,12 @@ def markdown_table() -> str:
     return head + "".join(f"| {' | '.join(_cells(item))} |\n" for item in PARAMETERS)
 
 
-def _cells(item: Parameter) -> tuple[str, ...]:
+def _cells(item: NodeParameter) -> tuple[str, ...]:
     kind = "list of strings" if item.kind == "strings" else item.kind
     return f"`{item.name}`", kind, _default(item), item.unit, _range(item), item.says
 
 
-def _default(item: Parameter) -> str:
+def _default(item: NodeParameter) -> str:
     if item.default is None:
         return "**required**"
     if isinstance(item.default, tuple):
@@ -31,7 +31,7 @@ def _default(item: Parameter) -> str:
     return f"`{item.default}`" if item.default != "" else "empty"
 
 
-def _range(item: Parameter) -> str:
+def _range(item: NodeParameter) -> str:
     if item.choices:
         return ", ".join(f"`{choice}`" for choice in item.choices)
     bounds = (("> {:g}", item.above), (">= {:g}", item.minimum), ("<= {:g}", item.maximum))

@@ -18,7 +18,7 @@ from werrimbi_odom.report.save import save_png
 from werrimbi_odom.report.style import BLUE, GREY, INK, ORANGE, PAPER
 from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import Sweep, sweep_of
-from werrimbi_odom.simulation import Pose, TrueRobot, figure_eight, record
+from werrimbi_odom.simulation import AxlePose, TrueRobot, figure_eight, record
 from werrimbi_odom.simulation.lidar import Lidar, scanned
 from werrimbi_odom.simulation.rooms import living_room
 
@@ -28,7 +28,7 @@ COVERED = (11.0, 14.0)
 
 def main() -> None:
     """Write it."""
-    drive = record(TrueRobot(), figure_eight(0.7), seed=1, start=Pose(0.0, -0.2, 0.6))
+    drive = record(TrueRobot(), figure_eight(0.7), seed=1, start=AxlePose(0.0, -0.2, 0.6))
     lidar = Lidar()
     seen = scanned(drive.true_path, living_room(people=True), lidar, 1)
     angles = lidar.increment * np.arange(lidar.beams)

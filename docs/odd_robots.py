@@ -22,8 +22,8 @@ from pathlib import Path
 from werrimbi_odom.cli.main import main as werrimbi
 from werrimbi_odom.simulation import (
     Manoeuvre,
+    MoveLimits,
     Nominal,
-    Pace,
     ReferenceSensor,
     TrueRobot,
     chain,
@@ -94,7 +94,7 @@ def sized(base: float, radius: float, ticks: float, mass: float, noise: float) -
 
 
 def _squares(number: int) -> Manoeuvre:
-    return square(2.0, "ccw" if number % 2 else "cw", pace=Pace(speed=0.4))
+    return square(2.0, "ccw" if number % 2 else "cw", pace=MoveLimits(speed=0.4))
 
 
 def _short(names: dict[str, int]) -> dict[str, Manoeuvre]:
@@ -104,7 +104,7 @@ def _short(names: dict[str, int]) -> dict[str, Manoeuvre]:
     }
 
 
-SLOW = Pace(speed=0.12, acceleration=0.2, yaw_rate=2.0, yaw_acceleration=4.0)
+SLOW = MoveLimits(speed=0.12, acceleration=0.2, yaw_rate=2.0, yaw_acceleration=4.0)
 KINDS = {
     "squares": Kind("squares alone", six(_squares)),
     "lines": Kind("lines to and fro alone", six(lambda number: out_and_back(3.0, laps=3))),

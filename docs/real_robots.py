@@ -19,7 +19,11 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate
-from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
+from werrimbi_odom.inference.calibration.recorded_square import (
+    SquareRecording,
+    recorded_square,
+    squares_of,
+)
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, joined, leg_errors, statistics
 from werrimbi_odom.inference.legs.cutting import match
@@ -67,7 +71,7 @@ def umbmark_of_drives(case: Case) -> Robot:
         ticks, seen = run.ticks, run.reference
         records.append(
             recorded_square(
-                Record(
+                SquareRecording(
                     run.name,
                     ticks.time,
                     ticks.left,

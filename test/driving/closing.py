@@ -27,7 +27,7 @@ import numpy as np
 import werrimbi_odom as wo
 from test.driving.in_engine import LIMITS, InEngine
 from werrimbi_odom.driving.manoeuvres import BEFORE, proposed
-from werrimbi_odom.driving.plan import Move, Plan
+from werrimbi_odom.driving.plan import ManoeuvrePlan, Move
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
@@ -38,9 +38,11 @@ ROUND = (Move(2.0, 0.0, 0.6), Move(0.25 * math.pi, 0.5 * math.pi, 0.6)) * 4
 PLAIN = {
     each.name: each
     for each in (
-        Plan("circle", "a circle to the left", (BEFORE, *(Move(6.0, 6.0),) * 4)),
-        Plan("rounds", "rounds to the left, with round corners", (BEFORE, *ROUND * 4)),
-        Plan("line", "to and fro at one pace", (BEFORE, *(Move(4.0, 0.0), Move(-4.0, 0.0)) * 3)),
+        ManoeuvrePlan("circle", "a circle to the left", (BEFORE, *(Move(6.0, 6.0),) * 4)),
+        ManoeuvrePlan("rounds", "rounds to the left, with round corners", (BEFORE, *ROUND * 4)),
+        ManoeuvrePlan(
+            "line", "to and fro at one pace", (BEFORE, *(Move(4.0, 0.0), Move(-4.0, 0.0)) * 3)
+        ),
     )
 }
 """What robots do all day, some minutes of it."""
@@ -144,7 +146,7 @@ def closed(effect: str, plain: str, measured: str, seed: int) -> Closed:
     )
 
 
-def _driven(there: InEngine, plan: Plan, measured: str) -> Run:
+def _driven(there: InEngine, plan: ManoeuvrePlan, measured: str) -> Run:
     run, driver = there.drive(plan)
     assert driver.state == "done", driver.words
     assert run.reference is not None

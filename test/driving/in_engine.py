@@ -10,8 +10,8 @@ import numpy as np
 
 from werrimbi_odom.driving.driver import Driver
 from werrimbi_odom.driving.limits import Area, Limits
-from werrimbi_odom.driving.plan import Plan
-from werrimbi_odom.driving.watch import Reading, Watch
+from werrimbi_odom.driving.plan import ManoeuvrePlan
+from werrimbi_odom.driving.watch import OdometryReading, Watch
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.odometer import Odometer
@@ -48,7 +48,7 @@ class InEngine:
         self._per_tick, self._per_pose = STEPS // ticks, STEPS // poses
         self._drives = 0
 
-    def drive(self, plan: Plan, limits: Limits = LIMITS) -> tuple[Run, Driver]:
+    def drive(self, plan: ManoeuvrePlan, limits: Limits = LIMITS) -> tuple[Run, Driver]:
         """What is recorded of a drive, and how it ended."""
         robot, odometer = self._robot, Odometer(self._file.robot, PieceTolerance())
         watch = Watch(deviation=0.5, turned_off=1.0)
@@ -70,7 +70,7 @@ class InEngine:
                 ticks.append((time, *robot.counters(time)))
                 estimate = odometer.update(*ticks[-1])
                 pose = pose if estimate is None else estimate.pose
-                driver.odometry(Reading(time, 0.0, pose), robot.time)
+                driver.odometry(OdometryReading(time, 0.0, pose), robot.time)
             if driver.state == "waiting" and step == begun + STANDS * STEPS:
                 driver.start(robot.time)
             if driver.state in ("waiting", "driving"):

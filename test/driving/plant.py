@@ -12,7 +12,7 @@ import numpy as np
 
 from werrimbi_odom.driving.driver import Driver
 from werrimbi_odom.driving.limits import STILL, Command
-from werrimbi_odom.driving.watch import Reading
+from werrimbi_odom.driving.watch import OdometryReading
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Pose
 
@@ -42,7 +42,9 @@ class Plant:
         self._rng = np.random.default_rng(self.seed)
 
     def step(
-        self, driver: Driver, spoil: Callable[[Reading], Reading | None] | None = None
+        self,
+        driver: Driver,
+        spoil: Callable[[OdometryReading], OdometryReading | None] | None = None,
     ) -> None:
         """One period: the robot moves, the odometry comes (or what became of it)."""
         acting = self.sent[-self.lag] if len(self.sent) >= self.lag else STILL
@@ -53,7 +55,7 @@ class Plant:
         yaw = math.remainder(self.pose.yaw + turn, 2.0 * math.pi)
         self.pose = Pose(self.pose.x + float(x), self.pose.y + float(y), float(yaw))
         self.time += self.period
-        reading: Reading | None = Reading(self.time, 0.005, self.pose)
+        reading: OdometryReading | None = OdometryReading(self.time, 0.005, self.pose)
         if spoil is not None:
             assert reading is not None
             reading = spoil(reading)

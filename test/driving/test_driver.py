@@ -19,25 +19,28 @@ from test.driving.plant import Plant
 from werrimbi_odom.driving.driver import LATER, Driver
 from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
 from werrimbi_odom.driving.manoeuvres import plan_of
-from werrimbi_odom.driving.plan import Move, Plan, seen_from
-from werrimbi_odom.driving.watch import Reading, Watch
+from werrimbi_odom.driving.plan import ManoeuvrePlan, Move, seen_from
+from werrimbi_odom.driving.watch import OdometryReading, Watch
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
 
 LIMITS = Limits(0.4, 1.2, 0.8, 2.5)
 WIDE = Area(radius=30.0, robot_radius=0.3)
 SQUARE = plan_of("umbmark_ccw", length=1.0)
-Spoil = Callable[[Reading], Reading | None]
+Spoil = Callable[[OdometryReading], OdometryReading | None]
 
 
 def driver(
-    plan: Plan = SQUARE, limits: Limits = LIMITS, area: Area = WIDE, watch: Watch | None = None
+    plan: ManoeuvrePlan = SQUARE,
+    limits: Limits = LIMITS,
+    area: Area = WIDE,
+    watch: Watch | None = None,
 ) -> Driver:
     return Driver(plan, limits, area, watch or Watch())
 
 
 def under_way(
-    plan: Plan = SQUARE, area: Area = WIDE, watch: Watch | None = None
+    plan: ManoeuvrePlan = SQUARE, area: Area = WIDE, watch: Watch | None = None
 ) -> tuple[Driver, Plant]:
     """A robot in the middle of its first side, at speed."""
     one, plant = driver(plan, area=area, watch=watch), Plant()
@@ -84,7 +87,7 @@ limits = st.builds(
 def test_no_command_is_ever_beyond_the_limits_and_every_drive_ends(
     plan: list[Move], limits: Limits, lag: int, noise: float, fault: str, when: int
 ) -> None:
-    one = driver(Plan("any", "any", tuple(plan)), limits)
+    one = driver(ManoeuvrePlan("any", "any", tuple(plan)), limits)
     plant = Plant(lag=lag, noise=noise, seed=when)
     plant.rest(one)
     one.start(plant.time)
@@ -149,7 +152,7 @@ def test_what_came_while_a_recording_was_begun_is_neither_silent_nor_late() -> N
     one.tick(now + 0.003)
     assert one.state == "driving", one.words
     for stamp in np.arange(asked + 0.02, now, 0.02).tolist():
-        one.odometry(Reading(stamp, now - stamp, plant.pose), now + 0.004)
+        one.odometry(OdometryReading(stamp, now - stamp, plant.pose), now + 0.004)
     plant.time = now
     plant.rest(one, 5)
     assert one.state == "driving", one.words
@@ -158,7 +161,7 @@ def test_what_came_while_a_recording_was_begun_is_neither_silent_nor_late() -> N
     late = driver()
     plant.rest(late)
     late.start(plant.time + busy, busy=busy)
-    late.odometry(Reading(plant.time + 0.02, busy + 0.3, plant.pose), plant.time + busy)
+    late.odometry(OdometryReading(plant.time + 0.02, busy + 0.3, plant.pose), plant.time + busy)
     assert "later than before" in late.words
 
 
@@ -217,7 +220,7 @@ def test_a_near_scan_and_a_silent_one_stop_it() -> None:
 
 def test_wheels_that_slip_in_a_turn_stop_it() -> None:
     """The odometry turns, the gyro says that the robot does not."""
-    spin = Plan("spin", "", (Move(0.0, 6.0),))
+    spin = ManoeuvrePlan("spin", "", (Move(0.0, 6.0),))
     for slips in (False, True):
         one, plant = driver(spin, watch=Watch(slip=0.06)), Plant()
         for _ in range(30):

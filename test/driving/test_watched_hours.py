@@ -21,7 +21,7 @@ pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[al
 import werrimbi_odom as wo
 from test.driving.in_engine import LIMITS, InEngine
 from werrimbi_odom.driving.manoeuvres import BEFORE
-from werrimbi_odom.driving.plan import Move, Plan
+from werrimbi_odom.driving.plan import ManoeuvrePlan, Move
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.simulation import LiveRobot, Peculiarity, TrueRobot, hide, write_robot_file
@@ -31,17 +31,17 @@ MINUTES = 5.0
 TRUTH = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
 
 
-def patrol(rng: np.random.Generator) -> Plan:
+def patrol(rng: np.random.Generator) -> ManoeuvrePlan:
     """Lines, curves and turns as they come, for as long as between two looks; hardly any back."""
     moves = [BEFORE]
-    while Plan("patrol", "", tuple(moves)).duration(LIMITS) < 60.0 * MINUTES:
+    while ManoeuvrePlan("patrol", "", tuple(moves)).duration(LIMITS) < 60.0 * MINUTES:
         kind = rng.random()
         turn = float(rng.uniform(-0.5, 0.5) * math.pi)
         length = float(rng.uniform(0.5, 2.5)) if kind < 0.75 else 0.0
         if kind < 0.08:
             length = -0.4
         moves.append(Move(length, 0.0 if kind < 0.4 else turn, float(rng.uniform(0.5, 1.0))))
-    return Plan("patrol", "a patrol", tuple(moves))
+    return ManoeuvrePlan("patrol", "a patrol", tuple(moves))
 
 
 def drives(hidden: list[Peculiarity], seed: int, folder: Path) -> tuple[RobotFile, Iterator[Run]]:

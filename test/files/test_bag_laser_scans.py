@@ -23,11 +23,11 @@ from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.simulation import rooms
-from werrimbi_odom.simulation.engine import Pose, TruePath
+from werrimbi_odom.simulation.engine import AxlePose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
 
 EPOCH = 1_700_000_000
-LIDAR = Lidar(beams=180, mount=Pose(0.15, -0.05, 0.7))
+LIDAR = Lidar(beams=180, mount=AxlePose(0.15, -0.05, 0.7))
 BASE, WHEEL, COUNTS = 0.4, 0.1, 1000.0
 
 

@@ -25,12 +25,12 @@ def driven(seed: int, **seen: float) -> Run:
     """A minute of lines, curves, spins and stops."""
     random = np.random.default_rng(seed)
     recorded = drive(TRUE, wandering(random, 30.0), random, every=5, **seen)
-    ticks, seen_by = recorded.ticks, recorded.reference
+    ticks, extrinsics_of = recorded.ticks, recorded.reference
     return Run(
         "drive",
         Path("drive"),
         Ticks(ticks.time, ticks.left, ticks.right),
-        Reference(seen_by.time, seen_by.x, seen_by.y, seen_by.yaw),
+        Reference(extrinsics_of.time, extrinsics_of.x, extrinsics_of.y, extrinsics_of.yaw),
     )
 
 

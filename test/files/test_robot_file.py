@@ -16,7 +16,7 @@ from ruamel.yaml import YAML
 
 from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import PARAMETERS, Parameter, Value
+from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter, Value
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, write_robot_file
 
 ROOT = Path(__file__).parents[2]
@@ -239,7 +239,7 @@ SIZES = {
 }
 
 
-def _values(item: Parameter) -> st.SearchStrategy[Value]:
+def _values(item: NodeParameter) -> st.SearchStrategy[Value]:
     if item.choices:
         return st.sampled_from([int(c) if item.kind == "integer" else c for c in item.choices])
     if item.kind == "float" and item.name in SIZES:

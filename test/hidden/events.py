@@ -27,10 +27,10 @@ from test.hidden.machines import OWN
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.diagnosis.search import first_fit
-from werrimbi_odom.inference.events.events import Event, Side, events_among
+from werrimbi_odom.inference.diagnosis.search import fit_calibration
+from werrimbi_odom.inference.events.events import Event, EventSide, events_among
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import ReferenceSensor, free, record, write_robot_file, write_run
 
@@ -87,9 +87,9 @@ def _driven(seed: int) -> tuple[list[Run], Robot]:
 
 
 def _events(runs: list[Run], robot: Robot) -> tuple[Event, ...]:
-    matched = match_finely(runs, robot, 1.0, None)
-    point = first_fit(concatenated(matched), robot).point
-    side = Side(matched, tuple(run.path for run in runs), point, held_out=False)
+    matched = match_for_fit(runs, robot, 1.0, None)
+    point = fit_calibration(concatenated(matched), robot).point
+    side = EventSide(matched, tuple(run.path for run in runs), point, held_out=False)
     return events_among([side], "absolute").events
 
 

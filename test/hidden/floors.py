@@ -15,18 +15,18 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     candidates,
     parameters_of_candidate,
-    put_in,
     scores,
+    with_candidate,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -61,7 +61,7 @@ class Floor:
         self.given = robot
         self.options = EvaluationOptions(reference_kind=kind, leg=LEG, limits=limits)
         self.judge: Judge = judge_of(runs, holdout, robot, self.options)
-        self.laid: Concatenated = concatenated(match_finely(runs, robot, LEG, limits))
+        self.laid: Concatenated = concatenated(match_for_fit(runs, robot, LEG, limits))
 
     def as_given(self) -> float:
         """Held-out error of the robot file [m]."""
@@ -74,7 +74,7 @@ class Floor:
         robot = replace(self.given, effects=(*self.given.effects, *mistakes))
         if len(mistakes) == len(names):
             return self.judge.of(Model(robot, self.judge.nothing_of_own)).holdout
-        fit = first_fit(self.laid, robot, self.options)
+        fit = fit_calibration(self.laid, robot, self.options)
         for name in names:
             if name not in CALIBRATED and not _is_mistake(name):
                 laws = RIGHT_LAWS.get(name) or (find(name),)
@@ -83,7 +83,7 @@ class Floor:
 
     def of_law(self, law: Effect) -> float:
         """Held-out error of the model with one more law, calibration and all fitted [m]."""
-        fit = first_fit(self.laid, self.given, self.options)
+        fit = fit_calibration(self.laid, self.given, self.options)
         return self.judge.of(self._with(fit, law, self.given).point.model).holdout
 
     def _with(self, fit: Fitted, effect: Effect, robot: Robot) -> Fitted:
@@ -96,7 +96,7 @@ class Floor:
         best = sorted(found, key=lambda score: -score.gain)[:SHAPES]
         fits = []
         for score in best:
-            start = replace(fit.point, model=put_in(fit.point.model, score))
+            start = replace(fit.point, model=with_candidate(fit.point.model, score))
             own = (*fit.numbers, *parameters_of_candidate(score.candidate))
             names = (*fit.names, effect.name)
             fits.append(fitted(self.laid, start, names, own, robot, rounds=3))

@@ -19,8 +19,8 @@ import numpy as np
 
 from werrimbi_odom.simulation import (
     Manoeuvre,
+    MoveLimits,
     Nominal,
-    Pace,
     ReferenceSensor,
     TrueRobot,
     arcs,
@@ -102,7 +102,7 @@ def machine(setup: str, seed: int) -> Machine:
 
 def _line() -> Manoeuvre:
     """Straight at one speed, forwards, with gentle starts and stops."""
-    return moves("line", [(3.0, 0.0)] * 3, Pace(speed=0.4, acceleration=0.5))
+    return moves("line", [(3.0, 0.0)] * 3, MoveLimits(speed=0.4, acceleration=0.5))
 
 
 def _curves(seed: int) -> Manoeuvre:
@@ -126,7 +126,7 @@ def manoeuvre(name: str, seed: int) -> Manoeuvre:
         When nobody knows how to drive that.
     """
     words = name.lower().replace(" ", "_")
-    brisk = Pace(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
+    brisk = MoveLimits(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
     known = {
         "square": chain("square", square(1.5), square(1.5, "cw")),
         "out_and_back": chain(
@@ -141,7 +141,7 @@ def manoeuvre(name: str, seed: int) -> Manoeuvre:
         "arc": chain("arcs", arcs((0.4, 0.8), angle=math.pi / 2), arcs((0.4, 0.8), pace=brisk)),
         "circle": chain("arcs", arcs((0.4, 0.8), angle=math.pi / 2), arcs((0.4, 0.8), pace=brisk)),
         "speed": free(60.0, seed=seed, speed=0.8, yaw_rate=2.0, acceleration=1.5),
-        "still": moves("stand_still", [(0.3, 0.0), (-0.3, 0.0)] * 2, Pace(pause=20.0)),
+        "still": moves("stand_still", [(0.3, 0.0), (-0.3, 0.0)] * 2, MoveLimits(pause=20.0)),
         "free": free(60.0, seed=seed, speed=0.8, yaw_rate=2.0, acceleration=1.5),
     }
     for word, found in known.items():
@@ -164,7 +164,7 @@ def _other(seed: int) -> Machine:
     sigma = between(3.0e-4, 5.0e-3)
     top = between(0.4, 0.9)
     spin_rate = min(2.0, 2.0 * top / base)
-    pace = Pace(
+    pace = MoveLimits(
         speed=top, acceleration=1.5 * top, yaw_rate=spin_rate, yaw_acceleration=2.0 * spin_rate
     )
 

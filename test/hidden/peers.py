@@ -39,13 +39,13 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.inference.comparison.reference_noise import chained
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, variables_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.likelihood import errors_between
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.run_phases import known_at_home
+from werrimbi_odom.inference.fitting.run_phases import model_in_runs
 from werrimbi_odom.model.pose import Floats
 
 PAGE = ROOT / "docs" / "peers.md"
@@ -113,8 +113,8 @@ def judged(task: tuple[HiddenSet, int]) -> Line:
     floor = Floor(train, holdout, file.robot, limits=file.limits)
     (coarse,) = floor.judge.holdout.cuts[LEG]
     fine = floor.judge.fine
-    fit = first_fit(floor.laid, file.robot, floor.options)
-    model = known_at_home(fit.point.model, fine, "absolute")
+    fit = fit_calibration(floor.laid, file.robot, floor.options)
+    model = model_in_runs(fit.point.model, fine, "absolute")
     held = legs_of(fine, model)
     predicted = predict_all(model, fine).relative
     seen = legs_of(floor.laid, fit.point.model)

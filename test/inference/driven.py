@@ -12,7 +12,7 @@ import numpy as np
 
 from test.model.drives import ROBOT, read
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.calibration.recorded_square import Record
+from werrimbi_odom.inference.calibration.recorded_square import SquareRecording
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -58,9 +58,9 @@ def run_of(
     return Run(f"run_{seed}", Path(f"run_{seed}"), record, reference)
 
 
-def record_of(name: str, drive: Recording) -> Record:
+def record_of(name: str, drive: Recording) -> SquareRecording:
     """A drive of the engine, as a recorded square is read."""
-    return Record(
+    return SquareRecording(
         name,
         drive.t_s,
         drive.left_ticks,

@@ -19,12 +19,12 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of
-from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.robot import Robot
@@ -121,9 +121,9 @@ def stated(case: Case) -> dict[str, tuple[float, float]]:
 
     All of `add` but the search for set-up mistakes before it, and the judgement after.
     """
-    runs = concatenated(match_finely(case.runs, GIVEN, leg=1.0))
+    runs = concatenated(match_for_fit(case.runs, GIVEN, leg=1.0))
     nothing = tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs)
-    drives = Drives(runs, nothing, EvaluationOptions())
+    drives = FitDrives(runs, nothing, EvaluationOptions())
     fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all
     sizes = sizes_needed(fit, GIVEN, ())
     fit = with_sizes(runs, fit, GIVEN, sizes)

@@ -17,9 +17,9 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
-from werrimbi_odom.inference.changes.drives import Drives
+from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.numbers import groups_of
-from werrimbi_odom.inference.changes.search import Segmented, segmented
+from werrimbi_odom.inference.changes.search import ChangePoints, find_changes
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
@@ -31,7 +31,9 @@ BASE, LEFT, RIGHT = range(3)
 STD = 1e-3
 
 
-def drives_of(levels: np.ndarray, random: np.random.Generator, scatter: float = 0.0) -> Drives:
+def drives_of(
+    levels: np.ndarray, random: np.random.Generator, scatter: float = 0.0
+) -> DriveNumbers:
     """Each drive tells three numbers, one of them hardly, with errors that hang together."""
     count, size = levels.shape
     mixed = random.normal(size=(count, size, size)) + 3.0 * np.eye(size)
@@ -39,11 +41,11 @@ def drives_of(levels: np.ndarray, random: np.random.Generator, scatter: float = 
     spread = np.linalg.inv(information) + scatter**2 * np.eye(size)
     errors = (np.linalg.cholesky(spread) @ random.normal(size=(count, size, 1)))[..., 0]
     weighted = (information @ (levels + errors)[..., None])[..., 0]
-    return Drives(MULTIPLIERS, information, weighted, np.arange(count, dtype=np.float64))
+    return DriveNumbers(MULTIPLIERS, information, weighted, np.arange(count, dtype=np.float64))
 
 
-def found_in(drives: Drives, kinds: tuple = ("step", "alone", "trend")) -> Segmented:
-    return segmented(drives, groups_of(MULTIPLIERS, np.ones(3), 3), PRICE, kinds)
+def found_in(drives: DriveNumbers, kinds: tuple = ("step", "alone", "trend")) -> ChangePoints:
+    return find_changes(drives, groups_of(MULTIPLIERS, np.ones(3), 3), PRICE, kinds)
 
 
 def test_what_a_change_would_explain_is_what_least_squares_says() -> None:

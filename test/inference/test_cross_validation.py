@@ -18,21 +18,21 @@ from werrimbi_odom.inference.diagnosis.cross_validation import (
     fold_of_leg,
     holds_when_cross_validated,
 )
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
 
 def laid_out(truth: Robot, seeds: range) -> Concatenated:
-    return concatenated(match_finely(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
+    return concatenated(match_for_fit(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
 
 
 def with_effect(runs: Concatenated, name: str) -> tuple[Fitted, Fitted]:
-    before = first_fit(runs, GIVEN)
+    before = fit_calibration(runs, GIVEN)
     (after,) = search_round(runs, before, [find(name)], GIVEN).tried
     return before, after
 
@@ -57,7 +57,7 @@ def test_an_effect_that_is_there_holds() -> None:
 def test_leaving_a_fold_out_is_what_refitting_without_it_gives() -> None:
     """The linear short cut against least squares done anew for every fold."""
     runs = laid_out(GIVEN, range(1, 3))
-    fit = first_fit(runs, GIVEN)
+    fit = fit_calibration(runs, GIVEN)
     white, slopes = fit.design.flat()
     rows = np.repeat(fold_of_leg(runs), 3)
     brute = fit.cost
@@ -76,7 +76,7 @@ def losses_with(column_of: Callable[[np.ndarray], np.ndarray], run: int) -> list
     share the number.
     """
     runs = laid_out(GIVEN, range(1, 3))
-    fit = first_fit(runs, GIVEN)
+    fit = fit_calibration(runs, GIVEN)
     white, slopes = fit.design.flat()
     alone = cross_validated_cost(runs, fit)
     random = np.random.default_rng(5)

@@ -14,11 +14,11 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.chances import chi2_above, noncentrality
+from werrimbi_odom.inference.chances import chi2_survival, noncentrality
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment
 from werrimbi_odom.inference.rules import POWER, SURE
@@ -44,7 +44,7 @@ def limits(
 
 
 def drives_of(runs: list[Run]) -> Experiment:
-    laid = concatenated(match_finely(runs, ROBOT, 1.0))
+    laid = concatenated(match_for_fit(runs, ROBOT, 1.0))
     return Experiment(laid, start_point(laid, ROBOT, NOISE))
 
 
@@ -85,7 +85,7 @@ def test_at_the_limit_95_in_100_are_found(name: str, parameter: str, runs: list[
         return np.asarray(np.sum((shown - basis @ (basis.T @ shown)) ** 2, axis=0))
 
     gains = cost(nuisance) - cost(np.concatenate([nuisance, wanted], axis=-1))
-    found = [chi2_above(gain, wanted.shape[1]) < SURE / TRIED for gain in gains]
+    found = [chi2_survival(gain, wanted.shape[1]) < SURE / TRIED for gain in gains]
     assert np.mean(found) == pytest.approx(0.95, abs=0.012)
 
 
@@ -132,5 +132,5 @@ def test_the_noncentrality_gives_the_power() -> None:
         value = noncentrality(degrees, 1e-3, 0.9)
         drawn = random.normal(size=(100_000, degrees))
         drawn[:, 0] += np.sqrt(value)
-        found = [chi2_above(each, degrees) < 1e-3 for each in np.sum(drawn**2, axis=1)[:20_000]]
+        found = [chi2_survival(each, degrees) < 1e-3 for each in np.sum(drawn**2, axis=1)[:20_000]]
         assert np.mean(found) == pytest.approx(0.9, abs=0.01)

@@ -14,15 +14,20 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount, legs_pushed, pushes_of
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.evidence import (
+    AMOUNTS,
+    Amount,
+    step_jacobians,
+    summed_over_legs,
+)
+from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting.candidates import candidates, scores
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
+from werrimbi_odom.inference.fitting.prediction import path_of, predict, predict_all, predicted_legs
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -63,16 +68,18 @@ def test_runs_laid_end_to_end_are_predicted_as_one_by_one(laid: Concatenated) ->
 
 def slope(laid: Concatenated, ahead: Robot, behind: Robot, step: float) -> Floats:
     poses = [
-        legs_shown(Model(side, tuple({} for _ in laid.runs)), laid) for side in (ahead, behind)
+        predicted_legs(Model(side, tuple({} for _ in laid.runs)), laid) for side in (ahead, behind)
     ]
     return np.asarray((poses[0] - poses[1]) / (2.0 * step))
 
 
 def pushed(laid: Concatenated, amount: Amount) -> Floats:
     point = start_point(laid, ROBOT)
-    left, right = pushes_of(laid, path_of(point.model, laid), [amount], point)
+    left, right = step_jacobians(laid, path_of(point.model, laid), [amount], point)
     ones = np.ones((laid.run_of_step.size, 1))
-    return np.asarray((legs_pushed(laid, ones, left) + legs_pushed(laid, ones, right))[..., 0])
+    return np.asarray(
+        (summed_over_legs(laid, ones, left) + summed_over_legs(laid, ones, right))[..., 0]
+    )
 
 
 def test_an_error_pushes_the_legs_as_the_law_that_makes_it(laid: Concatenated) -> None:
@@ -128,7 +135,7 @@ def test_every_amount_has_a_channel_of_the_contract() -> None:
 
 
 def test_a_right_robot_needs_no_calibration_and_no_effect_scores(laid: Concatenated) -> None:
-    fit = first_fit(laid, ROBOT)
+    fit = fit_calibration(laid, ROBOT)
     assert fit.calibrated == ()
     tried = candidates(LIBRARY, (), (), len(laid.runs))
     best = max(scores(laid, fit.point, CALIBRATION, tried), key=lambda score: score.excess)
@@ -154,7 +161,7 @@ def test_of_the_multipliers_those_are_kept_that_are_wrong(
 ) -> None:
     robot = replace(ROBOT, **wrong)  # type: ignore[arg-type]
     wronged = concatenated([match(run, robot, 0.25, turn=0.4) for run in runs])
-    fit = first_fit(wronged, robot)
+    fit = fit_calibration(wronged, robot)
     assert named in fit.calibrated
     assert max(fit.importance, key=lambda name: fit.importance[name]) == named
 

@@ -230,13 +230,13 @@ def test_few_of_many_terms_are_selected_and_none_of_noise() -> None:
     columns /= np.sqrt(np.sum(columns**2, axis=0))
     noise = random.normal(size=2000)
     target = 20.0 * columns[:, 1] - 15.0 * columns[:, 7] + noise
-    square, price = columns.T @ columns, 8.0 + 2.0 * np.log(60)
-    best = selections(square, columns.T @ target, price)[0]
+    square, penalty = columns.T @ columns, 8.0 + 2.0 * np.log(60)
+    best = selections(square, columns.T @ target, penalty)[0]
     assert best.terms == (1, 7)
     assert -best.coefficients == pytest.approx([20.0, -15.0], abs=4.0)
-    nothing = selections(square, columns.T @ noise, price)
-    assert max(each.worth(price) for each in nothing) < 0.0
+    nothing = selections(square, columns.T @ noise, penalty)
+    assert max(each.worth(penalty) for each in nothing) < 0.0
     apart = selections(
-        square, columns.T @ target, price, lambda chosen, one: not {1, 7} <= {*chosen, one}
+        square, columns.T @ target, penalty, lambda chosen, one: not {1, 7} <= {*chosen, one}
     )
     assert not {1, 7} <= set(apart[0].terms)

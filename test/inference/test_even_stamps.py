@@ -11,7 +11,7 @@ import pytest
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.counters import counters_of
-from werrimbi_odom.inference.legs.even_stamps import evened, evened_scans
+from werrimbi_odom.inference.legs.even_stamps import with_even_scan_stamps, with_even_stamps
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.model.robot import Robot
 
@@ -35,7 +35,7 @@ def test_messages_that_wait_are_put_back_to_when_they_were_read(seed: int) -> No
     random = np.random.default_rng(seed)
     read = PERIOD * np.arange(400)
     came = np.sort(read + random.uniform(0.0, 0.1, 400))
-    found = evened(came, *driven(read))
+    found = with_even_stamps(came, *driven(read))
     assert (np.diff(found) > 0.0).all()
     assert scatter(found - read) < 0.3 * scatter(came - read)
 
@@ -43,7 +43,7 @@ def test_messages_that_wait_are_put_back_to_when_they_were_read(seed: int) -> No
 def test_two_that_come_together_were_not_read_together() -> None:
     read = PERIOD * np.arange(400)
     came = np.where(np.arange(400) % 3 == 0, np.append(read[1:], read[-1]), read)
-    found = evened(came, *driven(read))
+    found = with_even_stamps(came, *driven(read))
     assert (np.diff(found) > 0.0).all()
     assert scatter(found - read) < 0.3 * scatter(came - read)
 
@@ -52,14 +52,14 @@ def test_two_that_come_together_were_not_read_together() -> None:
 def test_a_timer_that_is_uneven_but_told_truly_is_believed(seed: int) -> None:
     random = np.random.default_rng(seed)
     read = np.sort(PERIOD * np.arange(400) + random.uniform(0.0, 0.1, 400))
-    assert evened(read, *driven(read)) is read
+    assert with_even_stamps(read, *driven(read)) is read
 
 
 def test_even_stamps_and_few_stay_as_they_are() -> None:
     read = PERIOD * np.arange(400)
-    assert evened(read, *driven(read)) is read
+    assert with_even_stamps(read, *driven(read)) is read
     few = read[:40] + np.tile([0.0, 0.05], 20)
-    assert evened(few, *driven(read[:40])) is few
+    assert with_even_stamps(few, *driven(read[:40])) is few
 
 
 def test_a_reading_that_failed_is_no_reason_to_believe_stamps() -> None:
@@ -68,7 +68,7 @@ def test_a_reading_that_failed_is_no_reason_to_believe_stamps() -> None:
     came = np.sort(read + random.uniform(0.0, 0.1, 400))
     left, right = (counts.astype(np.float64) for counts in driven(read))
     left[100] = np.nan
-    assert scatter(evened(came, left, right) - read) < 0.3 * scatter(came - read)
+    assert scatter(with_even_stamps(came, left, right) - read) < 0.3 * scatter(came - read)
 
 
 @pytest.mark.filterwarnings("error")
@@ -76,14 +76,14 @@ def test_a_reading_that_failed_is_no_reason_to_believe_stamps() -> None:
 def test_of_few_rows_nothing_is_asked_that_they_do_not_hold(rows: int) -> None:
     read = PERIOD * np.arange(rows)
     came = np.sort(read + np.random.default_rng(5).uniform(0.0, 0.1, rows))
-    assert np.isfinite(evened(came, *driven(read))).all()
+    assert np.isfinite(with_even_stamps(came, *driven(read))).all()
 
 
 def test_a_pause_of_the_record_stays_where_it_was() -> None:
     random = np.random.default_rng(1)
     read = PERIOD * np.arange(400) + np.where(np.arange(400) < 200, 0.0, 30.0)
     came = np.sort(read + random.uniform(0.0, 0.1, 400))
-    found = evened(came, *driven(PERIOD * np.arange(400)))
+    found = with_even_stamps(came, *driven(PERIOD * np.arange(400)))
     assert found is not came
     assert np.abs(found - came).max() < 0.1
 
@@ -94,7 +94,7 @@ def test_a_message_told_twice_was_read_once() -> None:
     came = np.sort(read + random.uniform(0.0, 0.1, 400))
     twice = np.sort(np.concatenate([np.arange(400), np.arange(0, 400, 4)]))
     counts = [part[twice] for part in driven(read)]
-    found = evened(came[twice], *counts)
+    found = with_even_stamps(came[twice], *counts)
     assert (np.diff(found) >= 0.0).all()
     assert scatter(found - read[twice]) < 0.3 * scatter(came - read)
 
@@ -116,7 +116,7 @@ def test_a_lidar_turns_evenly_however_late_its_scans_come(lost: int) -> None:
     random = np.random.default_rng(3)
     seen = np.delete(PERIOD * np.arange(300), random.integers(1, 299, lost))
     came = np.sort(seen + random.uniform(0.0, 0.2, seen.size))
-    found = evened_scans(by_scans(seen, came)).time
+    found = with_even_scan_stamps(by_scans(seen, came)).time
     assert (np.diff(found) > 0.0).all()
     assert scatter(found - seen) < 0.5 * scatter(came - seen)
 
@@ -126,7 +126,7 @@ def test_where_scans_are_missing_by_the_dozen_stamps_get_no_worse(seed: int) -> 
     random = np.random.default_rng(seed)
     seen = np.delete(PERIOD * np.arange(300), random.integers(1, 299, 30))
     came = np.sort(seen + random.uniform(0.0, 0.2, seen.size))
-    found = evened_scans(by_scans(seen, came)).time
+    found = with_even_scan_stamps(by_scans(seen, came)).time
     assert scatter(found - seen) <= scatter(came - seen)
 
 
@@ -135,14 +135,14 @@ def test_of_what_is_no_lidar_nobody_knows_whether_it_is_even() -> None:
     seen = PERIOD * np.arange(300)
     came = np.sort(seen + random.uniform(0.0, 0.2, 300))
     reference = by_scans(seen, came, matched=False)
-    assert evened_scans(reference) is reference
+    assert with_even_scan_stamps(reference) is reference
 
 
 def test_scans_that_are_stamped_truly_stay() -> None:
     random = np.random.default_rng(3)
     seen = np.sort(PERIOD * np.arange(300) + random.uniform(0.0, 0.1, 300))
     reference = by_scans(seen, seen)
-    assert evened_scans(reference) is reference
+    assert with_even_scan_stamps(reference) is reference
 
 
 ROBOT = Robot(0.3, 0.05, 0.05, 1000.0, 1000.0)
@@ -170,5 +170,5 @@ def test_hard_starts_are_no_reason_to_believe_stamps() -> None:
     stamps = np.sort(read + random.normal(0.0, 4e-3, read.size))
     speed = np.clip(20.0 * np.abs((0.5 * read) % 2.0 - 1.0) - 5.0, 0.0, 8.0)  # rad/s
     counts = np.floor(160.0 * np.cumsum(speed) * 0.05).astype(np.int64)
-    found = evened(stamps, counts, counts)
+    found = with_even_stamps(stamps, counts, counts)
     assert scatter(found - read) < 0.3 * scatter(stamps - read)

@@ -19,9 +19,9 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance, diagnose
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
@@ -45,9 +45,9 @@ def test_of_few_data_the_noise_itself_is_hardly_known(seed: int) -> None:
     random = np.random.default_rng(seed)
     robot = WhiteNoiseRobot()
     run = drive(robot, wandering(random, 16.0), random, sigma_xy=0.01, sigma_yaw=0.02, every=100)
-    laid = concatenated(match_finely([run], robot.entered(0.05), 1.0, None))
+    laid = concatenated(match_for_fit([run], robot.entered(0.05), 1.0, None))
     stated = EvaluationOptions(sigma_xy=1e-3, sigma_yaw=2e-3)
-    before = first_fit(laid, robot.entered(0.05), stated)
+    before = fit_calibration(laid, robot.entered(0.05), stated)
     this = search_round(laid, before, LIBRARY, robot.entered(0.05))
     within = [fit for fit in this.tried if not fit.at_bound]
     assert within

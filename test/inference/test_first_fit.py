@@ -14,9 +14,9 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 
 @with_recordings
@@ -33,8 +33,8 @@ def test_what_happened_once_does_not_lead_away_from_a_file_that_is_right() -> No
         ),
     )
     runs = [read_run_folder(taped / f"part_{number}") for number in (1, 2, 3, 4)]
-    laid = concatenated(match_finely(runs, robot, leg=1.0))
-    fit = first_fit(laid, robot, EvaluationOptions(reference_kind="incremental"))
+    laid = concatenated(match_for_fit(runs, robot, leg=1.0))
+    fit = fit_calibration(laid, robot, EvaluationOptions(reference_kind="incremental"))
     delay, bump = fit.point.model.robot.effects
     assert delay.values["delay"] == pytest.approx(0.0824, abs=0.01)
     assert bump.values["height"] == pytest.approx(1.02e-3, abs=3e-4)

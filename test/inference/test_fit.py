@@ -93,7 +93,7 @@ def test_a_base_that_was_never_turned_on_is_left_alone() -> None:
     matched = [match(run, nominal, 0.5) for run in straight]
     # The wheels themselves differ, so the robot does turn a little: what is told apart is bounded.
     fit = fit_model(matched, start_point(matched, nominal))
-    assert [number.name for number in fit.mute] == ["wheel_separation_multiplier"]
+    assert [number.name for number in fit.not_identifiable] == ["wheel_separation_multiplier"]
     assert fit.robot.wheel_separation_multiplier == 1.02
 
 

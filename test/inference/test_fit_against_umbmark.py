@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, square
-from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
+from werrimbi_odom.inference.calibration.recorded_square import (
+    SquareRecording,
+    recorded_square,
+    squares_of,
+)
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.legs.cutting import match
@@ -31,7 +35,7 @@ def both(seed: int) -> tuple[np.ndarray, np.ndarray]:
     records = []
     for run in runs:
         ticks, seen = run.ticks, run.reference
-        record = Record(
+        record = SquareRecording(
             run.name, ticks.time, ticks.left, ticks.right, seen.time, seen.x, seen.y, seen.yaw
         )
         records.append(recorded_square(record, NOMINAL, SIDE))

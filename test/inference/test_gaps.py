@@ -20,7 +20,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_finely, record_of
+from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_for_fit, record_of
 from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
@@ -106,7 +106,7 @@ def test_a_gap_is_not_counted_and_what_follows_is_white(
 ) -> None:
     if kind == "incremental" and which == "positions":
         pytest.skip("positions without headings have no increments")
-    laid = concatenated(match_finely([silent(parts(run, which)) for run in runs], ROBOT, 1.0))
+    laid = concatenated(match_for_fit([silent(parts(run, which)) for run in runs], ROBOT, 1.0))
     assert laid.gap.sum() == 2 * len(runs)
     truth = replace(ROBOT, left_wheel_noise=1e-5, right_wheel_noise=1e-5)
     point = start_point(
@@ -142,7 +142,7 @@ def test_a_wrong_way_through_a_gap_does_not_move_a_fit(runs: list[Run]) -> None:
         )
     fits = []
     for some in ([silent(run) for run in runs], lost):
-        laid = concatenated(match_finely(some, ROBOT, 1.0))
+        laid = concatenated(match_for_fit(some, ROBOT, 1.0))
         fits.append(
             fit_model(
                 laid,

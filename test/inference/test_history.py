@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from werrimbi_odom.inference.changes.history import Course, DriveTold, course_of
+from werrimbi_odom.inference.changes.history import Course, DriveEstimate, course_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 
@@ -28,7 +28,7 @@ def course(
         std = STD * (300.0 if number in dumb else 1.0)
         seen = level + random.normal(size=3) * np.hypot(std, scatter)
         information = np.eye(3) / std**2
-        told.append(DriveTold(MULTIPLIERS, information, information @ seen, 0.0, 500, 20.0))
+        told.append(DriveEstimate(MULTIPLIERS, information, information @ seen, 0.0, 500, 20.0))
     return course_of(told, ROBOT, DAY * np.arange(len(levels)))
 
 

@@ -17,11 +17,11 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.diagnosis.homogeneity import _chance, lasting, lasting_effect
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.homogeneity import _chance, homogeneity_of_effect, lasting
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.report.diagnosis.remarks import not_shown
@@ -71,8 +71,8 @@ def driven(seed: int, spoil: Spoil, name: str, hotter: float = 0.0) -> Run:
 def chances(seeds: range, spoil: Spoil, hotter: float = 0.0) -> list[tuple[str, float, float]]:
     """The most certain cells: what they go with, chance by the map, chance by the quarters."""
     runs = [driven(seed, spoil, f"drive_{seed}", hotter) for seed in seeds]
-    laid = concatenated(match_finely(runs, ROBOT, 1.0, None))
-    fit = first_fit(laid, ROBOT)
+    laid = concatenated(match_for_fit(runs, ROBOT, 1.0, None))
+    fit = fit_calibration(laid, ROBOT)
     numbers = (*CALIBRATION, *fit.numbers)
     cells = dependences(laid, fit.point, numbers)[:8]
     return [
@@ -160,13 +160,13 @@ def late(seed: int, delay: float) -> Run:
 @pytest.mark.parametrize("seed", range(0, 80, 10))
 def test_parts_of_a_short_drive_agree_on_a_delay_by_the_law_at_the_fit(seed: int) -> None:
     """At every start and stop a tenth of a second is more than its derivative at none says."""
-    laid = concatenated(match_finely([late(seed, 0.1)], ROBOT, 0.25, None))
-    before = first_fit(laid, ROBOT)
+    laid = concatenated(match_for_fit([late(seed, 0.1)], ROBOT, 0.25, None))
+    before = fit_calibration(laid, ROBOT)
     delay = [effect for effect in LIBRARY if effect.name == "reference_delay"]
     (fit,) = search_round(laid, before, delay, ROBOT).tried
     assert fit.point.model.robot.effects[-1].values["delay"] == pytest.approx(0.1, abs=0.03)
     # By the derivative at no delay, 1.3e-3 and 1.1e-3 of seeds 0 and 20: left to chance.
-    assert lasting_effect(laid, fit, fit.names[-1]) < 1e-4
+    assert homogeneity_of_effect(laid, fit, fit.names[-1]) < 1e-4
 
 
 @pytest.mark.parametrize("seed", [0, 20])

@@ -23,8 +23,8 @@ from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model
-from werrimbi_odom.inference.fitting.noise import of_no_wheel
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.model.robot import Robot
 
@@ -51,7 +51,7 @@ def test_a_wrong_base_is_found_in_one_short_drive_with_positions_alone() -> None
     assert found.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
     assert found.train.before > 0.1
     assert found.train.after < 0.028, "what two positions of 14 mm leave of a leg"
-    result = calibrate(match_finely([run], NOMINAL, 1.0), NOMINAL)
+    result = calibrate(match_for_fit([run], NOMINAL, 1.0), NOMINAL)
     assert max(result.robot.left_wheel_noise, result.robot.right_wheel_noise) < 3e-3
     assert result.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
 
@@ -297,12 +297,12 @@ def test_a_noise_that_no_wheel_has_is_not_written() -> None:
     run = drive(WhiteNoiseRobot(), wandering(random, 60.0), random)
     run.reference.x[:] += 0.5 * np.cos(run.reference.yaw)
     run.reference.y[:] += 0.5 * np.sin(run.reference.yaw)
-    runs = match_finely([run], NOMINAL, 1.0)
+    runs = match_for_fit([run], NOMINAL, 1.0)
     result = calibrate(runs, NOMINAL, EvaluationOptions(sigma_xy=1e-3, sigma_yaw=2e-3))
     strange = [
         name
         for name, item in result.noises.items()
-        if name.endswith("_wheel_noise") and of_no_wheel(item)
+        if name.endswith("_wheel_noise") and beyond_wheel_noise(item)
     ]
     assert strange
     assert not result.trusted

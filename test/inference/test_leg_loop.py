@@ -13,11 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from werrimbi_odom.inference.fitting import leg_loop
-from werrimbi_odom.inference.fitting.filtering import Legs, Unexpected, filtered
+from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, filtered
 from werrimbi_odom.model.compiled import compiled
 
 
-def of_any_drive(random: np.random.Generator, sets: int, alike: bool) -> Legs:
+def of_any_drive(random: np.random.Generator, sets: int, alike: bool) -> FilterInput:
     """Legs of some runs, with jumps, gaps, and coordinates that were not measured."""
     count = int(random.integers(2, 60))
 
@@ -29,7 +29,7 @@ def of_any_drive(random: np.random.Generator, sets: int, alike: bool) -> Legs:
     pose[random.random(pose.shape) < random.choice([0.0, 0.3])] = np.nan
     begins = random.random(count) < 0.1
     begins[0] = True
-    return Legs(
+    return FilterInput(
         random.normal(0.0, [1.0, 0.1, 2.0], (count, 3)),
         covariance(sets, count),
         pose[:-1],
@@ -42,7 +42,7 @@ def of_any_drive(random: np.random.Generator, sets: int, alike: bool) -> Legs:
     )
 
 
-def by(way: Callable[..., None] | None, legs: Legs) -> Unexpected:
+def by(way: Callable[..., None] | None, legs: FilterInput) -> FilterResult:
     with patch.object(leg_loop, "compiled", lambda function: way):
         return filtered(legs)
 
@@ -52,7 +52,7 @@ def by(way: Callable[..., None] | None, legs: Legs) -> Unexpected:
 def test_arrays_and_single_numbers_are_one_filter(seed: int, sets: int, alike: bool) -> None:
     legs = of_any_drive(np.random.default_rng(seed), sets, alike)
     arrays = by(None, legs)
-    ways = [leg_loop.leg_by_leg, compiled(leg_loop.leg_by_leg)]
+    ways = [leg_loop.loop_over_scalars, compiled(leg_loop.loop_over_scalars)]
     for way in ways if ways[1] is not None else ways[:1]:
         numbers = by(way, legs)
         np.testing.assert_allclose(numbers.value, arrays.value, rtol=1e-8, atol=1e-9)
@@ -65,4 +65,4 @@ def test_arrays_and_single_numbers_are_one_filter(seed: int, sets: int, alike: b
 
 def test_the_machine_code_is_there_where_numba_is() -> None:
     pytest.importorskip("numba")
-    assert compiled(leg_loop.leg_by_leg) is not None
+    assert compiled(leg_loop.loop_over_scalars) is not None

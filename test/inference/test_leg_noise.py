@@ -18,8 +18,8 @@ from werrimbi_odom.inference.fitting import leg_noise
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.leg_noise import noise_of_legs
-from werrimbi_odom.inference.fitting.prediction import path_of, seen_by
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.fitting.prediction import extrinsics_of, path_of
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model import course
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.scalar_loop import follow
@@ -34,7 +34,7 @@ EFFECTS = (
 def legs() -> tuple[Model, Concatenated]:
     runs = runs_of(ROBOT, [1, 2], seconds=20)
     robot = replace(ROBOT, effects=EFFECTS)
-    return Model(robot, ({}, {})), concatenated(match_finely(runs, robot, 0.5))
+    return Model(robot, ({}, {})), concatenated(match_for_fit(runs, robot, 0.5))
 
 
 @pytest.mark.parametrize("way", [leg_noise.step_by_step, compiled(leg_noise.step_by_step)])
@@ -42,7 +42,7 @@ def test_the_noise_of_legs_is_one_sum(
     legs: tuple[Model, Concatenated], way: Callable[..., None] | None
 ) -> None:
     model, runs = legs
-    given = path_of(model, runs), runs, model.robot.track, seen_by(model, runs)
+    given = path_of(model, runs), runs, model.robot.track, extrinsics_of(model, runs)
     with patch.object(leg_noise, "compiled_for", lambda *of, again: None):
         arrays = noise_of_legs(*given)
     with patch.object(leg_noise, "compiled_for", lambda *of, again: way):

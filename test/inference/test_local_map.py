@@ -18,9 +18,13 @@ from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.fitting.filtering import Legs, Unexpected
-from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult
+from werrimbi_odom.inference.fitting.wandering import (
+    GaussMarkovError,
+    GyroHeading,
+    filtered_with_correlated_error,
+)
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.pose import Floats
 
 TRUE = WhiteNoiseRobot(left_noise=4e-4, right_noise=5.8e-4)
@@ -64,14 +68,14 @@ def runs() -> list[Run]:
     return session(range(5))
 
 
-def line(count: int, length: float = 0.25) -> Legs:
+def line(count: int, length: float = 0.25) -> FilterInput:
     """Straight legs whose measured ends are off by what a filter takes for small."""
     random = np.random.default_rng(7)
     relative = np.tile([length, 0.0, 0.0], (count, 1))
     root = 1e-5 * random.standard_normal((count, 3, 3))
     poses = 1e-5 * random.standard_normal((count + 1, 3))
     poses[:, 0] += length * np.arange(count + 1)
-    return Legs(
+    return FilterInput(
         relative,
         (root @ root.swapaxes(-1, -2))[None],
         poses[:-1],
@@ -83,24 +87,24 @@ def line(count: int, length: float = 0.25) -> Legs:
     )
 
 
-def wander_of(legs: Legs) -> Wander:
+def wander_of(legs: FilterInput) -> GaussMarkovError:
     count = legs.begins.size
     kept = np.random.default_rng(8).uniform(0.7, 0.99, count)
     no_gap = np.zeros(count, dtype=np.bool_)
-    return Wander(np.array([[4e-10, 4e-10, 9e-10]]), kept[None], no_gap, 0.0)
+    return GaussMarkovError(np.array([[4e-10, 4e-10, 9e-10]]), kept[None], no_gap, 0.0)
 
 
-def whitened(found: Unexpected) -> Floats:
+def whitened(found: FilterResult) -> Floats:
     root = np.linalg.inv(np.linalg.cholesky(found.covariance[0]))
     return np.asarray((root @ found.value[0][..., None])[..., 0])
 
 
-def cost(found: Unexpected) -> float:
+def cost(found: FilterResult) -> float:
     solved = np.linalg.solve(found.covariance[0], found.value[0][..., None])[..., 0]
     return float(np.sum(found.value[0] * solved) + np.linalg.slogdet(found.covariance[0])[1].sum())
 
 
-def joint_cost(legs: Legs, wander: Wander) -> float:
+def joint_cost(legs: FilterInput, wander: GaussMarkovError) -> float:
     """The same from the covariance of all poses together, with no filter."""
     count = legs.begins.size
     step = np.eye(3)
@@ -133,7 +137,7 @@ def joint_cost(legs: Legs, wander: Wander) -> float:
 def test_the_filter_is_the_likelihood_of_all_poses_together() -> None:
     legs = line(25)
     wander = wander_of(legs)
-    assert cost(filtered_wandering(legs, wander)) == pytest.approx(
+    assert cost(filtered_with_correlated_error(legs, wander)) == pytest.approx(
         joint_cost(legs, wander), rel=1e-6
     )
 
@@ -144,15 +148,15 @@ def test_innovations_change_as_their_derivatives_say(laid: bool) -> None:
     wander = wander_of(legs)
     if laid:
         turn, duration = np.linspace(-0.3, 0.3, 12), np.full(12, 0.8)
-        wander = wander._replace(laid=LaidHeading(turn, duration, np.array([1e-7])))
+        wander = wander._replace(laid=GyroHeading(turn, duration, np.array([1e-7])))
     random = np.random.default_rng(9)
     direction = random.standard_normal((12, 3, 1))
 
     def value(size: float) -> Floats:
         moved = legs._replace(relative=legs.relative + size * direction[..., 0])
-        return filtered_wandering(moved, wander).value[0]
+        return filtered_with_correlated_error(moved, wander).value[0]
 
-    told = filtered_wandering(legs, wander).ways.innovations(direction)[..., 0]
+    told = filtered_with_correlated_error(legs, wander).ways.innovations(direction)[..., 0]
     np.testing.assert_allclose((value(1e-6) - value(-1e-6)) / 2e-6, told, atol=2e-4)
 
 
@@ -167,9 +171,9 @@ def test_a_laid_heading_may_be_off_by_an_angle_a_drift_and_a_scale() -> None:
     poses = np.stack([place.real, place.imag, yaw], axis=1)
     legs = legs._replace(start=poses[:-1], finish=poses[1:])
     wander = wander_of(legs)
-    told = LaidHeading(turn, np.full(40, 1.0), np.array([1e-12]))
+    told = GyroHeading(turn, np.full(40, 1.0), np.array([1e-12]))
     late = [
-        np.abs(whitened(filtered_wandering(legs, each))[-10:]).max()
+        np.abs(whitened(filtered_with_correlated_error(legs, each))[-10:]).max()
         for each in (wander._replace(laid=told), wander)
     ]
     assert late[0] < 1.0
@@ -184,18 +188,22 @@ def test_after_a_jump_the_pose_is_where_the_wheels_brought_it() -> None:
     start[11:] += jump
     finish[10:] += jump
     skip[10] = True
-    kept = Wander(np.full((1, 3), 1e-4), np.full((1, 20), 1.0 - 1e-9), np.zeros(20, np.bool_), 0.0)
-    found = filtered_wandering(legs._replace(start=start, finish=finish, skip=skip), kept)
+    kept = GaussMarkovError(
+        np.full((1, 3), 1e-4), np.full((1, 20), 1.0 - 1e-9), np.zeros(20, np.bool_), 0.0
+    )
+    found = filtered_with_correlated_error(
+        legs._replace(start=start, finish=finish, skip=skip), kept
+    )
     assert np.all(found.value[0, 10] == 0.0)
     assert np.abs(found.value[0]).max() < 2e-4
-    blind = filtered_wandering(legs._replace(start=start, finish=finish), kept)
+    blind = filtered_with_correlated_error(legs._replace(start=start, finish=finish), kept)
     assert np.abs(blind.value[0, 10]).max() > 0.3
 
 
 def test_noise_walk_and_memory_are_told_apart(runs: list[Run]) -> None:
     robot = TRUE.entered()
     found = calibrate(
-        match_finely(runs, robot, 1.0), robot, EvaluationOptions(reference_kind="local_map")
+        match_for_fit(runs, robot, 1.0), robot, EvaluationOptions(reference_kind="local_map")
     )
     noises = found.noises
     assert noises["reference_walk_xy"].value == pytest.approx(WALK[0], rel=0.15)

@@ -12,7 +12,7 @@ import pytest
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.comparison.made_from_wheels import closeness, refuse_circle
+from werrimbi_odom.inference.comparison.made_from_wheels import closeness, require_independent
 from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
@@ -58,7 +58,7 @@ def test_odometry_is_refused_by_its_numbers_alone(seed: int, robot: Robot) -> No
     run, _ = recorded(seed)
     circle = replace(run, reference=own_odometry(run, robot))
     with pytest.raises(InputError, match="it was made from the same counts"):
-        refuse_circle(circle, ROBOT)
+        require_independent(circle, ROBOT)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -70,7 +70,7 @@ def test_odometry_has_the_stamps_of_its_wheels_right_or_wrong(seed: int) -> None
     circle = replace(run, ticks=scattered.ticks, reference=own_odometry(scattered, ROBOT))
     assert counters_of(circle, ROBOT, None).restamped > 2e-3
     with pytest.raises(InputError, match="it was made from the same counts"):
-        refuse_circle(circle, ROBOT)
+        require_independent(circle, ROBOT)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -87,7 +87,7 @@ def assert_never_refused(run: Run, truth: np.ndarray, noise: float, seed: int) -
     x, y = (each + rng.normal(0.0, noise, each.size) for each in truth[:2])
     for yaw in (truth[2], np.full(x.size, np.nan)):
         measured = replace(run, reference=Reference(run.reference.time, x, y, yaw))
-        assert refuse_circle(measured, ROBOT) == ""
+        assert require_independent(measured, ROBOT) == ""
 
 
 def unrounded(seed: int) -> tuple[Run, np.ndarray]:
@@ -114,7 +114,7 @@ def test_odometry_from_angles_without_counts_is_refused_by_its_numbers(
     for reference in (odometry, odometry.chosen(np.arange(odometry.time.size) % 3 == 1), sent):
         circle = replace(run, reference=reference)
         with pytest.raises(InputError, match="closer than anything measures"):
-            refuse_circle(circle, ROBOT)
+            require_independent(circle, ROBOT)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -140,7 +140,7 @@ def test_a_filter_is_refused_by_its_name_and_by_being_close() -> None:
         run, reference=Reference(odometry.time, x, y, yaw), circle=f"/odometry/filtered: {NAMED}"
     )
     with pytest.raises(InputError) as caught:
-        refuse_circle(circle, ROBOT)
+        require_independent(circle, ROBOT)
     assert "shows none of their errors (--force takes it all the same)" in str(caught.value)
 
 
@@ -153,7 +153,7 @@ def test_a_measurement_that_is_called_odometry_is_taken_and_said() -> None:
     called = replace(
         run, reference=Reference(run.reference.time, x, y, truth[2]), circle=f"/odom: {NAMED}"
     )
-    assert "it is taken for a measurement" in refuse_circle(called, ROBOT)
+    assert "it is taken for a measurement" in require_independent(called, ROBOT)
 
 
 def test_too_little_to_tell_leaves_the_name() -> None:
@@ -161,9 +161,9 @@ def test_too_little_to_tell_leaves_the_name() -> None:
     assert run.reference is not None
     few = replace(run, reference=run.reference.chosen(np.arange(597) < 5))
     assert closeness(few, ROBOT) is None
-    assert refuse_circle(few, ROBOT) == ""
+    assert require_independent(few, ROBOT) == ""
     with pytest.raises(InputError, match="made from its wheels"):
-        refuse_circle(replace(few, circle=f"/odom: {NAMED}"), ROBOT)
+        require_independent(replace(few, circle=f"/odom: {NAMED}"), ROBOT)
 
 
 def test_a_gyro_is_no_circle() -> None:
@@ -171,4 +171,4 @@ def test_a_gyro_is_no_circle() -> None:
     assert run.reference is not None
     none = np.full(truth[2].size, np.nan)
     gyro = replace(run, reference=Reference(run.reference.time, none, none, truth[2]))
-    assert refuse_circle(gyro, ROBOT) == ""
+    assert require_independent(gyro, ROBOT) == ""

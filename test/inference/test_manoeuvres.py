@@ -19,10 +19,10 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.fitting.candidates import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.prediction import legs_shown
+from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.linear import nuisance
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, DrivingLimits, Ideal, ideal_run
 from werrimbi_odom.inference.manoeuvres.proposal import Discrimination, next_manoeuvre, quickest
 from werrimbi_odom.inference.manoeuvres.rivals import (
     Experiment,
@@ -37,7 +37,7 @@ from werrimbi_odom.simulation.hidden.mount import ReferenceDelay, ReferenceMount
 from werrimbi_odom.simulation.hidden.peculiarity import Peculiarity
 
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
-PACE = Pace(speed=0.6, acceleration=1.5, base=0.35)
+PACE = DrivingLimits(speed=0.6, acceleration=1.5, base=0.35)
 BY_NAME = {ideal.name: ideal for ideal in MANOEUVRES}
 
 
@@ -58,7 +58,7 @@ def test_an_ideal_drive_is_what_its_robot_predicts(name: str, mistakes: tuple[st
     start, finish = runs.start * poses, runs.finish * poses
     moved = (finish[:, 0] - start[:, 0]) + 1j * (finish[:, 1] - start[:, 1])
     ahead = moved * np.exp(-1j * start[:, 2])
-    shown = legs_shown(drives.point.model, runs)
+    shown = predicted_legs(drives.point.model, runs)
     # Between two messages of the ticks a step is taken to be even: at each end of a leg it misses
     # acceleration * interval^2 / 8.
     even = 2.0 * 0.02**2 / 8.0

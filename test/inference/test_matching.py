@@ -18,7 +18,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.legs.cutting import (
     MatchedRun,
-    cut_finely,
+    cut_for_fit,
     divided,
     every_pose,
     match,
@@ -86,7 +86,7 @@ def test_a_fit_takes_fast_messages_together_and_its_legs_stay(hertz: float, toge
     seen = np.arange(0.013, 29.0, 0.037)
     reference = Reference(seen, *[np.zeros(seen.size)] * 3)
     record = record_of(Run("run", Path("run"), Ticks(time, *counts, {}), reference), ROBOT)
-    found = cut_finely(record, ROBOT, 1.0)
+    found = cut_for_fit(record, ROBOT, 1.0)
     every = divided(record, found.rows)
     assert np.median(np.diff(found.time)) == pytest.approx(together / hertz)
     assert together * RATE_OF_FIT <= max(hertz, RATE_OF_FIT)

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.agreement import Agreement
 from werrimbi_odom.inference.legs.counters import counters_of
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.legs.no_driving import _judged, _stretches, looked_at
 from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows
@@ -238,7 +238,7 @@ def test_no_leg_comes_near_the_ends_of_what_was_no_driving() -> None:
     """They are known to less than a window; what is left of a hand there is a leg's whole error."""
     run, *_ = held(run_of(ROBOT, 1), 30.0, 36.0)
     begin, end, _ = span(run)
-    (matched,) = match_finely([run], ROBOT, 1.0)
+    (matched,) = match_for_fit([run], ROBOT, 1.0)
     first, last = (
         matched.measured.time[ends][~matched.gap] for ends in (slice(-1), slice(1, None))
     )
@@ -423,7 +423,7 @@ def test_all_verbs_leave_it_out_and_find_what_they_find_without_it() -> None:
     runs = [held(run_of(wide, 1), 30.0, 36.0)[0], carried(run_of(wide, 4), 45.0, 3.0)]
     assert look_for_mistakes(runs, ROBOT).findings == ()
     judged = compare(runs, ROBOT).prepared
-    cut = [part for run in match_finely(runs, ROBOT, 1.0) for part in run.record.left_out]
+    cut = [part for run in match_for_fit(runs, ROBOT, 1.0) for part in run.record.left_out]
     assert [part for part in judged.left_out if part.why != "reference"] == cut
     assert {part.why for part in cut} == {"held", "carried"}
     diagnosis = diagnose(runs, ROBOT, [find("track_width"), find("lateral_slip")])

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.calibration.noise_likelihood import Design, Likelihood, design
+from werrimbi_odom.inference.calibration.noise_likelihood import EndErrorDesign, Likelihood, design
 from werrimbi_odom.inference.calibration.out_and_back import (
     by_moments,
     fit_noise,
@@ -63,12 +63,14 @@ def errors(
     return np.asarray(end + start_and_end[1] - start_and_end[0])
 
 
-def paper_design(sigma_xy: float = 0.0, sigma_yaw: float = 0.0, turn_round: bool = False) -> Design:
+def paper_design(
+    sigma_xy: float = 0.0, sigma_yaw: float = 0.0, turn_round: bool = False
+) -> EndErrorDesign:
     pieces = out_and_back(DISTANCE, TRACK, turn_round=turn_round)
     return design(pieces, TRACK, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
 
 
-def cramer_rao(model: Design, runs: int) -> Floats:
+def cramer_rao(model: EndErrorDesign, runs: int) -> Floats:
     """Least standard deviations of (k_L, k_R) that any unbiased estimate can have."""
     information = (runs - 1) * model.information(K_LEFT**2, K_RIGHT**2)
     return np.asarray(
@@ -184,7 +186,7 @@ def test_what_is_systematic_is_estimated_and_kept_apart() -> None:
     [paper_design(5e-3, 5e-3), paper_design(20e-3, 5e-3), paper_design(1e-3, 2e-3, True)],
     ids=["5 mm", "20 mm", "turned round"],
 )
-def test_what_cannot_be_told_apart_is_not(model: Design) -> None:
+def test_what_cannot_be_told_apart_is_not(model: EndErrorDesign) -> None:
     """The sum alone is known: one k for both wheels, and an interval that holds either share."""
     runs = 10
     rng = np.random.default_rng(6)

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.calibration.noise_likelihood import Design, design
+from werrimbi_odom.inference.calibration.noise_likelihood import EndErrorDesign, design
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.simulation import Pose, ReferenceSensor, TrueRobot, record
+from werrimbi_odom.simulation import AxlePose, ReferenceSensor, TrueRobot, record
 from werrimbi_odom.simulation import out_and_back as manoeuvre
 
 Floats = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Experiment:
     turn_round: bool = False
 
     @property
-    def model(self) -> Design:
+    def model(self) -> EndErrorDesign:
         return design(
             out_and_back(self.distance, TRACK, turn_round=self.turn_round),
             TRACK,
@@ -157,7 +157,7 @@ def test_drives_in_the_physics_engine() -> None:
     errors = []
     for seed in range(60):
         drive = record(
-            true, manoeuvre(10.0), seed=seed, reference=sensor, start=Pose(0.0, 0.0, 0.0)
+            true, manoeuvre(10.0), seed=seed, reference=sensor, start=AxlePose(0.0, 0.0, 0.0)
         )
         seen = np.stack([drive.reference_x_m, drive.reference_y_m, drive.reference_yaw_rad])
         path = trajectory(robot, drive.t_s, drive.left_ticks, drive.right_ticks)

@@ -11,23 +11,23 @@ import numpy as np
 
 from test.inference.test_homogeneity import ROBOT, driven, late, nothing
 from werrimbi_odom.effects import LIBRARY
-from werrimbi_odom.inference.chances import chi2_above, fisher_above
-from werrimbi_odom.inference.diagnosis.chance import chance_by_parts, chance_of_size
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.chances import chi2_survival, fisher_survival
+from werrimbi_odom.inference.diagnosis.chance import p_value_by_parts, p_value_of_size
+from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.fitting.parts import parts_of, parts_of_innovations, widening
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 Spoil = Callable[[np.ndarray, np.random.Generator], np.ndarray]
 
 
 def calibrated(seed: int, spoil: Spoil, hotter: float = 0.0) -> Fitted:
     runs = [driven(10 * seed + each, spoil, f"drive_{each}", hotter) for each in range(4)]
-    return first_fit(concatenated(match_finely(runs, ROBOT, 1.0, None)), ROBOT)
+    return fit_calibration(concatenated(match_for_fit(runs, ROBOT, 1.0, None)), ROBOT)
 
 
 def deviations(fit: Fitted) -> tuple[np.ndarray, np.ndarray]:
@@ -66,26 +66,26 @@ def test_where_parts_disagree_a_size_is_as_sure_as_they_are() -> None:
     for fit in (sound, shrinking):
         weighed = replace(fit, importance=dict.fromkeys(CALIBRATED, importance))
         for name in CALIBRATED:
-            by_noise, by_parts = chi2_above(importance, 1), fisher_above(importance, 1, 27)
+            by_noise, by_parts = chi2_survival(importance, 1), fisher_survival(importance, 1, 27)
             apart = fit.doubts[name] > 1.0
-            assert chance_of_size(weighed, name) == (by_parts if apart else by_noise)
+            assert p_value_of_size(weighed, name) == (by_parts if apart else by_noise)
 
 
 def test_an_effect_that_parts_disagree_on_counts_all_that_was_tried() -> None:
-    laid = concatenated(match_finely([late(0, 0.1)], ROBOT, 0.25, None))
+    laid = concatenated(match_for_fit([late(0, 0.1)], ROBOT, 0.25, None))
     delay = [effect for effect in LIBRARY if effect.name == "reference_delay"]
-    (fit,) = search_round(laid, first_fit(laid, ROBOT), delay, ROBOT).tried
+    (fit,) = search_round(laid, fit_calibration(laid, ROBOT), delay, ROBOT).tried
     mine = np.array([number.name == "reference_delay.delay" for number, _ in fit.design.columns])
-    alone = lasting_effect(laid, fit, "reference_delay")
+    alone = homogeneity_of_effect(laid, fit, "reference_delay")
     for apart in (False, True):
         told = replace(fit, widening=np.where(mine & apart, 1.5, 1.0))
-        chance = chance_by_parts(laid, told, "reference_delay", 60)
+        chance = p_value_by_parts(laid, told, "reference_delay", 60)
         assert chance == (60.0 if apart else 1.0) * alone > 0.0
 
 
 def test_legs_without_data_are_no_part() -> None:
     runs = [driven(each, nothing, f"drive_{each}") for each in range(2)]
-    laid = concatenated(match_finely(runs, ROBOT, 0.25, None))
+    laid = concatenated(match_for_fit(runs, ROBOT, 0.25, None))
     white = np.random.default_rng(0).normal(size=(laid.count, 3))
     half = laid.run_of_leg * 0 + (np.arange(laid.count) % 100 < 50)
     parts = parts_of_innovations(laid, (white * half[:, None]).ravel())

@@ -16,15 +16,15 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
-from werrimbi_odom.inference.fitting.candidates import Candidate, put_in, scores
+from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
+from werrimbi_odom.inference.fitting.candidates import Candidate, scores, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
-from werrimbi_odom.inference.fitting.placed import best_placed
+from werrimbi_odom.inference.fitting.placed import best_angles
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.run_phases import at_home
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.fitting.run_phases import fitted_per_run
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import words_of
@@ -74,7 +74,7 @@ def test_size_sign_and_places_of_what_is_local(size: float, blocks: int) -> None
     places = [0.37, -2.9, 1.5][:blocks]
     free = np.kron(np.eye(blocks), np.stack([column(at) for at in TRIES], axis=-1))
     rest = -size * np.concatenate([column(at) for at in places])
-    best = max(best_placed(TRIES, free, rest, blocks), key=lambda found: found.gain)
+    best = max(best_angles(TRIES, free, rest, blocks), key=lambda found: found.gain)
     assert best.size == pytest.approx(size, rel=0.01)
     assert best.gain == pytest.approx(rest @ rest, rel=0.01)
     assert all(apart(a, b) < 0.04 for a, b in zip(best.places, places, strict=True))
@@ -84,14 +84,14 @@ def test_of_the_other_sign_there_is_a_poorer_one_half_a_turn_away() -> None:
     turned = np.linspace(0.0, 60.0, 900)
     table = np.stack([np.sin(turned + p) + 0.4 * np.sin(2.0 * (turned + p)) for p in TRIES], -1)
     rest = -np.sin(turned + 0.3) - 0.4 * np.sin(2.0 * (turned + 0.3))
-    bump, flat = best_placed(TRIES, table, rest, 1)
+    bump, flat = best_angles(TRIES, table, rest, 1)
     assert bump.size > 0.0 > flat.size
     assert flat.gain < 0.9 * bump.gain
     assert apart(float(flat.places[0]), 0.3 + math.pi) < 0.8
 
 
 def test_what_changes_nothing_has_no_score() -> None:
-    assert best_placed(TRIES, np.zeros((40, 8)), np.ones(40), 1) == []
+    assert best_angles(TRIES, np.zeros((40, 8)), np.ones(40), 1) == []
 
 
 # -- bumps ------------------------------------------------------------------------------------
@@ -119,8 +119,8 @@ def test_a_bump_and_a_flat_are_found_where_they_are(height: float) -> None:
 def test_the_place_is_learnt_where_the_height_is_known(height: float) -> None:
     """A robot file that holds a flat is not judged with a bump half a turn away."""
     robot = replace(PLAIN, effects=(find("left_tread_bump").using(height=height),))
-    laid = concatenated(match_finely(bumpy(height), PLAIN, 1.0, None))
-    point = at_home(first_fit(laid, robot).point.model, laid, "absolute")
+    laid = concatenated(match_for_fit(bumpy(height), PLAIN, 1.0, None))
+    point = fitted_per_run(fit_calibration(laid, robot).point.model, laid, "absolute")
     places = [own["left_tread_bump.place"] for own in point.model.own]
     assert all(apart(a, b) < 0.2 for a, b in zip(places, PLACES, strict=True))
 
@@ -141,12 +141,12 @@ def test_a_bump_is_named_and_an_axle_off_its_centre_is_none() -> None:
 
 
 def test_each_drive_has_its_own_rate_from_its_score() -> None:
-    laid = concatenated(match_finely(drifting(), PLAIN, 1.0, None))
-    fit = first_fit(laid, PLAIN)
+    laid = concatenated(match_for_fit(drifting(), PLAIN, 1.0, None))
+    fit = fit_calibration(laid, PLAIN)
     candidate = Candidate(find("reference_gyro_drift"), {})
     (score,) = scores(laid, fit.point, CALIBRATION, [candidate])
     assert score.degrees == 4
-    model = put_in(fit.point.model, score)
+    model = with_candidate(fit.point.model, score)
     rates = [own["reference_gyro_drift.rate"] for own in model.own]
     np.testing.assert_allclose(rates, RATES, atol=1e-5)
 
@@ -155,9 +155,9 @@ def test_it_is_named_and_lasts() -> None:
     runs = drifting()
     told = diagnose(runs, PLAIN, effects=LIBRARY)
     assert (told.verdict, told.found) == ("named", ("reference_gyro_drift",))
-    laid = concatenated(match_finely(runs, PLAIN, 1.0, None))
-    best = search_round(laid, first_fit(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
-    assert lasting_effect(laid, best.tried[0], "reference_gyro_drift") < SURE
+    laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
+    best = search_round(laid, fit_calibration(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
+    assert homogeneity_of_effect(laid, best.tried[0], "reference_gyro_drift") < SURE
 
 
 def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -> None:
@@ -175,8 +175,8 @@ def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -
 def test_the_prediction_turns_with_it_leg_by_leg() -> None:
     """Against a sum by hand: the heading's error, and what it makes of the way in its frame."""
     runs = runs_of(PLAIN, (5, 6), 30)
-    laid = concatenated(match_finely(runs, PLAIN, 1.0, None))
-    plain = first_fit(laid, PLAIN).point.model
+    laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
+    plain = fit_calibration(laid, PLAIN).point.model
     law = find("reference_gyro_drift").using(rate=0.0)
     rates = (3e-4, -2e-4)
     own = tuple(

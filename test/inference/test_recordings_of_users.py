@@ -21,13 +21,13 @@ from werrimbi_odom.inference.comparison.leg_errors import statistics
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import RATIO
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
 from werrimbi_odom.inference.drafting.draft import draft_effect
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
@@ -75,8 +75,8 @@ def test_no_effect_is_believed_beside_wheels_of_two_sizes(ratio: float, possible
     """A robot that slides past its gyro was named a soft tyre, and one wheel 45 % smaller."""
     soft = replace(ROBOT, effects=(find("tyre_squash").using(coefficient=0.05),))
     truth = replace(soft, right_wheel_radius_multiplier=ratio)
-    laid = concatenated(match_finely(runs_of(truth, [1, 2], 60), ROBOT, 1.0, None))
-    this = search_round(laid, first_fit(laid, ROBOT), [find("tyre_squash")], ROBOT)
+    laid = concatenated(match_for_fit(runs_of(truth, [1, 2], 60), ROBOT, 1.0, None))
+    this = search_round(laid, fit_calibration(laid, ROBOT), [find("tyre_squash")], ROBOT)
     assert [fit.names[-1] for fit in this.tried] == ["tyre_squash"]
     assert (RATIO in this.tried[0].at_bound) is not possible
 
@@ -153,7 +153,7 @@ def test_nothing_goes_with_an_acceleration_that_no_wheel_can_make() -> None:
     stamps = np.sort(run.ticks.time[kept] + random.uniform(0.0, 0.09, kept.size))
     late = Ticks(stamps, run.ticks.left[kept], run.ticks.right[kept])
     for ticks, told in ((run.ticks, True), (late, False)):
-        laid = concatenated(match_finely([replace(run, ticks=ticks)], ROBOT, 1.0))
+        laid = concatenated(match_for_fit([replace(run, ticks=ticks)], ROBOT, 1.0))
         names = {item.name for item in variables_of(laid, Model(ROBOT, ({},)))}
         assert ("acceleration" in names) == told
         assert "speed" in names

@@ -12,10 +12,10 @@ import pytest
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.rivals import rivals_of
-from werrimbi_odom.inference.diagnosis.search import Round, first_fit, search_round
+from werrimbi_odom.inference.diagnosis.search import Round, fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.robot import Robot
 
@@ -26,8 +26,8 @@ GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noi
 def a_round() -> Round:
     """Of a robot whose tyres creep in curves: an effect was tried beside the sizes."""
     truth = replace(GIVEN, effects=(find("lateral_slip").using(creep=0.01),))
-    runs = concatenated(match_finely(runs_of(truth, range(1, 3), seconds=40), GIVEN, 1.0))
-    return search_round(runs, first_fit(runs, GIVEN), [find("lateral_slip")], GIVEN)
+    runs = concatenated(match_for_fit(runs_of(truth, range(1, 3), seconds=40), GIVEN, 1.0))
+    return search_round(runs, fit_calibration(runs, GIVEN), [find("lateral_slip")], GIVEN)
 
 
 def of_sizes(needed: tuple[str, ...], dearer: float, **what: object) -> tuple[str, ...]:

@@ -11,10 +11,10 @@ import numpy as np
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.stability import halves, rivals_in_halves
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
@@ -28,7 +28,7 @@ LIBRARY = tuple(find(name) for name in ("lateral_slip", "turn_dependent_track", 
 
 
 def test_halves_are_halves_of_every_drive() -> None:
-    runs = concatenated(match_finely(runs_of(GIVEN, range(1, 4), seconds=60), GIVEN, 1.0))
+    runs = concatenated(match_for_fit(runs_of(GIVEN, range(1, 4), seconds=60), GIVEN, 1.0))
     masks = list(halves(runs))
     assert len(masks) == 4
     for mask in masks:
@@ -65,8 +65,8 @@ def test_an_effect_that_another_beats_in_half_of_the_data_is_not_certain() -> No
         mixed.append(
             replace(one, reference=replace(before, x=joined[0], y=joined[1], yaw=joined[2]))
         )
-    runs = concatenated(match_finely(mixed, GIVEN, 1.0))
-    before = first_fit(runs, GIVEN)
+    runs = concatenated(match_for_fit(mixed, GIVEN, 1.0))
+    before = fit_calibration(runs, GIVEN)
     this = search_round(runs, before, (LIBRARY[0], LIBRARY[2]), GIVEN)
     best = this.tried[0]
     others = {"lateral_slip", "sideways_drift"} - {best.names[-1]}

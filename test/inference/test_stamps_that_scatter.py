@@ -18,7 +18,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, parameters_to_fit
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 TRUE = WhiteNoiseRobot(left_noise=2e-4, right_noise=2e-4)
 SCATTER = 4e-3
@@ -36,7 +36,7 @@ def scattered(seed: int) -> Run:
 def test_stamps_that_scatter_are_no_slip() -> None:
     slip = find("longitudinal_slip")
     robot = replace(TRUE.entered(), effects=(slip.using(coefficient=0.0),))
-    runs = concatenated(match_finely([scattered(seed) for seed in range(10)], robot, 1.0))
+    runs = concatenated(match_for_fit([scattered(seed) for seed in range(10)], robot, 1.0))
     numbers = (
         *CALIBRATION,
         *(replace(each, bounds=(-0.3, 0.3)) for each in parameters_to_fit(slip)),
@@ -50,7 +50,7 @@ def test_stamps_that_scatter_are_no_slip() -> None:
 def test_speeds_of_the_body_add_up_to_its_path_and_turn() -> None:
     """Else what is off by a share of the turn would not be the base alone: a gyro sees as much."""
     robot = TRUE.entered()
-    runs = concatenated(match_finely([scattered(1)], robot, 1.0))
+    runs = concatenated(match_for_fit([scattered(1)], robot, 1.0))
     seen, travel = runs.drive(robot), runs.raw(robot)
     turned = (travel.right - travel.left) / robot.track
     assert np.allclose(seen.yaw_rate.end * seen.duration, turned, rtol=0.0, atol=1e-12)

@@ -14,7 +14,11 @@ from test.inference.driven import record_of
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
+from werrimbi_odom.inference.calibration.recorded_square import (
+    SquareRecording,
+    recorded_square,
+    squares_of,
+)
 from werrimbi_odom.inference.calibration.squares import e_max_syst
 from werrimbi_odom.inference.calibration.umbmark import recomputed, umbmark
 from werrimbi_odom.model.effect import AppliedEffect
@@ -27,22 +31,22 @@ SIDE = 1.0
 DATA = ROBOTS / "optitrack_robot"
 
 
-def driven(sense: str, seed: int, true: TrueRobot = TRUE, **options: float) -> Record:
+def driven(sense: str, seed: int, true: TrueRobot = TRUE, **options: float) -> SquareRecording:
     manoeuvre = figure_eight(0.6) if sense == "eight" else square(SIDE, sense, **options)
     drive = record(true, manoeuvre, seed=seed)
     return record_of(f"run {seed}", drive)
 
 
 @pytest.fixture(scope="module")
-def drives() -> list[Record]:
+def drives() -> list[SquareRecording]:
     return [driven(sense, seed) for seed in (1, 2) for sense in ("cw", "ccw")]
 
 
-def cut(drive: Record, share: float) -> Record:
+def cut(drive: SquareRecording, share: float) -> SquareRecording:
     """The drive, stopped after a share of its time."""
     ticks = drive.time < share * drive.time[-1]
     seen = drive.reference_time < share * drive.time[-1]
-    return Record(
+    return SquareRecording(
         drive.name,
         drive.time[ticks],
         drive.left[ticks],
@@ -54,7 +58,7 @@ def cut(drive: Record, share: float) -> Record:
     )
 
 
-def rows(drive: Record, which: list[int]) -> Record:
+def rows(drive: SquareRecording, which: list[int]) -> SquareRecording:
     """The drive with some of its reference rows."""
     return replace(
         drive,
@@ -65,7 +69,7 @@ def rows(drive: Record, which: list[int]) -> Record:
     )
 
 
-def test_squares_of_the_engine_give_its_base_and_radii(drives: list[Record]) -> None:
+def test_squares_of_the_engine_give_its_base_and_radii(drives: list[SquareRecording]) -> None:
     squares = squares_of([recorded_square(drive, ROBOT, SIDE) for drive in drives], SIDE)
     assert len(squares.cw) == len(squares.ccw) == 2
     result = umbmark(squares, ROBOT)
@@ -76,18 +80,20 @@ def test_squares_of_the_engine_give_its_base_and_radii(drives: list[Record]) -> 
     assert e_max_syst(again) < 0.003 < 0.1 < result.e_max
 
 
-def test_a_square_says_its_own_sense(drives: list[Record]) -> None:
+def test_a_square_says_its_own_sense(drives: list[SquareRecording]) -> None:
     assert [recorded_square(drive, ROBOT, SIDE).sense for drive in drives] == [-1, 1, -1, 1]
 
 
-def test_start_and_end_by_tape_are_enough(drives: list[Record]) -> None:
+def test_start_and_end_by_tape_are_enough(drives: list[SquareRecording]) -> None:
     whole = recorded_square(drives[0], ROBOT, SIDE)
     last = drives[0].reference_time.size - 1
     taped = recorded_square(rows(drives[0], [0, last]), ROBOT, SIDE)
     np.testing.assert_allclose(taped.offset, whole.offset, atol=1e-9)
 
 
-def test_without_a_measured_heading_the_first_leg_gives_the_direction(drives: list[Record]) -> None:
+def test_without_a_measured_heading_the_first_leg_gives_the_direction(
+    drives: list[SquareRecording],
+) -> None:
     drive = drives[1]
     blind = replace(drive, reference_yaw=np.full(drive.reference_yaw.size, np.nan))
     whole, by_leg = (recorded_square(one, ROBOT, SIDE) for one in (drive, blind))
@@ -97,14 +103,14 @@ def test_without_a_measured_heading_the_first_leg_gives_the_direction(drives: li
         recorded_square(rows(blind, [0, drive.reference_yaw.size - 1]), ROBOT, SIDE)
 
 
-def test_a_heading_that_is_off_hardly_matters(drives: list[Record]) -> None:
+def test_a_heading_that_is_off_hardly_matters(drives: list[SquareRecording]) -> None:
     drive = drives[0]
     askew = replace(drive, reference_yaw=drive.reference_yaw + 0.01)
     one, other = (recorded_square(each, ROBOT, SIDE).offset for each in (drive, askew))
     assert np.hypot(*(one - other)) < 0.011 * np.hypot(*one)
 
 
-def test_one_sense_or_too_few_are_refused(drives: list[Record]) -> None:
+def test_one_sense_or_too_few_are_refused(drives: list[SquareRecording]) -> None:
     found = [recorded_square(drive, ROBOT, SIDE) for drive in drives]
     with pytest.raises(InputError, match=r"2 more ccw \(0 given\)"):
         squares_of([found[0], found[2]], SIDE)
@@ -124,18 +130,20 @@ def test_one_sense_or_too_few_are_refused(drives: list[Record]) -> None:
     ],
     ids=["three legs", "two laps", "an eight"],
 )
-def test_what_is_no_closed_square_is_refused(make: Callable[[], Record], says: str) -> None:
+def test_what_is_no_closed_square_is_refused(
+    make: Callable[[], SquareRecording], says: str
+) -> None:
     drive = make()
     with pytest.raises(InputError, match=says):
         recorded_square(drive, ROBOT, SIDE)
 
 
-def test_a_square_of_another_side_is_refused(drives: list[Record]) -> None:
+def test_a_square_of_another_side_is_refused(drives: list[SquareRecording]) -> None:
     with pytest.raises(InputError, match=r"not a square of side 2 m.*1\.00"):
         recorded_square(drives[0], ROBOT, 2.0)
 
 
-def test_a_square_begun_in_the_middle_of_a_side_is_refused(drives: list[Record]) -> None:
+def test_a_square_begun_in_the_middle_of_a_side_is_refused(drives: list[SquareRecording]) -> None:
     drive = drives[1]
     middle = int(np.searchsorted(drive.reference_time, 1.7))
     late = rows(drive, list(range(middle, drive.reference_time.size)))
@@ -155,7 +163,7 @@ def test_a_square_whose_legs_differ_is_refused() -> None:
         recorded_square(wanted, ROBOT, SIDE)
 
 
-def test_a_reference_that_cannot_be_used_is_refused(drives: list[Record]) -> None:
+def test_a_reference_that_cannot_be_used_is_refused(drives: list[SquareRecording]) -> None:
     drive = drives[0]
     nothing = np.full(drive.reference_x.size, np.nan)
     with pytest.raises(InputError, match="a position at the start and at the end"):
@@ -164,16 +172,16 @@ def test_a_reference_that_cannot_be_used_is_refused(drives: list[Record]) -> Non
         recorded_square(replace(drive, reference_time=drive.reference_time + 1e6), ROBOT, SIDE)
 
 
-def test_a_robot_with_effects_is_for_the_fit(drives: list[Record]) -> None:
+def test_a_robot_with_effects_is_for_the_fit(drives: list[SquareRecording]) -> None:
     drift = AppliedEffect(find("sideways_drift"))
     with pytest.raises(InputError, match="sideways_drift: take `calibrate fit`"):
         recorded_square(drives[0], replace(ROBOT, effects=(drift,)), SIDE)
 
 
-def optitrack(name: str) -> Record:
+def optitrack(name: str) -> SquareRecording:
     ticks = np.genfromtxt(DATA / name / "ticks.csv", delimiter=",", skip_header=1)
     seen = np.genfromtxt(DATA / name / "reference.csv", delimiter=",", skip_header=1)
-    return Record(name, *ticks.T[:3], *seen.T[:4])
+    return SquareRecording(name, *ticks.T[:3], *seen.T[:4])
 
 
 @with_recordings

@@ -22,7 +22,7 @@ from werrimbi_odom.effects.shapes import mean_sin, share_inside
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
+from werrimbi_odom.inference.fitting.prediction import predict_all, predicted_legs
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
@@ -131,9 +131,9 @@ def assert_three_alike(effect: Effect, amount: float = 0.05) -> None:
     ahead = (moved[:, 0] + 1j * moved[:, 1]) * np.exp(-1j * runs.start[:, 2])
     truth = np.stack([ahead.real, ahead.imag, moved[:, 2]], axis=-1)
     assert runs.count > 20
-    plain = legs_shown(Model(ROBOT, ({},)), runs)
+    plain = predicted_legs(Model(ROBOT, ({},)), runs)
     assert np.abs(plain - truth).max() > 1e-3  # else this would say nothing
-    for predicted in (legs_shown(model, runs), predict_all(model, runs).relative):
+    for predicted in (predicted_legs(model, runs), predict_all(model, runs).relative):
         np.testing.assert_allclose(predicted, truth, rtol=0.0, atol=1e-9)
 
 

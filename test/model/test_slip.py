@@ -63,7 +63,7 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
     pytest.importorskip("rclpy", reason="the tracker takes ROS stamps")
     from builtin_interfaces.msg import Time
 
-    from werrimbi_odom.ros.live_odometer import Tracker
+    from werrimbi_odom.ros.live_odometer import LiveOdometer
     from werrimbi_odom.simulation import LiveRobot, TrueRobot, free
     from werrimbi_odom.simulation.hidden.floor import SlipperySpot
     from werrimbi_odom.simulation.recorder import wheel_speeds
@@ -72,7 +72,7 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
     stain = [SlipperySpot(loss, 0.8, 0.3, 0.25)] if loss else []
     live = LiveRobot(truth, seed=seed, hidden=stain)
     file = read_robot_file(ROBOT)
-    tracker = Tracker(file.robot, file.tolerance, file.limits)
+    tracker = LiveOdometer(file.robot, file.tolerance, file.limits)
     guard = SlipGuard(file.robot.track, file.robot.left_tick)
     speeds = wheel_speeds(truth, free(seconds, seed=seed, yaw_rate=1.2))
     radius, base = truth.nominal.wheel_radius, truth.nominal.wheel_separation

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import pytest
 
-from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre
 from werrimbi_odom.report.diagnosis.words import how_long
 
 
@@ -20,11 +20,13 @@ from werrimbi_odom.report.diagnosis.words import how_long
 def test_of_a_drive_it_is_said_how_long_and_how_surely_it_tells(
     minutes: float, chance: float, says: str
 ) -> None:
-    move = Manoeuvre("spins", "they differ", "spin", minutes, chance)
+    move = ProposedManoeuvre("spins", "they differ", "spin", minutes, chance)
     first, then = how_long(move, "werrimbi diagnose")
     assert first == says
     assert then == "Then give that drive to `werrimbi diagnose` together with these."
 
 
 def test_of_what_is_no_drive_no_minutes_are_said() -> None:
-    assert not list(how_long(Manoeuvre("push", "one and the same", "push it", 0.0), "werrimbi"))
+    assert not list(
+        how_long(ProposedManoeuvre("push", "one and the same", "push it", 0.0), "werrimbi")
+    )

@@ -22,7 +22,7 @@ from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
-from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
+from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
 from werrimbi_odom.ros.compare_window import LASTS, Window
 
 TRUE = WhiteNoiseRobot()
@@ -71,7 +71,7 @@ def legs_of(
         covariances.tolist(),
         strict=True,
     ):
-        track.add(Reading(time, Pose(x, y, yaw), PoseCovariance(*entries)), UNKNOWN)
+        track.add(TimedPose(time, Pose(x, y, yaw), PoseCovariance(*entries)), UNKNOWN)
         while row < reference.time.size and reference.time[row] <= track.newest:
             at = float(reference.time[row])
             measured = Pose(
@@ -81,7 +81,7 @@ def legs_of(
             row += 1
             if odometry is None:
                 continue
-            leg, ends = cutter.take(Both(odometry, Reading(at, measured, stated)))
+            leg, ends = cutter.take(Both(odometry, TimedPose(at, measured, stated)))
             if leg is not None and ends:
                 legs.append(leg)
     return legs
@@ -119,10 +119,10 @@ def test_no_leg_spans_a_silence_of_the_reference() -> None:
         if tick % 5 or 20.0 < time < 23.0:
             continue
         way = 0.4 * time
-        odometry = Reading(
+        odometry = TimedPose(
             time, Pose(way, 0.0, 0.0), PoseCovariance(time, 0, 0, time, 0, time), way
         )
-        leg, ends = cutter.take(Both(odometry, Reading(time, Pose(way, 0.0, 0.0), REFERENCE)))
+        leg, ends = cutter.take(Both(odometry, TimedPose(time, Pose(way, 0.0, 0.0), REFERENCE)))
         if ends:
             assert leg is not None
             ended.append(leg.time)
@@ -233,14 +233,14 @@ CERTAIN = PoseCovariance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 def test_between_two_messages_the_robot_is_on_the_arc() -> None:
     track = OdometryTrack()
-    track.add(Reading(0.0, Pose(1.0, 2.0, 0.3), CERTAIN), STILL)
+    track.add(TimedPose(0.0, Pose(1.0, 2.0, 0.3), CERTAIN), STILL)
     turn, radius = 0.8, 0.6
     end = Pose(
         1.0 + radius * (math.sin(0.3 + turn) - math.sin(0.3)),
         2.0 - radius * (math.cos(0.3 + turn) - math.cos(0.3)),
         0.3 + turn,
     )
-    assert track.add(Reading(1.0, end, CERTAIN), BodyMotion(0.48, 0.0, 0.8)) == "next"
+    assert track.add(TimedPose(1.0, end, CERTAIN), BodyMotion(0.48, 0.0, 0.8)) == "next"
     found = track.at(0.25)
     assert found is not None
     assert found.pose.x == pytest.approx(1.0 + radius * (math.sin(0.5) - math.sin(0.3)), abs=1e-12)
@@ -253,11 +253,11 @@ def test_a_large_old_heading_error_does_not_blur_the_interval() -> None:
     """A stretch within one interval is as sure as its share of it, however unsure its start is."""
     unsure = PoseCovariance(4.0, 0.0, 0.0, 4.0, 0.0, 0.5)
     track = OdometryTrack()
-    track.add(Reading(0.0, Pose(), unsure), STILL)
+    track.add(TimedPose(0.0, Pose(), unsure), STILL)
     step = 0.05
     swung = PoseCovariance(4.0, 0.0, 0.0, 4.0 + step**2 * 0.5, step * 0.5, 0.5)
     grown = swung._replace(xx=swung.xx + 1e-6)
-    track.add(Reading(0.1, Pose(step, 0.0, 0.0), grown), BodyMotion(0.5, 0.0, 0.0))
+    track.add(TimedPose(0.1, Pose(step, 0.0, 0.0), grown), BodyMotion(0.5, 0.0, 0.0))
     half = track.at(0.05)
     assert half is not None
     assert half.covariance.xx - 4.0 == pytest.approx(0.5e-6)
@@ -266,17 +266,17 @@ def test_a_large_old_heading_error_does_not_blur_the_interval() -> None:
 
 def test_a_pose_that_was_set_begins_anew() -> None:
     track = OdometryTrack()
-    track.add(Reading(0.0, Pose(), CERTAIN), STILL)
-    assert track.add(Reading(0.1, Pose(0.05, 0.0, 0.0), CERTAIN), BodyMotion(0.5, 0, 0)) == "next"
-    assert track.add(Reading(0.2, Pose(3.0, 0.0, 0.0), CERTAIN), BodyMotion(0.5, 0, 0)) == "set"
+    track.add(TimedPose(0.0, Pose(), CERTAIN), STILL)
+    assert track.add(TimedPose(0.1, Pose(0.05, 0.0, 0.0), CERTAIN), BodyMotion(0.5, 0, 0)) == "next"
+    assert track.add(TimedPose(0.2, Pose(3.0, 0.0, 0.0), CERTAIN), BodyMotion(0.5, 0, 0)) == "set"
     assert track.at(0.15) is None
-    assert track.add(Reading(0.2, Pose(3.0, 0.0, 0.0), CERTAIN), STILL) == "old"
-    assert track.add(Reading(-9.0, Pose(3.0, 0.0, 0.0), CERTAIN), STILL) == "back"
+    assert track.add(TimedPose(0.2, Pose(3.0, 0.0, 0.0), CERTAIN), STILL) == "old"
+    assert track.add(TimedPose(-9.0, Pose(3.0, 0.0, 0.0), CERTAIN), STILL) == "back"
     assert track.generation == 2
 
 
 def test_across_a_gap_nobody_knows_where_the_robot_was() -> None:
     track = OdometryTrack()
-    track.add(Reading(0.0, Pose(), CERTAIN), STILL)
-    track.add(Reading(5.0, Pose(), CERTAIN), STILL)
+    track.add(TimedPose(0.0, Pose(), CERTAIN), STILL)
+    track.add(TimedPose(5.0, Pose(), CERTAIN), STILL)
     assert track.at(2.0) is None

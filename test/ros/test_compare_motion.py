@@ -16,7 +16,7 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros.compare_legs import Both
 from werrimbi_odom.ros.compare_motion import Motion
-from werrimbi_odom.ros.compare_track import Reading
+from werrimbi_odom.ros.compare_track import TimedPose
 
 PERIOD = 0.1
 Speeds = tuple[float, float]
@@ -42,8 +42,8 @@ def states(
             0.0, (*sigma[:1] * 2, sigma[1])
         )
         both = Both(
-            Reading(time[row], Pose(*rolled[row]), covariance, path[row], turned[row]),
-            Reading(time[row], Pose(*seen), covariance),
+            TimedPose(time[row], Pose(*rolled[row]), covariance, path[row], turned[row]),
+            TimedPose(time[row], Pose(*seen), covariance),
         )
         found.append((float(time[row]), motion.take(both)))
     return [next(group) for _, group in itertools.groupby(found, key=lambda item: item[1])]
@@ -119,8 +119,8 @@ def test_wheels_and_reference_that_never_agree_are_a_mistake_of_the_set_up() -> 
         t = 0.1 * step
         motion.take(
             Both(
-                Reading(t, Pose(0.6 * t, 0.0, 0.0), covariance, 0.6 * t, 0.0),
-                Reading(t, Pose(0.3 * t, 0.0, 0.0), covariance),
+                TimedPose(t, Pose(0.6 * t, 0.0, 0.0), covariance, 0.6 * t, 0.0),
+                TimedPose(t, Pose(0.3 * t, 0.0, 0.0), covariance),
             )
         )
     fine, words = motion.told()

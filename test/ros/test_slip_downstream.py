@@ -24,7 +24,7 @@ from builtin_interfaces.msg import Time
 
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.slip import NOTHING, SlipGuard
-from werrimbi_odom.ros.live_odometer import Tracker
+from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.messages import OdometryMessage
 from werrimbi_odom.simulation import LiveRobot, Peculiarity, TrueRobot, free
 from werrimbi_odom.simulation.engine import Shift, Shifter, Stride
@@ -104,7 +104,7 @@ def followed(
     """A free drive, by the messages that odom_node would publish."""
     truth = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
     live = LiveRobot(truth, seed=seed, hidden=hidden)
-    tracker = Tracker(ROBOT.robot, ROBOT.tolerance, ROBOT.limits)
+    tracker = LiveOdometer(ROBOT.robot, ROBOT.tolerance, ROBOT.limits)
     guard = SlipGuard(ROBOT.robot.track, ROBOT.robot.left_tick)
     message, ekf, rng = OdometryMessage("odom", "base_link"), Filter(), np.random.default_rng(seed)
     speeds = wheel_speeds(truth, free(seconds, seed=seed, yaw_rate=1.2))

@@ -46,7 +46,7 @@ from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, Pose, compose, inverse
 from werrimbi_odom.ros.compare_node import CompareNode
-from werrimbi_odom.ros.live_odometer import Tracker
+from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.messages import OdometryMessage
 from werrimbi_odom.simulation import LiveRobot, hide, write_robot_file
 
@@ -208,7 +208,7 @@ class Watched:
         listener.create_subscription(DiagnosticArray, "/diagnostics", self._arrays.append, deep)
         file = read_robot_file(robot)
         self._tick = 2.0 * math.pi / float(file.values["left_ticks_per_revolution"])  # type: ignore[arg-type]
-        self._tracker = Tracker(file.robot, file.tolerance, file.limits)
+        self._tracker = LiveOdometer(file.robot, file.tolerance, file.limits)
         self._message = OdometryMessage("odom", "base_link")
         self.costs = Costs()
         self.status: dict[str, Any] = {}

@@ -10,7 +10,7 @@ import pytest
 from test.scans.drives import in_circles, seen
 from werrimbi_odom.scans.elements import line_elements
 from werrimbi_odom.scans.matching import match
-from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course, sweep_of
+from werrimbi_odom.scans.sweep import Sweep, SweepMotion, deskewed, own_course, sweep_of
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar
@@ -74,4 +74,4 @@ def test_what_is_no_echo_is_left_out() -> None:
     assert sweep.duration * sweep.share == pytest.approx([0.005, 0.035])
     assert sweep.time == pytest.approx(10.035)
     assert isinstance(sweep, Sweep)
-    assert deskewed(sweep, Course()) == pytest.approx(sweep.points)
+    assert deskewed(sweep, SweepMotion()) == pytest.approx(sweep.points)

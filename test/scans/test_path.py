@@ -13,7 +13,7 @@ from test.scans.drives import ahead, hops, in_circles, matched, of_sweeps, rms, 
 from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.simulation import rooms
-from werrimbi_odom.simulation.engine import PERIOD, Pose, TruePath
+from werrimbi_odom.simulation.engine import PERIOD, AxlePose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room
 
 
@@ -146,7 +146,7 @@ def test_where_it_spins_the_lidars_arc_tells_how_far_behind_it_sits() -> None:
     """A radian on the spot, as a TurtleBot3 turned; its lidar's turns begin anywhere (4 mrad)."""
     t = np.arange(0.0, 9.0, PERIOD)
     yaw, still = -0.215 * np.clip(t - 3.0, 0.0, 5.0), np.zeros(t.size)
-    lidar = Lidar(mount=Pose(-0.032, 0.0, 0.0))
+    lidar = Lidar(mount=AxlePose(-0.032, 0.0, 0.0))
     levers = []
     for seed in range(5):
         rng = np.random.default_rng(seed)

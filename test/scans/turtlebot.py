@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import werrimbi_odom as wo
-from test.scans.table import DOCS, put_in
+from test.scans.table import DOCS, with_candidate
 from werrimbi_odom.simulation import (
+    AxlePose,
     FieldDrive,
     Manoeuvre,
     Nominal,
-    Pose,
     TrueRobot,
     free,
     record,
@@ -43,7 +43,7 @@ ROBOT = TrueRobot(
     mass=1.0,
     nominal=Nominal(0.16, 0.033),
 )
-LIDAR = Lidar(mount=Pose(-0.032, 0.0, 0.03))
+LIDAR = Lidar(mount=AxlePose(-0.032, 0.0, 0.03))
 WRONG = (
     "unequal_wheel_radii",
     "reference_lever_arm",
@@ -74,7 +74,7 @@ class Recorded(NamedTuple):
 
 def recorded(manoeuvre: Manoeuvre, seed: int, folder: Path) -> Recorded:
     """A drive of nobody's hands, in a room of its own."""
-    path = record(ROBOT, manoeuvre, seed=seed, start=Pose(0.0, 0.0, 0.0)).true_path
+    path = record(ROBOT, manoeuvre, seed=seed, start=AxlePose(0.0, 0.0, 0.0)).true_path
     at = np.arange(0.01, path.t_s[-1], 0.05)
     step = 2.0 * math.pi / 4096.0
     left, right = (
@@ -162,4 +162,4 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as place:
         lines = table(Path(place))
     print("\n".join(lines))
-    put_in(DOCS, lines)
+    with_candidate(DOCS, lines)

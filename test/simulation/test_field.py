@@ -14,8 +14,8 @@ from rosbags.highlevel import AnyReader
 
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.simulation import (
+    AxlePose,
     FieldDrive,
-    Pose,
     Recording,
     TrueRobot,
     as_in_the_field,
@@ -169,7 +169,7 @@ def test_a_lidar_that_is_not_where_its_transform_says() -> None:
     assert np.abs(turned) == pytest.approx(0.3)
 
 
-def pose_of(lidar: np.ndarray, mount: Pose) -> tuple[np.ndarray, np.ndarray]:
+def pose_of(lidar: np.ndarray, mount: AxlePose) -> tuple[np.ndarray, np.ndarray]:
     """Of the base, by poses (n, 3) of its lidar: place and heading."""
     yaw = lidar[:, 2] - mount.yaw
     return lidar[:, 0] + 1j * lidar[:, 1] - (mount.x + 1j * mount.y) * np.exp(1j * yaw), yaw

@@ -11,10 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 from werrimbi_odom.simulation import (
+    AxlePose,
     Manoeuvre,
-    Pace,
+    MoveLimits,
     Peculiarity,
-    Pose,
     Recording,
     TruePath,
     TrueRobot,
@@ -224,7 +224,7 @@ def test_radii_drift_with_time() -> None:
 def test_slip_loses_way_while_accelerating_and_gains_it_back_while_braking() -> None:
     """Over a ramp to speed v the loss is c v^2 / 2."""
     c, v = 0.02, 0.8
-    pace = Pace(speed=v, acceleration=1.0, pause=1.0)
+    pace = MoveLimits(speed=v, acceleration=1.0, pause=1.0)
     path = drive(LongitudinalSlip(c), moves("line", [(3.0, 0.0)], pace)).true_path
     left, right = rolled(path)
     position, heading = errors(path, left, right)
@@ -240,7 +240,7 @@ def test_friction_holds_below_a_force_and_gives_way_above(
 ) -> None:
     """Over a ramp to speed v the loss is c v^2 / 2, less the share that the threshold holds."""
     c, v = 0.1, 0.8
-    pace = Pace(speed=v, acceleration=acceleration, pause=1.0)
+    pace = MoveLimits(speed=v, acceleration=acceleration, pause=1.0)
     path = drive(CoulombSlip(c, above=0.5), moves("line", [(4.0, 0.0)], pace)).true_path
     left, right = rolled(path)
     position, _ = errors(path, left, right)
@@ -250,7 +250,7 @@ def test_friction_holds_below_a_force_and_gives_way_above(
 
 def test_slip_does_not_care_which_way_is_forwards() -> None:
     c, v = 0.02, 0.8
-    pace = Pace(speed=v, acceleration=1.0, pause=1.0)
+    pace = MoveLimits(speed=v, acceleration=1.0, pause=1.0)
     path = drive(LongitudinalSlip(c), moves("line", [(-3.0, 0.0)], pace)).true_path
     reach = np.hypot(path.x_m - path.x_m[0], path.y_m - path.y_m[0])
     left, _ = rolled(path)
@@ -317,7 +317,7 @@ def test_a_slope_carries_downhill_with_the_way() -> None:
 
 def test_a_spot_is_slippery_where_it_lies_and_nowhere_else() -> None:
     odd = SlipperySpot(loss=0.2, x=0.3, y=0.1, radius=0.5)
-    start = Pose(0.3, 0.1, 0.0)
+    start = AxlePose(0.3, 0.1, 0.0)
     path = record(TrueRobot(), CALM, seed=1, start=start, hidden=[odd]).true_path
     dl, dr = (np.diff(side) for side in rolled(path))
     turn = np.diff(path.yaw_rad)
@@ -335,9 +335,9 @@ def test_a_spot_is_slippery_where_it_lies_and_nowhere_else() -> None:
 def test_a_cable_turns_the_robot_towards_one_direction() -> None:
     path = drive(CablePull(0.03, 1.0), CALM).true_path
     dl, dr = (np.diff(side) for side in rolled(path))
-    unexplained = np.diff(path.yaw_rad) - (dr - dl) / BASE
+    residual_innovations = np.diff(path.yaw_rad) - (dr - dl) / BASE
     expected = 0.03 * np.abs(dl + dr) / 2 * np.sin(1.0 - path.yaw_rad[1:])
-    assert np.abs(unexplained.cumsum() - expected.cumsum()).max() < 5e-5
+    assert np.abs(residual_innovations.cumsum() - expected.cumsum()).max() < 5e-5
     assert np.abs(expected.cumsum()).max() > 0.01
 
 
@@ -365,7 +365,7 @@ def test_radii_follow_the_measured_payload() -> None:
 
 
 def test_radii_grow_with_the_square_of_speed() -> None:
-    pace = Pace(speed=0.8, acceleration=1.0)
+    pace = MoveLimits(speed=0.8, acceleration=1.0)
     path = drive(TyreSquash(-0.05), moves("line", [(3.0, 0.0)], pace)).true_path
     spun = np.diff(path.left_angle_rad).max() / 5e-3
     fastest = np.hypot(np.diff(path.x_m), np.diff(path.y_m)).max() / 5e-3

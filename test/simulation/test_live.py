@@ -10,8 +10,8 @@ import pytest
 pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[all])")
 
 from werrimbi_odom.simulation import (
+    AxlePose,
     LiveRobot,
-    Pose,
     ReferenceSensor,
     StrengthError,
     TrueRobot,
@@ -21,14 +21,16 @@ from werrimbi_odom.simulation import (
     wished,
 )
 from werrimbi_odom.simulation.live import KEPT
-from werrimbi_odom.simulation.manoeuvre import Pace
+from werrimbi_odom.simulation.manoeuvre import MoveLimits
 from werrimbi_odom.simulation.recorder import wheel_speeds
 from werrimbi_odom.simulation.rooms import arena
 
 ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
 EXACT = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
-DRIVE = moves("there", [(0.6, 0.5), (-0.3, 0.2)], Pace(speed=0.7, acceleration=2.0, pause=0.1))
-START = Pose(0.0, 0.0, 0.0)
+DRIVE = moves(
+    "there", [(0.6, 0.5), (-0.3, 0.2)], MoveLimits(speed=0.7, acceleration=2.0, pause=0.1)
+)
+START = AxlePose(0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(

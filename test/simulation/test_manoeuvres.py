@@ -11,7 +11,7 @@ import pytest
 
 from werrimbi_odom.simulation import (
     Manoeuvre,
-    Pace,
+    MoveLimits,
     arcs,
     chain,
     figure_eight,
@@ -63,7 +63,7 @@ def test_commands_keep_the_way_on_any_time_grid(step: float) -> None:
 
 @pytest.mark.parametrize("step", [(0.05, 0.0), (5.0, 0.0), (0.0, 3.0), (2.0, -4.0)])
 def test_a_move_keeps_to_its_pace_and_reaches_it(step: tuple[float, float]) -> None:
-    pace = Pace()
+    pace = MoveLimits()
     knots = np.array(moves("one", [step], pace).knots)
     t, speed, yaw_rate = knots[np.diff(knots[:, 0], prepend=-1) > 0].T
     used = [

@@ -16,8 +16,8 @@ import pytest
 
 import werrimbi_odom.simulation as simulation
 from werrimbi_odom.simulation import (
+    AxlePose,
     Nominal,
-    Pose,
     ReferenceSensor,
     TrueRobot,
     free,
@@ -79,7 +79,7 @@ def test_reference_noise_is_of_the_stated_size() -> None:
 
 def test_the_reference_has_its_own_frame() -> None:
     exact = {"sigma_xy": 0.0, "sigma_yaw": 0.0}
-    frame = Pose(0.5, -0.2, 1.0)
+    frame = AxlePose(0.5, -0.2, 1.0)
     here = record(TrueRobot(), SHORT, seed=1, reference=ReferenceSensor(**exact))
     there = record(TrueRobot(), SHORT, seed=1, reference=ReferenceSensor(**exact, frame=frame))
     cos, sin = math.cos(frame.yaw), math.sin(frame.yaw)

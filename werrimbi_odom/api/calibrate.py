@@ -23,7 +23,7 @@ from werrimbi_odom.inference.calibration.noise_likelihood import design
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
-from werrimbi_odom.inference.legs.cutting import MatchedRun, match_finely, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import MatchedRun, match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.model.pose import Floats
@@ -67,7 +67,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     given = replace(
         given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
     )
-    runs = match_finely(given.runs, source.robot, given.evaluation.leg, source.limits)
+    runs = match_for_fit(given.runs, source.robot, given.evaluation.leg, source.limits)
     found = calibrate(runs, source.robot, with_stated_noise(given.evaluation, runs))
     left_out = _left_out(given, runs, found)
     figures = fit_json(found)

@@ -17,7 +17,7 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.results_table import read_results
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.calibration.recorded_square import (
-    Record,
+    SquareRecording,
     recorded_square,
     squares_of,
 )
@@ -174,7 +174,7 @@ def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Rea
         if drive.reference is None:
             raise InputError(f"{path}: there is no reference to compare the odometry with")
         ticks, reference = drive.ticks, drive.reference
-        record = Record(
+        record = SquareRecording(
             str(path),
             ticks.time,
             ticks.left,

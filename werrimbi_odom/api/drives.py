@@ -149,12 +149,12 @@ def refuse_circles(given: Recordings) -> list[str]:
     InputError
         When one is made from the wheels, and is not asked for all the same.
     """
-    from werrimbi_odom.inference.comparison.made_from_wheels import refuse_circle
+    from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 
     told = []
     for run in (*given.runs, *given.holdout):
         try:
-            words = refuse_circle(run, given.source.robot, given.source.limits)
+            words = require_independent(run, given.source.robot, given.source.limits)
         except InputError as error:
             if not given.how.force_reference:
                 raise

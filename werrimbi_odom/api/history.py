@@ -29,7 +29,12 @@ from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference.changes.dated import Dated, History, Unusable, in_order
-from werrimbi_odom.inference.changes.history import Course, DriveTold, course_of, drive_told
+from werrimbi_odom.inference.changes.history import (
+    Course,
+    DriveEstimate,
+    course_of,
+    estimate_of_drive,
+)
 from werrimbi_odom.inference.rules import DATED
 from werrimbi_odom.progress import Show, silent
 
@@ -137,7 +142,7 @@ def _looked_at(run: Run | Path, robot: RobotFile, how: DriveOptions) -> Dated:
     given = gathered(robot, _collection(how.effects), [run], (), how)
     for words in refuse_circles(given):
         warnings.warn(words, stacklevel=2)
-    told = drive_told(given.runs[0], given.robot, given.evaluation)
+    told = estimate_of_drive(given.runs[0], given.robot, given.evaluation)
     return _dated(given.runs[0].path, told)
 
 
@@ -185,7 +190,7 @@ def _each(tasks: Sequence[DriveTask]) -> Iterable[Looked]:
     return map(told_of_task, tasks)
 
 
-def _dated(run: Path, told: DriveTold) -> Dated:
+def _dated(run: Path, told: DriveEstimate) -> Dated:
     if told.begin > DATED:
         return Dated(run, told, told.begin, "stamp")
     try:
@@ -224,19 +229,19 @@ def _source(robot: Path, effects: tuple[Path, ...]) -> RobotFile:
     return read_robot_file(robot, _collection(effects))
 
 
-def _plain(told: DriveTold) -> dict[str, Any]:
+def _plain(told: DriveEstimate) -> dict[str, Any]:
     return {
         name: value.tolist() if isinstance(value, np.ndarray) else value
         for name, value in asdict(told).items()
     }
 
 
-def _kept(place: Path | None) -> DriveTold | None:
+def _kept(place: Path | None) -> DriveEstimate | None:
     if place is None:
         return None
     try:
         values = json.loads(place.read_text(encoding="utf-8"))
-        return DriveTold(
+        return DriveEstimate(
             tuple(values["names"]),
             np.array(values["information"]),
             np.array(values["weighted"]),

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.comparison.compare import Comparison
-    from werrimbi_odom.inference.comparison.prepared import Prepared
+    from werrimbi_odom.inference.comparison.prepared import PreparedRuns
     from werrimbi_odom.inference.manoeuvres.advice import Told
     from werrimbi_odom.model.effect import Effect
 
@@ -55,7 +55,7 @@ def compare(
 
 
 def compared(
-    given: Recordings, show: Show = silent, *, over: Prepared | None = None
+    given: Recordings, show: Show = silent, *, over: PreparedRuns | None = None
 ) -> Result[Comparison]:
     """`compare` for what was read already.
 

@@ -14,9 +14,9 @@ from collections import deque
 from typing import Literal
 
 from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
-from werrimbi_odom.driving.path_following import Tracker
-from werrimbi_odom.driving.plan import SLACK, Plan, room_of, seen_from
-from werrimbi_odom.driving.watch import SLIP_WINDOW, Reading, Watch, fault_between
+from werrimbi_odom.driving.path_following import PathFollower
+from werrimbi_odom.driving.plan import SLACK, ManoeuvrePlan, room_of, seen_from
+from werrimbi_odom.driving.watch import SLIP_WINDOW, OdometryReading, Watch, fault_between
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
 from werrimbi_odom.model.turns import Turns
@@ -49,20 +49,20 @@ class Driver:
     watch : Watch
     """
 
-    def __init__(self, plan: Plan, limits: Limits, area: Area, watch: Watch) -> None:
+    def __init__(self, plan: ManoeuvrePlan, limits: Limits, area: Area, watch: Watch) -> None:
         self.plan, self.limits, self.area, self.watch = plan, limits, area, watch
         self.state: State = "waiting"
         self.words = "waiting to be asked to start"
         self.command = STILL
         """The last one."""
-        self.last: Reading | None = None
+        self.last: OdometryReading | None = None
         self._heard = self._scanned = self._turned = -math.inf
         self._nearest = math.inf
         self._anchor: Pose | None = None
         self._origin = Pose(0.0, 0.0, 0.0)
-        self._tracker = Tracker(plan, limits)
+        self._tracker = PathFollower(plan, limits)
         self._slip = Turns(SLIP_WINDOW)
-        self._since: deque[Reading] = deque()  # twice AT_REST_FOR
+        self._since: deque[OdometryReading] = deque()  # twice AT_REST_FOR
         self._commanded = 0.0
         self._least_age = math.inf
         self._ends_by = math.inf
@@ -120,7 +120,7 @@ class Driver:
         self._turned += busy
         self._origin = self.last.pose
         self._anchor = self._anchor or self._origin
-        self._tracker = Tracker(self.plan, self.limits)
+        self._tracker = PathFollower(self.plan, self.limits)
         self._commanded, self._least_age = self.last.stamp, self.last.age + busy
         planned = self.plan.duration(self.limits)
         self._ends_by = self.last.stamp + 1.5 * planned + LATER
@@ -134,7 +134,7 @@ class Driver:
 
     # ------------------------------------------------------------------------- what comes in
 
-    def odometry(self, reading: Reading, now: float) -> Command | None:
+    def odometry(self, reading: OdometryReading, now: float) -> Command | None:
         """Take an odometry message; the command to send, if one is due."""
         before, self.last = self.last, reading
         self._heard = now
@@ -194,7 +194,7 @@ class Driver:
         self.stop(why)
         return STILL
 
-    def _of_reading(self, reading: Reading) -> str:
+    def _of_reading(self, reading: OdometryReading) -> str:
         late = reading.age - self._least_age
         if late > self.watch.odom_timeout:
             return f"the odometry comes {late:.2f} s later than before"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.driving.limits import Limits
-from werrimbi_odom.driving.plan import Move, Plan
+from werrimbi_odom.driving.plan import ManoeuvrePlan, Move
 from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 
@@ -49,7 +49,9 @@ OWN: dict[str, tuple[str, float, Callable[[float], list[Move]]]] = {
 NAMES = (*(each.name for each in MANOEUVRES), *OWN)
 
 
-def plan_of(name: str, *, size: float = 1.0, length: float = 0.0, repetitions: int = 1) -> Plan:
+def plan_of(
+    name: str, *, size: float = 1.0, length: float = 0.0, repetitions: int = 1
+) -> ManoeuvrePlan:
     """The manoeuvre of a name.
 
     Parameters
@@ -67,12 +69,12 @@ def plan_of(name: str, *, size: float = 1.0, length: float = 0.0, repetitions: i
     """
     if name in OWN:
         words, usual, moves = OWN[name]
-        return Plan(name, words, (BEFORE, *moves(length or usual) * repetitions))
+        return ManoeuvrePlan(name, words, (BEFORE, *moves(length or usual) * repetitions))
     ideal = next((each for each in MANOEUVRES if each.name == name), None)
     if ideal is None:
         near = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
         raise InputError(f"no manoeuvre is called {name!r}{near}")
-    return Plan(name, ideal.words, (BEFORE, *_moves(ideal, size) * repetitions))
+    return ManoeuvrePlan(name, ideal.words, (BEFORE, *_moves(ideal, size) * repetitions))
 
 
 def _moves(ideal: Ideal, size: float) -> list[Move]:
@@ -86,7 +88,7 @@ def _moves(ideal: Ideal, size: float) -> list[Move]:
     return moves
 
 
-def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> Plan:
+def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> ManoeuvrePlan:
     """What `werrimbi diagnose --json FILE` proposes to drive next, for as long as it says.
 
     Raises

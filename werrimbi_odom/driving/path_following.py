@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.driving.limits import STILL, Command, Limits
-from werrimbi_odom.driving.plan import Plan, Profile, seen_from
+from werrimbi_odom.driving.plan import ManoeuvrePlan, Profile, seen_from
 from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Pose
 
@@ -24,7 +24,7 @@ PATIENCE = 1.5
 """... or this long after it should have [s]: motors that do not move for so little."""
 
 
-class Tracker:
+class PathFollower:
     """A plan that is being driven.
 
     The moves are those of the plan, laid out from its start: what one move misses, the next makes
@@ -36,7 +36,7 @@ class Tracker:
     limits : Limits
     """
 
-    def __init__(self, plan: Plan, limits: Limits) -> None:
+    def __init__(self, plan: ManoeuvrePlan, limits: Limits) -> None:
         self.index = 0
         """Of the present move; the count of moves when all are driven."""
         self.deviation = 0.0

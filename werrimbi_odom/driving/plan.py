@@ -55,7 +55,7 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class ManoeuvrePlan:
     """A manoeuvre.
 
     Parameters

@@ -20,7 +20,7 @@ SLIP_WINDOW = 0.2
 """Over which turns by the wheels and by the gyro are compared [s]."""
 
 
-class Reading(NamedTuple):
+class OdometryReading(NamedTuple):
     """One odometry message: its stamp [s], how old it was when it came [s], the pose."""
 
     stamp: float
@@ -54,7 +54,7 @@ class Watch:
     slip: float = 0.0
 
 
-def fault_between(before: Reading, now: Reading, limits: Limits) -> str:
+def fault_between(before: OdometryReading, now: OdometryReading, limits: Limits) -> str:
     """What is wrong with an odometry message after the one before it; "" if nothing."""
     step = now.stamp - before.stamp
     if step <= 0.0:

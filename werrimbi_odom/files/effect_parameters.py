@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from werrimbi_odom.effects import collection
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError, nearest
-from werrimbi_odom.files.parameters import PARAMETERS, Parameter
+from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 
 EFFECTS = "effects"
@@ -120,10 +120,10 @@ def named_effects(names: object, find: Find | None = None) -> Named:
     return Named(tuple(found.values()))
 
 
-def parameters_of(effect: Effect) -> tuple[Parameter, ...]:
+def parameters_of(effect: Effect) -> tuple[NodeParameter, ...]:
     """The parameters of an effect as a robot file has them, named with a dot."""
     return tuple(
-        Parameter(
+        NodeParameter(
             f"{effect.name}.{name}",
             float(item.null),
             f"{item.says[:1].upper()}{item.says[1:]}.",

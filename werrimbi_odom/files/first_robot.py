@@ -127,14 +127,14 @@ def of_urdf(text: str, joints: Sequence[str] = ()) -> FirstRobot:
 
 
 @dataclass(frozen=True)
-class _Wheel:
+class _UrdfWheel:
     joint: str
     place: Floats
     """In the frame of the robot's root, shape (3,) [m]."""
     radius: float | None
 
 
-def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
+def _wheels(robot: ElementTree.Element) -> Iterator[_UrdfWheel]:
     joints = {each.find("child").get("link"): each for each in robot.iter("joint") if _whole(each)}  # type: ignore[union-attr]
     links = {each.get("name"): each for each in robot.iter("link")}
     for child, joint in joints.items():
@@ -148,7 +148,7 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
         axis = _three(axis_of.get("xyz") if axis_of is not None else None, (1.0, 0.0, 0.0))
         if abs(float((place[:3, :3] @ axis)[1])) < _AXLE * float(np.linalg.norm(axis)):
             continue
-        yield _Wheel(name, place[:3, 3], _radius(links.get(child)))
+        yield _UrdfWheel(name, place[:3, 3], _radius(links.get(child)))
 
 
 def _has_stops(joint: ElementTree.Element) -> bool:

@@ -32,7 +32,7 @@ VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class NodeParameter:
     """One parameter: its type, unit, range, and what a wrong value does."""
 
     name: str
@@ -100,40 +100,40 @@ class Parameter:
         return InputError(f"{self.name} must be {wanted}{unit}, not {value!r}")
 
 
-PARAMETERS: tuple[Parameter, ...] = (
-    Parameter(
+PARAMETERS: tuple[NodeParameter, ...] = (
+    NodeParameter(
         "wheel_separation",
         None,
         "Nominal distance between the wheels' contact points. Too large: turns come out too small.",
         unit="m",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "wheel_radius",
         None,
         "Nominal radius of both wheels. Too large: every distance comes out too long.",
         unit="m",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "wheel_separation_multiplier",
         1.0,
         "C_B of the UMBmark calibration: effective over nominal separation.",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "left_wheel_radius_multiplier",
         1.0,
         "C_L of the UMBmark calibration: effective over nominal radius of the left wheel.",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "right_wheel_radius_multiplier",
         1.0,
         "C_R of the UMBmark calibration: effective over nominal radius of the right wheel.",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "left_ticks_per_revolution",
         None,
         "Counts of the left encoder for one turn of its wheel, gear and edges included. "
@@ -141,56 +141,56 @@ PARAMETERS: tuple[Parameter, ...] = (
         unit="ticks",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "right_ticks_per_revolution",
         None,
         "The same for the right encoder.",
         unit="ticks",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "encoder_bits",
         0,
         "Width at which the counters wrap; 0: they do not. Wrong: the pose jumps at each wrap.",
         unit="bits",
         choices=("0", "8", "16", "32"),
     ),
-    Parameter(
+    NodeParameter(
         "left_wheel_noise",
         4.0e-4,
         "k_L: the left wheel errs by k_L·√s over a travel s. Default: the paper's robot.",
         unit="m^0.5",
         minimum=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "right_wheel_noise",
         5.8e-4,
         "k_R: the same for the right wheel. Default: the paper's robot.",
         unit="m^0.5",
         minimum=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "covariance_order",
         "first",
         "first: the paper's covariance. exact: exact moments, for headings known to worse than "
         "about 0.3 rad (long drives without a fix); costs a little more time per message.",
         choices=("first", "exact"),
     ),
-    Parameter(
+    NodeParameter(
         "piece_path_tolerance",
         0.003,
         "How far the path may leave a piece's arc. Smaller: more pieces, not a better pose.",
         unit="m",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "piece_heading_tolerance",
         0.01,
         "How far the heading may leave a piece's arc. Smaller: more pieces, not a better pose.",
         unit="rad",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "max_wheel_speed",
         0.0,
         "Fastest that a wheel can go; 0: unknown. Given, faster steps are refused until a second "
@@ -198,43 +198,43 @@ PARAMETERS: tuple[Parameter, ...] = (
         unit="m/s",
         minimum=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "gap_duration",
         1.0,
         "Intervals longer than this count as gaps on /diagnostics; their motion is kept.",
         unit="s",
         above=0.0,
     ),
-    Parameter("odom_frame_id", "odom", "Frame of the pose (REP-105)."),
-    Parameter("base_frame_id", "base_link", "Frame of the robot (REP-105)."),
-    Parameter(
+    NodeParameter("odom_frame_id", "odom", "Frame of the pose (REP-105)."),
+    NodeParameter("base_frame_id", "base_link", "Frame of the robot (REP-105)."),
+    NodeParameter(
         "enable_odom_tf",
         False,
         "Broadcast odom -> base_link on /tf; needs tf2_ros. Off where an EKF broadcasts it.",
     ),
-    Parameter(
+    NodeParameter(
         "input_type",
         "joint_state",
         "Kind of the input messages.",
         choices=("joint_state", "int32_pair", "int64_pair", "int64_multi_array"),
     ),
-    Parameter(
+    NodeParameter(
         "position_unit",
         "radians",
         "Unit of JointState positions: radians of the wheel, or ticks of its encoder.",
         choices=("radians", "ticks"),
     ),
-    Parameter(
+    NodeParameter(
         "left_wheel_names",
         ("left_wheel_joint",),
         "Joints of the left side; several (four wheels) are averaged.",
     ),
-    Parameter(
+    NodeParameter(
         "right_wheel_names",
         ("right_wheel_joint",),
         "Joints of the right side; several (four wheels) are averaged.",
     ),
-    Parameter(
+    NodeParameter(
         "pairing_window",
         0.02,
         "Left and right counts that arrive within this time are one reading (int32_pair, "
@@ -242,20 +242,20 @@ PARAMETERS: tuple[Parameter, ...] = (
         unit="s",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "learn_from_topic",
         "",
         "Topic of a measured heading from which the node learns what each drive has anew (the "
         "phase of an eccentric wheel); empty: it does not.",
     ),
-    Parameter(
+    NodeParameter(
         "learn_from_type",
         "imu",
         "Kind of its messages: sensor_msgs/Imu (yaw rate), geometry_msgs/PoseStamped or "
         "nav_msgs/Odometry (yaw).",
         choices=("imu", "pose_stamped", "odometry"),
     ),
-    Parameter(
+    NodeParameter(
         "slip_imu_topic",
         "",
         "Topic of a gyro (sensor_msgs/Imu, not upside down): where it contradicts the wheels, they "
@@ -269,7 +269,7 @@ def defaults() -> dict[str, Value]:
     return {item.name: item.default for item in PARAMETERS if item.default is not None}
 
 
-def find(name: str) -> Parameter:
+def find(name: str) -> NodeParameter:
     """The parameter of a name.
 
     Raises

@@ -34,7 +34,7 @@ from werrimbi_odom.files.parameters import (
     PARAMETERS,
     TICKS,
     VIRTUAL_TICKS_PER_REVOLUTION,
-    Parameter,
+    NodeParameter,
     Value,
     defaults,
     find,
@@ -331,7 +331,7 @@ def _tells_of_wheels(below: object) -> bool:
     return isinstance(block, CommentedMap) and bool({"wheel_separation", TURTLEBOT} & set(block))
 
 
-def _as_ros_reads(parameter: Parameter, raw: object) -> object:
+def _as_ros_reads(parameter: NodeParameter, raw: object) -> object:
     """The value; for a truth value also in the words that ROS takes from YAML 1.1 (yes, off)."""
     if parameter.kind == "boolean" and type(raw) is str:  # quoted texts are of another type
         return True if raw in _YES else False if raw in _NO else raw

@@ -80,7 +80,7 @@ def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
     return changed(replace(robot, effects=effects), dict(zip(MULTIPLIERS, sizes, strict=True)))
 
 
-def to_cut_by(robot: Robot, given: Robot) -> Robot:
+def robot_for_cutting(robot: Robot, given: Robot) -> Robot:
     """Choose the robot whose travel cuts the legs: the given file's, unless its sizes are far off.
 
     Parameters
@@ -106,7 +106,7 @@ def name_of_base(robot: Robot) -> str:
     return next(named, "track_width")
 
 
-def skidding(robot: Robot) -> bool:
+def skids_in_turns(robot: Robot) -> bool:
     """Whether a robot skids in turns: several wheels a side, or such an effect in its file."""
     return robot.wheels_a_side > 1 or name_of_base(robot) != "track_width"
 

@@ -21,7 +21,7 @@ NORMAL_95 = 1.959963984540054
 """Half width of the 95 % interval of a standard normal variable."""
 
 
-def in_any_of(tests: int, chance: float) -> float:
+def bonferroni(tests: int, chance: float) -> float:
     """Bonferroni bound: probability that noise alone is as extreme in any of several tests."""
     return min(1.0, tests * chance)
 
@@ -35,7 +35,7 @@ def upper_part(value: float, share: float) -> float:
     return value * math.expm1(NORMAL_95 * share) / NORMAL_95
 
 
-def chi2_above(value: float, degrees: float) -> float:
+def chi2_survival(value: float, degrees: float) -> float:
     """Survival function of the chi-squared distribution."""
     from scipy.special import chdtrc
 
@@ -49,21 +49,21 @@ def chi2_median(degrees: Floats) -> Floats:
     return np.asarray(chdtri(degrees, 0.5))
 
 
-def binomial_above(count: int, of: int, share: float) -> float:
+def binomial_survival(count: int, of: int, share: float) -> float:
     """Probability of at least `count` successes in `of` trials of success probability `share`."""
     from scipy.special import bdtrc
 
     return 1.0 if count <= 0 else float(bdtrc(count - 1, of, min(share, 1.0)))
 
 
-def student_above(value: float, degrees: float) -> float:
+def student_survival(value: float, degrees: float) -> float:
     """Survival function of Student's t distribution."""
     from scipy.special import stdtr
 
     return float(stdtr(degrees, -value))
 
 
-def fisher_above(value: float, above: float, below: float) -> float:
+def fisher_survival(value: float, above: float, below: float) -> float:
     """Survival function of the F distribution.
 
     Parameters
@@ -77,7 +77,7 @@ def fisher_above(value: float, above: float, below: float) -> float:
     from scipy.special import fdtrc
 
     if math.isinf(below):
-        return chi2_above(above * value, above)
+        return chi2_survival(above * value, above)
     return float(fdtrc(above, below, max(value, 0.0)))
 
 

@@ -17,7 +17,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.spans import Driven
+from werrimbi_odom.inference.legs.spans import DrivenAmount
 from werrimbi_odom.inference.rules import (
     FEWEST_LEGS,
     LEG_OF_POSITIONS,
@@ -46,7 +46,7 @@ class Held:
     """Why it cannot be read."""
     joints: WheelJoints = field(default_factory=WheelJoints)
     """Joints of the wheels' topic: which of them are wheels."""
-    driven: Driven | None = None
+    driven: DrivenAmount | None = None
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
     """Correction of the tick stamps (`legs.even_stamps`), rms [s]."""

@@ -13,7 +13,7 @@ from werrimbi_odom.files.bag_contents import FLOATS, SCAN
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
-from werrimbi_odom.inference.legs.spans import Driven
+from werrimbi_odom.inference.legs.spans import DrivenAmount
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
@@ -159,7 +159,7 @@ def _ms(seconds: float) -> str:
     return f"{1e3 * seconds:.0f} ms"
 
 
-def _driven(held: Held, drive: Driven, sizes: bool) -> str:
+def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
     times: dict[str, float] = {}
     for span in drive.spans:
         times[span.what] = times.get(span.what, 0.0) + span.end - span.begin

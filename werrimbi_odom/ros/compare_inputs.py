@@ -15,7 +15,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.ros.compare_track import Reading
+from werrimbi_odom.ros.compare_track import TimedPose
 from werrimbi_odom.ros.planar import covariance_of, place_of, yaw_of
 
 REFERENCE_TYPES: dict[str, type] = {
@@ -55,7 +55,7 @@ class Clockwork:
         return Stamp(sec=second, nanosec=part)
 
 
-def odometry_of(message: Any, clockwork: Clockwork) -> tuple[Reading, BodyMotion[float]]:
+def odometry_of(message: Any, clockwork: Clockwork) -> tuple[TimedPose, BodyMotion[float]]:
     """Pose and twist in a nav_msgs/Odometry.
 
     Raises
@@ -67,12 +67,12 @@ def odometry_of(message: Any, clockwork: Clockwork) -> tuple[Reading, BodyMotion
     pose = _pose(message.pose.pose.position, message.pose.pose.orientation)
     linear, angular = message.twist.twist.linear, message.twist.twist.angular
     time = clockwork.seconds(message.header.stamp)
-    return Reading(time, pose, covariance), BodyMotion(linear.x, linear.y, angular.z)
+    return TimedPose(time, pose, covariance), BodyMotion(linear.x, linear.y, angular.z)
 
 
 def reference_reader(
     kind: str, usual: PoseCovariance[float]
-) -> Callable[[Any, Clockwork], Reading]:
+) -> Callable[[Any, Clockwork], TimedPose]:
     """What makes a reading of a message of one of `REFERENCE_TYPES`.
 
     Parameters
@@ -87,7 +87,7 @@ def reference_reader(
         It raises an InputError when a number cannot be used.
     """
 
-    def read(message: Any, clockwork: Clockwork) -> Reading:
+    def read(message: Any, clockwork: Clockwork) -> TimedPose:
         stated = usual
         if kind == "pose_stamped":
             place, turn = message.pose.position, message.pose.orientation
@@ -98,7 +98,7 @@ def reference_reader(
             entries = message.pose.covariance
             if all(entries[place] > 0.0 for place in _VARIANCES):  # zero, -1 or NaN state none
                 stated = covariance_of(entries)
-        return Reading(clockwork.seconds(message.header.stamp), _pose(place, turn), stated)
+        return TimedPose(clockwork.seconds(message.header.stamp), _pose(place, turn), stated)
 
     return read
 

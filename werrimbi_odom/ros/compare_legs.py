@@ -22,7 +22,7 @@ from werrimbi_odom.inference.legs.gaps import are_gaps
 from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_LEG, QUARTER_TURN
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.pose import Floats, between, wrap
-from werrimbi_odom.ros.compare_track import Reading
+from werrimbi_odom.ros.compare_track import TimedPose
 
 _KEPT = 200
 """Intervals of the reference by which it is known what is usual."""
@@ -34,8 +34,8 @@ _SHARE = 0.1  # of its largest entry, which pieces may be off by; a constant's g
 class Both(NamedTuple):
     """What odometry and reference say of one instant, each in its own frame."""
 
-    odometry: Reading
-    reference: Reading
+    odometry: TimedPose
+    reference: TimedPose
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +140,7 @@ def leg_error(start: Both, end: Both) -> LegError:
     return LegError(end.odometry.time, *_turned(error, both, -(predicted.yaw)), grows)
 
 
-def _of_stretch(start: Reading, end: Reading, sign: float) -> Floats:
+def _of_stretch(start: TimedPose, end: TimedPose, sign: float) -> Floats:
     """Covariance of the pose at `end` as seen from `start`, in the frame of `start`.
 
     `sign` is -1 where the end's error holds the start's (odometry), and +1 where both are

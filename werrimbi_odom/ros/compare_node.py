@@ -37,7 +37,7 @@ from werrimbi_odom.ros.compare_inputs import (
 )
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_motion import Motion
-from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
+from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
 from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, tell
@@ -75,7 +75,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._cutter = LegCutter(float(values["leg"]))  # type: ignore[arg-type]
         self._window = Window(int(values["window"]))  # type: ignore[arg-type]
         self._motion = Motion()
-        self._waiting: deque[Reading] = deque()
+        self._waiting: deque[TimedPose] = deque()
         self._base_frame = ""
         self._counts: Counter[str] = Counter()
         self._told: set[str] = set()
@@ -149,7 +149,7 @@ class CompareNode(Node):  # type: ignore[misc]
             self._waiting.popleft()
             self._counts["without odometry"] += 1
 
-    def _compare(self, reference: Reading) -> None:
+    def _compare(self, reference: TimedPose) -> None:
         """The whole way of a reference pose, from the odometry at its instant to the verdict."""
         odometry = self._track.at(reference.time)
         if odometry is None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.files.parameters import Parameter, Value
+from werrimbi_odom.files.parameters import NodeParameter, Value
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declaring import table
@@ -14,14 +14,14 @@ from werrimbi_odom.ros.declaring import table
 LEAST, MOST = 1e-9, 1e6
 """Of a standard deviation of the reference, so that its square is a number, and no zero."""
 
-PARAMETERS: tuple[Parameter, ...] = (
-    Parameter(
+PARAMETERS: tuple[NodeParameter, ...] = (
+    NodeParameter(
         "reference_type",
         "pose_stamped",
         "Kind of the messages on `reference`.",
         choices=tuple(REFERENCE_TYPES),
     ),
-    Parameter(
+    NodeParameter(
         "leg",
         1.0,
         "Path of a leg; a quarter turn on the spot makes one too. Too short: the reference's "
@@ -29,7 +29,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         unit="m",
         above=0.0,
     ),
-    Parameter(
+    NodeParameter(
         "window",
         20,
         "Legs that the verdict looks back on. More: it sees smaller faults, and later.",
@@ -37,7 +37,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=5,
         maximum=100_000,
     ),
-    Parameter(
+    NodeParameter(
         "reference_sigma_xy",
         TAPE_XY,
         "Standard deviation of the reference's x and y, where its messages state none.",
@@ -45,7 +45,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=LEAST,
         maximum=MOST,
     ),
-    Parameter(
+    NodeParameter(
         "reference_sigma_yaw",
         TAPE_YAW,
         "The same of its heading.",
@@ -53,13 +53,13 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=LEAST,
         maximum=MOST,
     ),
-    Parameter(
+    NodeParameter(
         "robot_file",
         "",
         "Robot file of odom_node: tell what is missing in it; empty or `none`: do not look. It is "
         "read, never written.",
     ),
-    Parameter(
+    NodeParameter(
         "diagnose_every",
         5.0,
         "Driving between two looks for what is missing, each of which is at twice as much.",
@@ -67,14 +67,14 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=0.1,
         maximum=60.0,
     ),
-    Parameter(
+    NodeParameter(
         "reference_kind",
         "auto",
         "What the reference's noise is like, as for `werrimbi diagnose --reference-kind`; auto: as "
         "it takes it by itself.",
         choices=("auto", "absolute", "incremental", "local_map"),
     ),
-    Parameter(
+    NodeParameter(
         "new_robot_file",
         "",
         "What `~/write_robot_file` writes; empty: beside `robot_file`, with _better in its name.",

@@ -26,7 +26,7 @@ _SET_BY_TURN = 0.1  # rad
 Added = Literal["first", "next", "old", "set", "back"]
 
 
-class Reading(NamedTuple):
+class TimedPose(NamedTuple):
     """A pose at an instant, and the covariance of its error, both in the pose's own frame."""
 
     time: float
@@ -48,7 +48,7 @@ class OdometryTrack:
 
     def __init__(self) -> None:
         self.generation = 0
-        self._kept: deque[Reading] = deque(maxlen=KEPT)
+        self._kept: deque[TimedPose] = deque(maxlen=KEPT)
 
     @property
     def oldest(self) -> float:
@@ -60,7 +60,7 @@ class OdometryTrack:
         """Time of the last reading [s]; minus infinity where there is none."""
         return self._kept[-1].time if self._kept else -math.inf
 
-    def add(self, reading: Reading, twist: BodyMotion[float]) -> Added:
+    def add(self, reading: TimedPose, twist: BodyMotion[float]) -> Added:
         """Take a reading.
 
         Parameters
@@ -96,7 +96,7 @@ class OdometryTrack:
         )
         return "next"
 
-    def at(self, time: float) -> Reading | None:
+    def at(self, time: float) -> TimedPose | None:
         """The reading at an instant; None where there was none, or in a gap.
 
         Between two messages the robot is taken to go on along one arc, and the noise of the
@@ -137,7 +137,7 @@ def _was_set(moved: Pose, motion: BodyMotion[float], twist: BodyMotion[float], d
     return apart > _SET_BY + 0.5 * min(way, 0.5) or turned > _SET_BY_TURN + 0.5 * min(turn, 0.5)
 
 
-def _part_way(before: Reading, after: Reading, share: float) -> Reading:
+def _part_way(before: TimedPose, after: TimedPose, share: float) -> TimedPose:
     start = before.pose
     motion = motion_between(between(start, after.pose))
     part = BodyMotion(*(share * each for each in motion))
@@ -146,7 +146,7 @@ def _part_way(before: Reading, after: Reading, share: float) -> Reading:
     whole = carried(before.covariance, after.pose.x - start.x, after.pose.y - start.y)
     added = np.subtract(after.covariance, whole)
     so_far = np.array(carried(before.covariance, dx, dy)) + share * added
-    return Reading(
+    return TimedPose(
         before.time + share * (after.time - before.time),
         pose,
         PoseCovariance(*so_far.tolist()),

@@ -9,15 +9,15 @@ from collections.abc import Sequence
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
-from rclpy.parameter import Parameter as Given
+from rclpy.parameter import NodeParameter as Given
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as robot_file
 from werrimbi_odom.files.effect_parameters import EFFECTS
-from werrimbi_odom.files.parameters import Parameter, Value
+from werrimbi_odom.files.parameters import NodeParameter, Value
 
 
-def declared(node: Node, parameters: Sequence[Parameter]) -> dict[str, Value]:
+def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
     """Declare every parameter, with the values that the node was started with.
 
     Raises
@@ -69,7 +69,7 @@ def _told(default: Value | None) -> str:
     return str(default).lower() if isinstance(default, bool) else str(default)
 
 
-def table(parameters: Sequence[Parameter]) -> str:
+def table(parameters: Sequence[NodeParameter]) -> str:
     """The parameters as Markdown, for the docs."""
     lines = ["| parameter | type | default | unit | what it is |", "|---|---|---|---|---|"]
     for item in parameters:

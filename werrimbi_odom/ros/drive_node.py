@@ -31,7 +31,7 @@ from visualization_msgs.msg import Marker
 
 from werrimbi_odom.driving.driver import Driver
 from werrimbi_odom.driving.limits import STILL, Command
-from werrimbi_odom.driving.watch import Reading
+from werrimbi_odom.driving.watch import OdometryReading
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros import drive_parameters, inputs, planar
@@ -115,7 +115,7 @@ class DriveNode(Node):  # type: ignore[misc]
         self._frame = message.header.frame_id
         stamp = _seconds(message.header.stamp)
         age = 1e-9 * self.get_clock().now().nanoseconds - stamp
-        self._send(driver.odometry(Reading(stamp, age, Pose(x, y, yaw)), now))
+        self._send(driver.odometry(OdometryReading(stamp, age, Pose(x, y, yaw)), now))
         self._after()
 
     def _on_scan(self, message: Any) -> None:

@@ -10,28 +10,28 @@ from pathlib import Path
 
 from werrimbi_odom.driving.limits import Area, Limits
 from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
-from werrimbi_odom.driving.plan import Plan
+from werrimbi_odom.driving.plan import ManoeuvrePlan
 from werrimbi_odom.driving.watch import Watch
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import Parameter, Value
+from werrimbi_odom.files.parameters import NodeParameter, Value
 from werrimbi_odom.ros.declaring import table
 
 FASTEST = 5.0
 """More than this no drive needs [m/s], [rad/s]."""
 
 
-def _length(name: str, says: str) -> Parameter:
-    return Parameter(name, 0.0, says, unit="m", minimum=0.0, maximum=1000.0)
+def _length(name: str, says: str) -> NodeParameter:
+    return NodeParameter(name, 0.0, says, unit="m", minimum=0.0, maximum=1000.0)
 
 
-PARAMETERS: tuple[Parameter, ...] = (
-    Parameter("manoeuvre", "square", "What to drive.", choices=NAMES),
-    Parameter(
+PARAMETERS: tuple[NodeParameter, ...] = (
+    NodeParameter("manoeuvre", "square", "What to drive.", choices=NAMES),
+    NodeParameter(
         "diagnosis",
         "",
         "File of `werrimbi diagnose --json`: drive what it proposes, in place of `manoeuvre`.",
     ),
-    Parameter(
+    NodeParameter(
         "size",
         1.0,
         "Size of the manoeuvres that `diagnose` proposes: a square has sides of twice this. 1 "
@@ -41,10 +41,10 @@ PARAMETERS: tuple[Parameter, ...] = (
         maximum=100.0,
     ),
     _length("length", "Side of UMBmark's squares, way of `paper_out_and_back`; 0: 4 m, and 10 m."),
-    Parameter("repetitions", 1, "How often to drive it in one go.", minimum=1, maximum=1000),
-    Parameter("max_vel_x", 0.3, "Fastest command.", unit="m/s", above=0.0, maximum=FASTEST),
-    Parameter("max_vel_theta", 1.0, "Fastest turn.", unit="rad/s", above=0.0, maximum=FASTEST),
-    Parameter(
+    NodeParameter("repetitions", 1, "How often to drive it in one go.", minimum=1, maximum=1000),
+    NodeParameter("max_vel_x", 0.3, "Fastest command.", unit="m/s", above=0.0, maximum=FASTEST),
+    NodeParameter("max_vel_theta", 1.0, "Fastest turn.", unit="rad/s", above=0.0, maximum=FASTEST),
+    NodeParameter(
         "acc_lim_x",
         0.5,
         "Hardest change of the speed; a stop is a zero at once.",
@@ -52,7 +52,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=FASTEST,
     ),
-    Parameter(
+    NodeParameter(
         "acc_lim_theta",
         1.5,
         "Hardest change of the rate of turning.",
@@ -65,7 +65,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     _length("area_behind", "behind it,"),
     _length("area_left", "to its left,"),
     _length("area_right", "and to its right. Of a rectangle all four must be given."),
-    Parameter(
+    NodeParameter(
         "robot_radius",
         0.3,
         "Of the circle about the middle of the axle that holds all of the robot.",
@@ -73,11 +73,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=100.0,
     ),
-    Parameter("dry_run", False, "`~/start` checks all and shows the path, and moves nothing."),
-    Parameter(
+    NodeParameter("dry_run", False, "`~/start` checks all and shows the path, and moves nothing."),
+    NodeParameter(
         "use_stamped_vel", False, "Publish geometry_msgs/TwistStamped on `cmd_vel`, else Twist."
     ),
-    Parameter(
+    NodeParameter(
         "odom_timeout",
         0.15,
         "Stop when the odometry is silent for so long, or comes so much later than before.",
@@ -85,7 +85,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=0.02,
         maximum=2.0,
     ),
-    Parameter(
+    NodeParameter(
         "max_deviation",
         0.15,
         "Stop when the robot is so far from where it should be by now.",
@@ -93,8 +93,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=2.0,
     ),
-    Parameter("scan_topic", "", "A sensor_msgs/LaserScan that stops the robot; empty: none."),
-    Parameter(
+    NodeParameter("scan_topic", "", "A sensor_msgs/LaserScan that stops the robot; empty: none."),
+    NodeParameter(
         "scan_min_distance",
         0.5,
         "Stop when the scan sees something nearer to the scanner.",
@@ -102,13 +102,13 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=100.0,
     ),
-    Parameter(
+    NodeParameter(
         "imu_topic",
         "",
         "A sensor_msgs/Imu (not upside down) whose turn rate stops the robot when its wheels "
         "slip; empty: none.",
     ),
-    Parameter(
+    NodeParameter(
         "max_slip",
         0.06,
         "Stop when turns of the wheels and of the gyro differ by so much within 0.2 s.",
@@ -116,17 +116,17 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=3.0,
     ),
-    Parameter(
+    NodeParameter(
         "record",
         "",
         "Folder in which each drive is recorded as a rosbag2 (MCAP; needs rosbags); empty: none.",
     ),
-    Parameter(
+    NodeParameter(
         "record_topics",
         ("joint_states", "odom", "imu", "reference", "scan", "/tf", "/tf_static"),
         "What is recorded, of it what there is.",
     ),
-    Parameter(
+    NodeParameter(
         "robot_file",
         "",
         "Robot file, for the command that is told at the end; nothing is read from it.",
@@ -173,7 +173,7 @@ def watch_of(values: Mapping[str, Value]) -> Watch:
     )
 
 
-def chosen_plan(values: Mapping[str, Value]) -> Plan:
+def chosen_plan(values: Mapping[str, Value]) -> ManoeuvrePlan:
     """What to drive.
 
     Raises

@@ -49,7 +49,7 @@ def sensor_qos() -> QoSProfile:
 
 
 @dataclass(frozen=True)
-class Wiring:
+class InputOptions:
     """What every kind of input needs."""
 
     node: Node
@@ -93,7 +93,7 @@ def type_of(values: Mapping[str, Value]) -> type:
     return kinds[str(values["input_type"])]
 
 
-def subscribed(wiring: Wiring) -> JointStates | Pair | Ticks:
+def subscribed(wiring: InputOptions) -> JointStates | Pair | TicksArray:
     """Subscribe to the input that the robot file names.
 
     Raises
@@ -104,7 +104,7 @@ def subscribed(wiring: Wiring) -> JointStates | Pair | Ticks:
     kind = type_of(wiring.values)
     if kind is JointState:
         return JointStates(wiring)
-    return Ticks(wiring) if kind is Int64MultiArray else Pair(wiring, kind)
+    return TicksArray(wiring) if kind is Int64MultiArray else Pair(wiring, kind)
 
 
 class JointStates:
@@ -113,7 +113,7 @@ class JointStates:
     Messages without any of our joints are not for us.
     """
 
-    def __init__(self, wiring: Wiring) -> None:
+    def __init__(self, wiring: InputOptions) -> None:
         values = wiring.values
         bits = robot_of(values).encoder_bits if _averages(values) else 0
         self._sides = tuple(_side(values, side, bits) for side in ("left", "right"))
@@ -184,7 +184,7 @@ class JointStates:
 class Pair:
     """Two topics, a wheel each (std_msgs/Int32 or Int64), paired by arrival; see `Pairing`."""
 
-    def __init__(self, wiring: Wiring, message_type: type) -> None:
+    def __init__(self, wiring: InputOptions, message_type: type) -> None:
         self._take, self._health = wiring.take, wiring.health
         self._stamps = ArrivalStamps(wiring.node)
         window = float(wiring.values["pairing_window"])  # type: ignore[arg-type]
@@ -209,10 +209,10 @@ class Pair:
             self._take(self._stamps.of(info), *pair)
 
 
-class Ticks:
+class TicksArray:
     """Both counters in one message, left first (std_msgs/Int64MultiArray)."""
 
-    def __init__(self, wiring: Wiring) -> None:
+    def __init__(self, wiring: InputOptions) -> None:
         self._take, self._health = wiring.take, wiring.health
         self._stamps = ArrivalStamps(wiring.node)
         _subscribe(wiring, Int64MultiArray, "ticks", self._arrived)
@@ -268,7 +268,7 @@ def _side(values: Mapping[str, Value], side: str, bits: int) -> WheelSide:
 
 
 def _subscribe(
-    wiring: Wiring, message_type: type, topic: str, arrived: Callable[..., None]
+    wiring: InputOptions, message_type: type, topic: str, arrived: Callable[..., None]
 ) -> None:
     with qos_errors_of(topic):
         wiring.node.create_subscription(

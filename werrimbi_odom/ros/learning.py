@@ -23,7 +23,7 @@ from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import inputs, planar
-from werrimbi_odom.ros.live_odometer import Tracker
+from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 FINE = 0.03
@@ -39,7 +39,7 @@ class NoLearning:
 
     topic = ""
 
-    def after(self, tracker: Tracker) -> None:
+    def after(self, tracker: LiveOdometer) -> None:
         """Take the reading that the tracker has just taken."""
 
     def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
@@ -66,10 +66,10 @@ class Learning(NoLearning):
         `learn_from_topic` and `learn_from_type`.
     """
 
-    def __init__(self, wiring: inputs.Wiring, robot: Robot, topic: str, kind: str) -> None:
+    def __init__(self, wiring: inputs.InputOptions, robot: Robot, topic: str, kind: str) -> None:
         self.topic = topic
         self._learner = PhaseLearner(robot)
-        self._tracker: Tracker | None = None
+        self._tracker: LiveOdometer | None = None
         self._clock = wiring.node.get_clock()
         self._logger = wiring.node.get_logger()
         self._health = wiring.health
@@ -88,7 +88,7 @@ class Learning(NoLearning):
         self._subscribe(wiring, message_type, see)
 
     def _subscribe(
-        self, wiring: inputs.Wiring, message_type: type, see: Callable[[Any], None]
+        self, wiring: inputs.InputOptions, message_type: type, see: Callable[[Any], None]
     ) -> None:
         with inputs.qos_errors_of(self.topic):
             wiring.node.create_subscription(
@@ -100,7 +100,7 @@ class Learning(NoLearning):
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             )
 
-    def after(self, tracker: Tracker) -> None:
+    def after(self, tracker: LiveOdometer) -> None:
         """Take the reading that the tracker has just taken."""
         self._tracker = tracker
         if tracker.driven_step is not None and not self._done:
@@ -176,7 +176,7 @@ class Learning(NoLearning):
         return math.nan if self._tracker is None else self._tracker.seconds(stamp)
 
 
-def learning_of(wiring: inputs.Wiring, robot: Robot) -> NoLearning:
+def learning_of(wiring: inputs.InputOptions, robot: Robot) -> NoLearning:
     """What the robot file asks for, where there is anything to learn."""
     topic, log = str(wiring.values["learn_from_topic"]), wiring.node.get_logger()
     learnt = [applied.name for applied in learnable(robot)]

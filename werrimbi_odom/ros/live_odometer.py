@@ -29,7 +29,7 @@ class Finished(NamedTuple):
     covariance: PoseCovariance[float]
 
 
-class Tracker:
+class LiveOdometer:
     """Where the robot is, reading by reading.
 
     Parameters

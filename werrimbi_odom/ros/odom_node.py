@@ -34,7 +34,7 @@ from werrimbi_odom.ros.estimate_status import status_of
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
-from werrimbi_odom.ros.live_odometer import Finished, Tracker
+from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.running import run
@@ -63,7 +63,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._changeable = parameters.changeable(self._settings.effects)
         self._frame = str(values["odom_frame_id"])
         self._topics = tuple(self.resolve_topic_name(name) for name in inputs.topics_of(values))
-        self._tracker = Tracker(robot, self._settings.tolerance, limits)
+        self._tracker = LiveOdometer(robot, self._settings.tolerance, limits)
         self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
         self._trail = PieceTrail(self._frame, robot.track)
         self._health = Health(self.get_logger(), self._topics, limits.gap_duration)
@@ -79,9 +79,11 @@ class OdomNode(Node):  # type: ignore[misc]
         self._send_transform = (
             transform_sender(self, "enable_odom_tf") if values["enable_odom_tf"] else None
         )
-        self._learning = learning_of(inputs.Wiring(self, values, self._take, self._health), robot)
-        self._slip = slip_of(inputs.Wiring(self, values, self._take, self._health), robot)
-        self._input = inputs.subscribed(inputs.Wiring(self, values, self._take, self._health))
+        self._learning = learning_of(
+            inputs.InputOptions(self, values, self._take, self._health), robot
+        )
+        self._slip = slip_of(inputs.InputOptions(self, values, self._take, self._health), robot)
+        self._input = inputs.subscribed(inputs.InputOptions(self, values, self._take, self._health))
         self.create_subscription(
             PoseWithCovarianceStamped,
             "set_pose",

@@ -47,7 +47,7 @@ CHANGEABLE = frozenset(
 
 _QOS = "qos_overrides."
 
-Changeable = Mapping[str, table.Parameter]
+Changeable = Mapping[str, table.NodeParameter]
 """What may change while the node runs, by name."""
 
 
@@ -282,7 +282,7 @@ def _plain(value: object) -> object:
     return "nothing" if value is None else value
 
 
-def _descriptor(item: table.Parameter, may_change: bool) -> ParameterDescriptor:
+def _descriptor(item: table.NodeParameter, may_change: bool) -> ParameterDescriptor:
     unit = f" [{item.unit}]" if item.unit else ""
     description = ParameterDescriptor(description=item.says + unit, read_only=not may_change)
     lowest = item.minimum if item.above is None else item.above

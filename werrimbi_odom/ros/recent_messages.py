@@ -25,7 +25,7 @@ PAUSE = 1.0
 """Of two messages that are farther apart [s] nobody knows whether it drove in between."""
 
 
-class Message(NamedTuple):
+class ReceivedMessage(NamedTuple):
     """A message as it came."""
 
     driven: float
@@ -52,7 +52,7 @@ class Kept:
         """Seconds of driving so far, by the stamps of the odometry."""
         self._topics = list(topics)
         self._seconds = seconds
-        self._messages: deque[Message] = deque()
+        self._messages: deque[ReceivedMessage] = deque()
         self._bytes = 0
         self._last = [-math.inf] * len(self._topics)
         self._stamp = self._moved = -math.inf
@@ -71,7 +71,7 @@ class Kept:
         if stands and 0.0 <= 1e-9 * received - self._last[topic] < RESTING:
             return
         self._last[topic] = 1e-9 * received
-        self._messages.append(Message(self.driven, received, topic, data))
+        self._messages.append(ReceivedMessage(self.driven, received, topic, data))
         self._bytes += len(data) + OVERHEAD
         oldest = self.driven - self._seconds
         while self._messages[0].driven < oldest or self._bytes > MOST_BYTES:

@@ -9,27 +9,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import Parameter
+from werrimbi_odom.files.parameters import NodeParameter
 from werrimbi_odom.ros.declaring import table
 
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, LiveRobot, TrueRobot
 
-PARAMETERS: tuple[Parameter, ...] = (
-    Parameter(
+PARAMETERS: tuple[NodeParameter, ...] = (
+    NodeParameter(
         "hide",
         "",
         "Effect to hide in the robot, `EFFECT` or `EFFECT=STRENGTH` as for `werrimbi simulate "
         "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any; `none`.",
     ),
-    Parameter(
+    NodeParameter(
         "seed",
         1,
         "Of all that is random: noises, wheel angles, counters, the gyro, what `hide` leaves open.",
         minimum=0,
         maximum=2**31,
     ),
-    Parameter(
+    NodeParameter(
         "real_time_factor",
         1.0,
         "Simulated seconds in a second. Other than 1: with `publish_clock`, and `use_sim_time` for "
@@ -37,15 +37,15 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=20.0,
     ),
-    Parameter(
+    NodeParameter(
         "publish_clock",
         False,
         "Publish simulated time on /clock, and stamp with it; else stamps are the time of day.",
     ),
-    Parameter(
+    NodeParameter(
         "use_stamped_vel", False, "Take geometry_msgs/TwistStamped on `cmd_vel`, else Twist."
     ),
-    Parameter(
+    NodeParameter(
         "cmd_vel_timeout",
         0.5,
         "The robot stops when no command has come for so long.",
@@ -53,7 +53,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=10.0,
     ),
-    Parameter(
+    NodeParameter(
         "joint_states_rate",
         50.0,
         "Messages a second on `joint_states`.",
@@ -61,11 +61,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         above=0.0,
         maximum=200.0,
     ),
-    Parameter("imu_rate", 100.0, "The same on `imu`.", unit="Hz", above=0.0, maximum=200.0),
-    Parameter(
+    NodeParameter("imu_rate", 100.0, "The same on `imu`.", unit="Hz", above=0.0, maximum=200.0),
+    NodeParameter(
         "reference_rate", 20.0, "The same on `reference`.", unit="Hz", above=0.0, maximum=200.0
     ),
-    Parameter(
+    NodeParameter(
         "reference_sigma_xy",
         0.001,
         "Noise of the reference: standard deviation of x and of y.",
@@ -73,7 +73,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=0.0,
         maximum=10.0,
     ),
-    Parameter(
+    NodeParameter(
         "reference_sigma_yaw",
         0.002,
         "The same of its heading.",
@@ -81,20 +81,20 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=0.0,
         maximum=1.0,
     ),
-    Parameter(
+    NodeParameter(
         "room",
         "none",
         "What a lidar sees and publishes on `scan`, with walls that the robot drives through; the "
         "robot begins in the middle.",
         choices=("none", "living_room", "arena"),
     ),
-    Parameter(
+    NodeParameter(
         "enable_tf",
         False,
         "Broadcast world -> odom (where the robot began) and world -> base_link_true (the truth) "
         "on /tf; needs tf2_ros.",
     ),
-    Parameter(
+    NodeParameter(
         "robot_file",
         "",
         "New file to write: the robot as its maker believes it to be, for odom_node.",

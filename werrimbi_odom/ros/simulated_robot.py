@@ -37,7 +37,7 @@ from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.transforms import transform_sender
 
 if TYPE_CHECKING:
-    from werrimbi_odom.simulation import Pose
+    from werrimbi_odom.simulation import AxlePose
 
 TICK = 0.01
 """Seconds of the wall between two looks at the time."""
@@ -206,7 +206,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         self._scan.publish(message)
 
     def _transform(
-        self, child: str, pose: Pose | tuple[float, float, float], parent: str = "world"
+        self, child: str, pose: AxlePose | tuple[float, float, float], parent: str = "world"
     ) -> TransformStamped:
         message = TransformStamped(child_frame_id=child)
         message.header.stamp = self._stamp(self._robot.time)

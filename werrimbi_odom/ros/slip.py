@@ -17,14 +17,14 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import inputs
 from werrimbi_odom.ros.learning import FASTEST
-from werrimbi_odom.ros.live_odometer import Tracker
+from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 
 class NoSlip:
     """Where no gyro is given."""
 
-    def missed(self, tracker: Tracker) -> Missed:
+    def missed(self, tracker: LiveOdometer) -> Missed:
         """What the reading that the tracker has just taken adds to the covariance."""
         return NOTHING
 
@@ -47,12 +47,12 @@ class Slip(NoSlip):
         Of sensor_msgs/Imu.
     """
 
-    def __init__(self, wiring: inputs.Wiring, robot: Robot, topic: str) -> None:
+    def __init__(self, wiring: inputs.InputOptions, robot: Robot, topic: str) -> None:
         self._topic = topic
         self._guard = SlipGuard(robot.track, max(robot.left_tick, robot.right_tick))
         self._gyro = UprightGyro(topic, wiring.node.get_logger())
         self._heard = 0
-        self._tracker: Tracker | None = None
+        self._tracker: LiveOdometer | None = None
         wiring.node.create_subscription(
             Imu,
             topic,
@@ -61,7 +61,7 @@ class Slip(NoSlip):
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
 
-    def missed(self, tracker: Tracker) -> Missed:
+    def missed(self, tracker: LiveOdometer) -> Missed:
         """What the reading that the tracker has just taken adds to the covariance."""
         self._tracker = tracker
         return self._guard.wheels(tracker.seconds(tracker.stamp), tracker.heading)
@@ -88,7 +88,7 @@ class Slip(NoSlip):
             self._guard.gyro(self._tracker.seconds(message.header.stamp), rate)
 
 
-def slip_of(wiring: inputs.Wiring, robot: Robot) -> NoSlip:
+def slip_of(wiring: inputs.InputOptions, robot: Robot) -> NoSlip:
     """What the robot file asks for."""
     topic = str(wiring.values["slip_imu_topic"])
     return Slip(wiring, robot, topic) if topic else NoSlip()

@@ -29,8 +29,8 @@ from werrimbi_odom.scans.limits import (
     ORDER_TURNING,
 )
 from werrimbi_odom.scans.matching import MAD
-from werrimbi_odom.scans.scan_odometry import Flag, Tracker, motion_between, moved
-from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course
+from werrimbi_odom.scans.scan_odometry import Flag, ScanTracker, motion_between, moved
+from werrimbi_odom.scans.sweep import Sweep, SweepMotion, deskewed, own_course
 
 AROUND = 3
 """Scans before and after one, that its course in the second pass is fitted to."""
@@ -81,8 +81,8 @@ class ScanMatcher:
     def __init__(self) -> None:
         self._intervals: deque[float] = deque(maxlen=INTERVALS)
         self._last: Sweep | None = None
-        self._first = Tracker(np.zeros(3))
-        self._second = Tracker(np.zeros(3))
+        self._first = ScanTracker(np.zeros(3))
+        self._second = ScanTracker(np.zeros(3))
         self._motion, self._clock, self._failed = np.zeros(3), 0.0, 0
         self._seen: deque[_Seen] = deque(maxlen=2 * AROUND + 1)
         self._done = 0  # scans at the front of `_seen` that the second pass has
@@ -149,13 +149,13 @@ class ScanMatcher:
             self._again()
         self._seen.clear()
         self._done = 0
-        self._first = Tracker(self._first.pose)
+        self._first = ScanTracker(self._first.pose)
         self._motion, self._failed = np.zeros(3), 0
         self._renew()
 
     def _renew(self) -> None:
         # Beside the last pose: one that is the same to the last digit looks held, not measured.
-        self._second = Tracker(self._second.pose + 1e-6)
+        self._second = ScanTracker(self._second.pose + 1e-6)
         self._failed_again = 0
         self._piece += 1
 
@@ -224,15 +224,15 @@ def common_noise(
 _BESIDE = 5
 
 
-def _course(seen: deque[_Seen], at: int) -> Course:
+def _course(seen: deque[_Seen], at: int) -> SweepMotion:
     """How the lidar moved about a scan: a parabola through the poses about it."""
     about = [seen[row] for row in range(max(at - AROUND, 0), min(at + AROUND + 1, len(seen)))]
     t = np.array([each.clock for each in about]) - seen[at].clock
     degree = min(2, t.size - 1)
     if degree == 0:
-        return Course()
+        return SweepMotion()
     motions = np.array([motion_between(seen[at].pose, each.pose) for each in about])
     powers = np.column_stack([t**power for power in range(degree + 1)])
     fitted = np.linalg.lstsq(powers, motions, rcond=None)[0]
     fitted = np.vstack([fitted, np.zeros((2 - degree, 3))])
-    return Course(tuple(fitted[1].tolist()), tuple(fitted[2].tolist()))
+    return SweepMotion(tuple(fitted[1].tolist()), tuple(fitted[2].tolist()))

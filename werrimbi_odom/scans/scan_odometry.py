@@ -27,7 +27,7 @@ held, as along a bare corridor; the search did not end; no robot drives so fast.
 one."""
 
 
-class Tracker:
+class ScanTracker:
     """Where the lidar is, scan after scan, on one unbroken map."""
 
     def __init__(self, start: Floats) -> None:

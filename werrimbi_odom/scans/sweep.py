@@ -28,7 +28,7 @@ class Sweep:
 
 
 @dataclass(frozen=True)
-class Course:
+class SweepMotion:
     """How the lidar moved about the middle of a sweep, in its own frame then: b t + c t^2."""
 
     linear: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -71,7 +71,7 @@ def sweep_of(
     return Sweep(time + middle, points, share, ranges.size * beam_interval, distance * step)
 
 
-def deskewed(sweep: Sweep, course: Course) -> Floats:
+def deskewed(sweep: Sweep, course: SweepMotion) -> Floats:
     """The echoes as they would have been seen from where the lidar was at the middle, (k, 2)."""
     t = sweep.duration * sweep.share[:, None]
     moved = t * np.array(course.linear) + t * t * np.array(course.quadratic)
@@ -80,8 +80,8 @@ def deskewed(sweep: Sweep, course: Course) -> Floats:
     return np.column_stack([cos * x - sin * y + moved[:, 0], sin * x + cos * y + moved[:, 1]])
 
 
-def own_course(motion: Floats, duration: float) -> Course:
+def own_course(motion: Floats, duration: float) -> SweepMotion:
     """The course of a lidar that goes on as in its last motion (3,), which took `duration`."""
     x, y, turn = (motion / duration).tolist()
     # The mean of the way is seen from its start; the middle of the turn is what stays as it is.
-    return Course((x, y, turn), (-0.5 * turn * y, 0.5 * turn * x, 0.0))
+    return SweepMotion((x, y, turn), (-0.5 * turn * y, 0.5 * turn * x, 0.0))

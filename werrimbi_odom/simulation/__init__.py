@@ -16,7 +16,7 @@ Reading order: `robot` (the true robot), `manoeuvre` (what is commanded), `chass
 motion capture), `hidden` (effects for others to find).
 """
 
-from .engine import Pose, TruePath, UnstableError
+from .engine import AxlePose, TruePath, UnstableError
 from .field import FieldDrive, FieldSensors, as_in_the_field
 from .field_bag import write_field_bag
 from .hidden import (
@@ -29,7 +29,7 @@ from .hidden import (
     wished,
 )
 from .live import LiveRobot
-from .manoeuvre import Manoeuvre, Pace, moves
+from .manoeuvre import Manoeuvre, MoveLimits, moves
 from .manoeuvres import (
     arcs,
     chain,
@@ -51,15 +51,15 @@ from .sessions import drives, session
 
 __all__ = [
     "CATALOGUE",
+    "AxlePose",
     "FieldDrive",
     "FieldSensors",
     "Hidden",
     "LiveRobot",
     "Manoeuvre",
+    "MoveLimits",
     "Nominal",
-    "Pace",
     "Peculiarity",
-    "Pose",
     "Recording",
     "ReferenceSensor",
     "StrengthError",

@@ -33,7 +33,7 @@ class UnstableError(RuntimeError):
     """The engine lost its footing: the robot asked for is beyond what it can simulate."""
 
 
-class Pose(NamedTuple):
+class AxlePose(NamedTuple):
     """Of the axle's midpoint on the floor: x, y [m], yaw [rad], the yaw counting full turns."""
 
     x: float
@@ -51,7 +51,7 @@ class Stride(NamedTuple):
     period: float
     left: float
     right: float
-    pose: Pose
+    pose: AxlePose
 
 
 class Shift(NamedTuple):
@@ -91,7 +91,7 @@ class TruePath:
 class Engine:
     """A robot standing on MuJoCo's floor, ready to be driven. The only mutable thing here."""
 
-    def __init__(self, chassis: Chassis, start: Pose, angles: tuple[float, float]) -> None:
+    def __init__(self, chassis: Chassis, start: AxlePose, angles: tuple[float, float]) -> None:
         self._model = mujoco.MjModel.from_xml_string(to_mjcf(chassis))
         self._data = mujoco.MjData(self._model)
         # The engine's own memory; to ask for it anew at each step costs as much as the step.
@@ -134,10 +134,10 @@ class Engine:
         mujoco.mj_step(self._model, self._data, steps)
 
     @property
-    def pose(self) -> Pose:
+    def pose(self) -> AxlePose:
         """Of the axle's midpoint in the world."""
         q = self._q
-        return Pose(float(q[self._x]), float(q[self._y]), float(q[self._yaw]))
+        return AxlePose(float(q[self._x]), float(q[self._y]), float(q[self._yaw]))
 
     @property
     def wheel_angles(self) -> tuple[float, float]:
@@ -201,7 +201,7 @@ Row = tuple[float, float, float, float, float, float]
 """Of a TruePath: time, x, y, yaw, and the angles of both shafts."""
 
 
-class Driven:
+class DrivenRobot:
     """A robot that is driven period by period, with all that moves and changes it on the way.
 
     Parameters
@@ -213,7 +213,7 @@ class Driven:
     def __init__(
         self,
         chassis: Chassis,
-        start: Pose,
+        start: AxlePose,
         angles: tuple[float, float],
         shifters: Sequence[Shifter] = (),
         reshapers: Sequence[Reshaper] = (),
@@ -256,7 +256,7 @@ def drive(
     chassis: Chassis,
     wheel_speeds: Floats,
     *,
-    start: Pose,
+    start: AxlePose,
     angles: tuple[float, float],
     shifters: Sequence[Shifter] = (),
     reshapers: Sequence[Reshaper] = (),
@@ -280,7 +280,7 @@ def drive(
     -------
     TruePath, of n + 1 rows
     """
-    robot = Driven(chassis, start, angles, shifters, reshapers)
+    robot = DrivenRobot(chassis, start, angles, shifters, reshapers)
     rows = np.empty((len(wheel_speeds) + 1, 6))
     rows[0] = robot.row
     for i, (left_speed, right_speed) in enumerate(wheel_speeds, start=1):

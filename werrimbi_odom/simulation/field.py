@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bag import EPOCH
-from .engine import PERIOD, Pose, TruePath
+from .engine import PERIOD, AxlePose, TruePath
 from .hidden.peculiarity import Peculiarity
 from .lidar import Lidar, Sweeps, scanned
 from .recording import Recording
@@ -35,7 +35,7 @@ TURN = 2.0 * math.pi
 AT_PACE = 0.5
 """Until the hand that carries it moves as fast as it will [s]."""
 
-BEHIND = Lidar(mount=Pose(-0.032, 0.0, 0.0))
+BEHIND = Lidar(mount=AxlePose(-0.032, 0.0, 0.0))
 """A lidar of 218 beams a little behind the axle, as on a TurtleBot3."""
 
 
@@ -190,11 +190,11 @@ def as_in_the_field(
     return FieldDrive(recording.name, wheels, imu, localiser, odometry, sensors.lidar, scans, truth)
 
 
-def _as_it_sits(lidar: Lidar, beside: Pose) -> Lidar:
+def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:
     """A lidar of which its transform tells a base that is `beside` the robot's."""
     cos, sin = math.cos(beside.yaw), math.sin(beside.yaw)
     x, y, yaw = lidar.mount
-    there = Pose(beside.x + cos * x - sin * y, beside.y + sin * x + cos * y, beside.yaw + yaw)
+    there = AxlePose(beside.x + cos * x - sin * y, beside.y + sin * x + cos * y, beside.yaw + yaw)
     return replace(lidar, mount=there)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import Pose, TruePath
+from .engine import AxlePose, TruePath
 from .sensors import WORLD
 
 Floats = NDArray[np.float64]
@@ -89,7 +89,7 @@ class Lidar:
     bias: float = 0.0
     lost: float = 0.02
     mixed: float = 0.0
-    mount: Pose = WORLD
+    mount: AxlePose = WORLD
     rotates: bool = True
     upside_down: bool = False
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import PERIOD, Driven, Pose, TruePath
+from .engine import PERIOD, AxlePose, DrivenRobot, TruePath
 from .field import FieldSensors, gyro_of
 from .hidden.peculiarity import Peculiarity
 from .lidar import Room, sweeps_at
@@ -57,14 +57,14 @@ class LiveRobot:
         *,
         seed: int,
         reference: ReferenceSensor | None = None,
-        start: Pose = Pose(0.0, 0.0, 0.0),  # noqa: B008 (immutable)
+        start: AxlePose = AxlePose(0.0, 0.0, 0.0),  # noqa: B008 (immutable)
         hidden: Sequence[Peculiarity] = (),
         sensors: FieldSensors | None = None,
         room: Room | None = None,
     ) -> None:
         ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
         self._robot, self._sensor, self._hidden = ready.robot, ready.sensor, tuple(hidden)
-        self._driven = Driven(
+        self._driven = DrivenRobot(
             ready.chassis, ready.start, ready.angles, ready.shifters, ready.reshapers
         )
         self._zeros = counter_zeros(ready.robot, seed)
@@ -92,9 +92,9 @@ class LiveRobot:
         return self._driven.row[0]
 
     @property
-    def pose(self) -> Pose:
+    def pose(self) -> AxlePose:
         """Where the robot truly is."""
-        return Pose(*self._driven.row[1:4])
+        return AxlePose(*self._driven.row[1:4])
 
     def command(self, speed: float, yaw_rate: float) -> None:
         """Ask for a speed [m/s] and a yaw rate [rad/s], from now on."""
@@ -139,10 +139,10 @@ class LiveRobot:
                 seen = odd.recording(seen, self._robot, rng)
         return int(seen.left_ticks[0]), int(seen.right_ticks[0])
 
-    def reference(self, time: float) -> Pose:
+    def reference(self, time: float) -> AxlePose:
         """What the reference measures at a time of the last second."""
         measured = self._sensor.measure(self._path(), np.array([time]), self._noise)
-        return Pose(*(float(each[0]) for each in measured))
+        return AxlePose(*(float(each[0]) for each in measured))
 
     def gyro(self, since: float, until: float) -> float:
         """Mean yaw rate [rad/s] that the gyro reads between two times of the last second."""

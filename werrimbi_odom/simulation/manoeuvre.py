@@ -72,7 +72,7 @@ def _means(t: Floats, value: Floats, times: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Pace:
+class MoveLimits:
     """How briskly to drive: limits of a move.
 
     Parameters
@@ -92,7 +92,9 @@ class Pace:
     pause: float = 0.3
 
 
-def moves(name: str, steps: Sequence[tuple[float, float]], pace: Pace | None = None) -> Manoeuvre:
+def moves(
+    name: str, steps: Sequence[tuple[float, float]], pace: MoveLimits | None = None
+) -> Manoeuvre:
     """A manoeuvre of moves from rest to rest, each along a line, an arc or on the spot.
 
     Parameters
@@ -102,7 +104,7 @@ def moves(name: str, steps: Sequence[tuple[float, float]], pace: Pace | None = N
         Signed length [m] and turn [rad] of each move; both at once make an arc.
     pace : Pace, optional
     """
-    pace = pace or Pace()
+    pace = pace or MoveLimits()
     knots: list[Knot] = [(0.0, 0.0, 0.0)]
     for length, turn in steps:
         start = knots[-1][0]
@@ -113,7 +115,7 @@ def moves(name: str, steps: Sequence[tuple[float, float]], pace: Pace | None = N
     return Manoeuvre(name, tuple(knots))
 
 
-def _trapezium(length: float, turn: float, pace: Pace) -> list[tuple[float, float]]:
+def _trapezium(length: float, turn: float, pace: MoveLimits) -> list[tuple[float, float]]:
     """Corners (time, rate) of a move's progress from 0 to 1 within the limits of `pace`."""
     rate = min(_ratio(pace.speed, length), _ratio(pace.yaw_rate, turn))
     ramp = min(_ratio(pace.acceleration, length), _ratio(pace.yaw_acceleration, turn))

@@ -8,11 +8,11 @@ import math
 
 import numpy as np
 
-from .manoeuvre import Knot, Manoeuvre, Pace, moves
+from .manoeuvre import Knot, Manoeuvre, MoveLimits, moves
 
 
 def square(
-    side: float = 2.0, sense: str = "ccw", *, laps: int = 1, pace: Pace | None = None
+    side: float = 2.0, sense: str = "ccw", *, laps: int = 1, pace: MoveLimits | None = None
 ) -> Manoeuvre:
     """`laps` squares of `side` [m], corners turned on the spot, left (`ccw`) or right (`cw`).
 
@@ -23,7 +23,11 @@ def square(
 
 
 def out_and_back(
-    distance: float = 10.0, *, turn_round: bool = False, laps: int = 1, pace: Pace | None = None
+    distance: float = 10.0,
+    *,
+    turn_round: bool = False,
+    laps: int = 1,
+    pace: MoveLimits | None = None,
 ) -> Manoeuvre:
     """Forwards by `distance` [m] and backwards again, as in the paper's section 5.2.
 
@@ -36,18 +40,20 @@ def out_and_back(
     return moves("out_and_back", lap * laps, pace)
 
 
-def spin(turns: float = 5.0, *, pace: Pace | None = None) -> Manoeuvre:
+def spin(turns: float = 5.0, *, pace: MoveLimits | None = None) -> Manoeuvre:
     """`turns` full turns on the spot in one go, anticlockwise where positive."""
     return moves("spin", [(0.0, 2 * math.pi * turns)], pace)
 
 
-def spins(turns: float = 2.0, *, pairs: int = 2, pace: Pace | None = None) -> Manoeuvre:
+def spins(turns: float = 2.0, *, pairs: int = 2, pace: MoveLimits | None = None) -> Manoeuvre:
     """Spins to the left and to the right in turn, `pairs` of each."""
     angle = 2 * math.pi * turns
     return moves("spins", [(0.0, angle), (0.0, -angle)] * pairs, pace)
 
 
-def figure_eight(radius: float = 1.0, *, laps: int = 1, pace: Pace | None = None) -> Manoeuvre:
+def figure_eight(
+    radius: float = 1.0, *, laps: int = 1, pace: MoveLimits | None = None
+) -> Manoeuvre:
     """Circles of `radius` [m], one to the left and one to the right in each lap."""
     around = 2 * math.pi * radius
     lap = [(around, 2 * math.pi), (around, -2 * math.pi)]
@@ -58,7 +64,7 @@ def arcs(
     radii: tuple[float, ...] = (0.3, 0.6, 1.2, 2.4),
     *,
     angle: float = math.pi,
-    pace: Pace | None = None,
+    pace: MoveLimits | None = None,
 ) -> Manoeuvre:
     """Arcs of several radii [m], each left forwards, left backwards, right forwards, right back."""
     steps = [
@@ -70,7 +76,9 @@ def arcs(
     return moves("arcs", steps, pace)
 
 
-def pivots(angle: float = math.pi, *, base: float = 0.35, pace: Pace | None = None) -> Manoeuvre:
+def pivots(
+    angle: float = math.pi, *, base: float = 0.35, pace: MoveLimits | None = None
+) -> Manoeuvre:
     """Turns about one standing wheel, each wheel, both ways; `base` [m] is the wheel base."""
     half = base / 2
     steps = [
@@ -88,7 +96,7 @@ def start_stop(
     laps: int = 2,
 ) -> Manoeuvre:
     """Hard starts and stops: `hops` of `length` [m] forwards and as many back, `laps` times."""
-    pace = Pace(speed=speed, acceleration=acceleration, pause=0.25)
+    pace = MoveLimits(speed=speed, acceleration=acceleration, pause=0.25)
     lap = [(length, 0.0)] * hops + [(-length, 0.0)] * hops
     return moves("start_stop", lap * laps, pace)
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .chassis import Chassis, chassis_of
-from .engine import PERIOD, Pose, Reshaper, Shifter, TruePath, drive
+from .engine import PERIOD, AxlePose, Reshaper, Shifter, TruePath, drive
 from .hidden.peculiarity import Peculiarity
 from .manoeuvre import Manoeuvre
 from .recording import Happened, Recording
@@ -35,7 +35,7 @@ def record(
     seed: int,
     reference: ReferenceSensor | None = None,
     ticks_rate_hz: float = 50.0,
-    start: Pose | None = None,
+    start: AxlePose | None = None,
     hidden: Sequence[Peculiarity] = (),
 ) -> Recording:
     """Drive `robot` through `manoeuvre` in the physics engine and record it.
@@ -76,13 +76,13 @@ def record(
 
 
 @dataclass(frozen=True)
-class Prepared:
+class ReadyRobot:
     """A robot ready to be driven, with all that is odd about it, as `drive` takes it."""
 
     robot: TrueRobot
     sensor: ReferenceSensor
     chassis: Chassis
-    start: Pose
+    start: AxlePose
     angles: tuple[float, float]
     shifters: Sequence[Shifter]
     reshapers: Sequence[Reshaper]
@@ -93,9 +93,9 @@ def prepared(
     *,
     seed: int,
     reference: ReferenceSensor | None = None,
-    start: Pose | None = None,
+    start: AxlePose | None = None,
     hidden: Sequence[Peculiarity] = (),
-) -> Prepared:
+) -> ReadyRobot:
     """Put a robot on its floor; parameters as of `record`."""
     robot = reduce(lambda so_far, odd: odd.robot(so_far), hidden, robot)
     chassis = reduce(lambda so_far, odd: odd.chassis(so_far), hidden, chassis_of(robot))
@@ -110,9 +110,9 @@ def prepared(
     reshapers = [odd.reshaper(chassis, rng_of(i)) for i, odd in enumerate(hidden)]
 
     rng = stream(seed, "start")
-    anywhere = Pose(*rng.uniform((-1.0, -1.0, -math.pi), (1.0, 1.0, math.pi)))
+    anywhere = AxlePose(*rng.uniform((-1.0, -1.0, -math.pi), (1.0, 1.0, math.pi)))
     angles = rng.uniform(0.0, 2 * math.pi, 2)
-    return Prepared(
+    return ReadyRobot(
         robot,
         sensor,
         chassis,

@@ -11,12 +11,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import Pose, TruePath
+from .engine import AxlePose, TruePath
 
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
-WORLD = Pose(0.0, 0.0, 0.0)
+WORLD = AxlePose(0.0, 0.0, 0.0)
 """The frame of the world itself."""
 
 
@@ -46,8 +46,8 @@ class ReferenceSensor:
     rate_hz: float = 20.0
     sigma_xy: float = 1e-3
     sigma_yaw: float = 2e-3
-    frame: Pose = WORLD
-    mount: Pose = WORLD
+    frame: AxlePose = WORLD
+    mount: AxlePose = WORLD
     delay: float = 0.0
     heading_delay: float = 0.0
     mirrored: Literal["no", "y_down", "exchanged"] = "no"

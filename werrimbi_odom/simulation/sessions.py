@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from .hidden.peculiarity import Peculiarity
-from .manoeuvre import Manoeuvre, Pace, moves
+from .manoeuvre import Manoeuvre, MoveLimits, moves
 from .manoeuvres import arcs, chain, figure_eight, free, out_and_back, pivots, spins, square
 from .manoeuvres import start_stop as hops
 from .recorder import record
@@ -16,8 +16,8 @@ from .recording import Recording
 from .robot import TrueRobot
 from .sensors import ReferenceSensor
 
-SLOW = Pace(speed=0.2, acceleration=0.3, yaw_rate=0.6, yaw_acceleration=1.0)
-FAST = Pace(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
+SLOW = MoveLimits(speed=0.2, acceleration=0.3, yaw_rate=0.6, yaw_acceleration=1.0)
+FAST = MoveLimits(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
 
 
 def drives(seed: int) -> dict[str, Manoeuvre]:
@@ -61,7 +61,7 @@ def drives(seed: int) -> dict[str, Manoeuvre]:
     }
 
 
-def _slalom(pace: Pace) -> Manoeuvre:
+def _slalom(pace: MoveLimits) -> Manoeuvre:
     gates = [(0.8, 1.2), (0.8, -2.4), (0.8, 2.4), (0.8, -1.2), (0.0, math.pi)]
     return moves("slalom", gates * 2, pace)
 

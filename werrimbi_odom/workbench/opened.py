@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from werrimbi_odom.api.verbs import compared
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.inference.comparison.prepared import Prepared
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
@@ -45,9 +45,9 @@ class Opened:
 
     given: Recordings
     """As they were given: enough to open them again in another process, to the same legs."""
-    train: Prepared
+    train: PreparedRuns
     """Cut into legs by the travel of the robot as given."""
-    holdout: Prepared
+    holdout: PreparedRuns
     judged_on: tuple[str, ...]
     """Names of the held-out drives, given or put aside."""
 

@@ -32,7 +32,7 @@ WHEEL_NOISES = ("left_wheel_noise", "right_wheel_noise")
 
 
 @dataclass(frozen=True)
-class Side:
+class JudgedSide:
     """One set of drives, judged with three models."""
 
     before: Legs
@@ -93,8 +93,8 @@ class Added:
     """The robot to write."""
     multiplier_stds: Mapping[str, float | None]
     """None where the multiplier is as in the given file."""
-    train: Side
-    holdout: Side
+    train: JudgedSide
+    holdout: JudgedSide
     without: Mapping[str, float]
     """Position error of the held-out drives without one of several effects [m]."""
     set_aside: tuple[str, ...]
@@ -169,6 +169,6 @@ class Added:
         """Whether only sizes were asked for."""
         return all(effect.name in CALIBRATED for effect in self.effects)
 
-    def noise_alone(self, side: Side) -> float:
+    def noise_alone(self, side: JudgedSide) -> float:
         """Position error by noise alone [m]; NaN while an effect is still missing."""
         return side.promised if self.explained else float("nan")

@@ -18,7 +18,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
+from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
 from werrimbi_odom.inference.adding.fitted_parameters import (
     parameters_of,
@@ -26,23 +26,23 @@ from werrimbi_odom.inference.adding.fitted_parameters import (
     to_write,
 )
 from werrimbi_odom.inference.adding.start_values import (
-    Drives,
+    FitDrives,
     drives_of,
     with_set_up,
 )
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.worth import Question
-from werrimbi_odom.inference.calibration_sizes import base_name, to_cut_by
+from werrimbi_odom.inference.calibration_sizes import base_name, robot_for_cutting
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import Prepared
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
-from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitted_without_events
+from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
@@ -52,7 +52,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     NUISANCES,
     Model,
 )
-from werrimbi_odom.inference.fitting.noise import NoiseEstimate, of_no_wheel, with_noise
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, beyond_wheel_noise, with_noise
 from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
@@ -67,7 +67,7 @@ class _Together(NamedTuple):
     set_up: SetUp
     also: tuple[str, ...]
     """Set-up mistakes that are corrected with them."""
-    drives: Drives
+    drives: FitDrives
     fits: Fits
 
 
@@ -131,12 +131,12 @@ def add_effects(
         judge, set_up = started.judge, started.set_up
         begun, also = with_set_up(effects, robot, set_up)
         told(0.15, "calibration")
-        drives = drives_of(judge.train, to_cut_by(begun, robot), options)
+        drives = drives_of(judge.train, robot_for_cutting(begun, robot), options)
         drives, fits = fits_without_jumps(effects, drives, begun, robot, also, told)
         found = _Together(judge, set_up, also, drives, fits)
         return found, events_beside(drives.laid, fits.all.point, judge)
 
-    (judge, set_up, also, drives, fits), happened = fitted_without_events(fit_them, runs, holdout)
+    (judge, set_up, also, drives, fits), happened = refit_without_events(fit_them, runs, holdout)
     fit = fits.all
     wanted = _calibrations_wanted(effects, set_up)
     sizes = sizes_needed(fit, robot, wanted)
@@ -204,26 +204,26 @@ def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
             )
 
 
-def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
+def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[JudgedSide, JudgedSide]:
     """Legs of the fitted and the held-out drives; per-run parameters are fitted run by run."""
     plain = Model(judge.given, judge.nothing_of_own)
-    train = Side(
+    train = JudgedSide(
         _legs(judge.train, in_runs(judge.train, plain)),
         _legs(judge.train, base.point.model),
         _legs(judge.train, _noisy(fit)),
     )
-    kept = Side(
+    kept = JudgedSide(
         *(
-            _legs(judge.holdout, judge.at_home(model).model)
+            _legs(judge.holdout, judge.fitted_per_run(model).model)
             for model in (plain, base.point.model, _noisy(fit))
         )
     )
     return train, kept
 
 
-def _at_home(judge: Judge, without: Fitted, kept: Side) -> Sides:
+def _at_home(judge: Judge, without: Fitted, kept: JudgedSide) -> Sides:
     """Change of the held-out error from a model without one effect to that with all."""
-    legs = _legs(judge.holdout, judge.at_home(_noisy(without)).model)
+    legs = _legs(judge.holdout, judge.fitted_per_run(_noisy(without)).model)
     return sides_of(legs, kept.after, kept.unit)
 
 
@@ -238,19 +238,19 @@ def _noisy(fit: Fitted) -> Model:
     return Model(robot, model.own)
 
 
-def _legs(prepared: Prepared, model: Model) -> Legs:
+def _legs(prepared: PreparedRuns, model: Model) -> Legs:
     return judged_legs(prepared, model.without_nuisances(), prepared.options.leg)
 
 
 def _noise(
-    drives: Drives, fit: Fitted
+    drives: FitDrives, fit: Fitted
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
     """Wheel noise, remaining dependences, misfit, and whether the noise is plausible."""
     noises = noises_of(drives, fit)
     found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.numbers))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
-    sane = not any(of_no_wheel(item) for item in wheels)
+    sane = not any(beyond_wheel_noise(item) for item in wheels)
     return noises, remaining, misfit_of_found(fit, remaining, drives.laid), sane
 
 
@@ -266,8 +266,13 @@ def _with_noise_of(robot: Robot, given: Robot) -> Robot:
 
 
 def _on_all(
-    judge: Judge, drives: Drives, fit: Fitted, given: Robot, runs: Sequence[Run], sizes: Sizes
-) -> tuple[Drives, Fitted]:
+    judge: Judge,
+    drives: FitDrives,
+    fit: Fitted,
+    given: Robot,
+    runs: Sequence[Run],
+    sizes: FreeSizes,
+) -> tuple[FitDrives, Fitted]:
     """Fit the same model to all runs, including the held-out parts."""
     if len(runs) < 2:
         return drives, fit  # of a single run the last part was held out; the fit keeps to the rest
@@ -278,7 +283,7 @@ def _on_all(
     laid = tuple(run for part in both for run in part.laid.runs)
     skipped = tuple(legs for part in both for legs in part.skipped)
     every = replace(drives, laid=concatenated(laid), skipped=skipped)
-    home = judge.at_home(fit.point.model)
+    home = judge.fitted_per_run(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=skipped)
     again = every.fit(point, fit.names, fit.numbers, given)

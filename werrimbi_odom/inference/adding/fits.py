@@ -18,7 +18,7 @@ from werrimbi_odom.inference.adding.fitted_parameters import (
     without_phases_stuck,
 )
 from werrimbi_odom.inference.adding.start_values import (
-    Drives,
+    FitDrives,
     Start,
     mistake_put_in,
     parameters_held,
@@ -47,12 +47,12 @@ class Fits:
 
 def fits_without_jumps(
     effects: Sequence[Effect],
-    drives: Drives,
+    drives: FitDrives,
     begun: Robot,
     given: Robot,
     also: tuple[str, ...],
     show: Show,
-) -> tuple[Drives, Fits]:
+) -> tuple[FitDrives, Fits]:
     """The fits, and the drives without the legs on which the reference jumped.
 
     As in `diagnose`, a better model finds more jumps where a reference has correlated errors: one
@@ -71,7 +71,7 @@ def fits_without_jumps(
 
 def fits_of(
     effects: Sequence[Effect],
-    drives: Drives,
+    drives: FitDrives,
     begun: Robot,
     given: Robot,
     also: tuple[str, ...],
@@ -149,7 +149,7 @@ def fits_of(
     return Fits(none, fit, without)
 
 
-def _without(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
+def _without(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     """Fit the model without one of its effects."""
     model = fit.point.model
     mine = f"{effect.name}."
@@ -164,7 +164,7 @@ def _without(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitte
     return drives.fit(point, names, numbers, given)
 
 
-def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
+def _well(drives: FitDrives, start: Start, given: Robot) -> Fitted:
     """A fit from a start; phases stuck at half a turn are moved across it."""
     fit = drives.fit(start.point, start.names, start.numbers, given)
     turned = without_phases_stuck(fit.point.model, fit.numbers)
@@ -174,12 +174,12 @@ def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
     return min(fit, again, key=lambda each: each.cost)
 
 
-def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
+def _pruned(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     """Backward elimination of parameters that do not pay the penalty.
 
     A length or threshold that the drives do not determine stays at its typical value.
     """
-    limit = math.sqrt(fit.price_of_one)
+    limit = math.sqrt(fit.penalty_of_one)
     while True:
         found = parameters_of(effect, fit, given)
         name = undetermined(effect, found) or weakest(effect, found, limit)

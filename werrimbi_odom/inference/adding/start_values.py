@@ -16,15 +16,15 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.comparison.jumps import jumped_legs
-from werrimbi_odom.inference.comparison.prepared import Prepared
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Score,
     candidates,
     parameters_of_candidate,
-    put_in,
     scores,
+    with_candidate,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
@@ -35,7 +35,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     parameters_to_fit,
 )
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
-from werrimbi_odom.inference.legs.cutting import at_edges, match_finely, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import at_edges, match_for_fit, with_stated_noise
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
@@ -43,7 +43,7 @@ from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
-class Drives:
+class FitDrives:
     """The drives of a fit, in short legs."""
 
     laid: Concatenated
@@ -83,15 +83,15 @@ class Start:
     """Gain by the score test, for an effect that starts at its suggested values."""
 
 
-def drives_of(prepared: Prepared, robot: Robot, options: EvaluationOptions) -> Drives:
+def drives_of(prepared: PreparedRuns, robot: Robot, options: EvaluationOptions) -> FitDrives:
     """Cut the drives of a fit by the travel of `robot`."""
-    runs = match_finely(prepared.runs, robot, options.leg, options.limits)
+    runs = match_for_fit(prepared.runs, robot, options.leg, options.limits)
     skipped = list(at_edges(runs))
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
             nodes = np.searchsorted(every.measured.time, runs[index].measured.time)
             skipped[index] |= jumped_legs(jumps, nodes, options.reference_kind)
-    return Drives(concatenated(runs), tuple(skipped), with_stated_noise(options, runs))
+    return FitDrives(concatenated(runs), tuple(skipped), with_stated_noise(options, runs))
 
 
 def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:
@@ -129,7 +129,7 @@ def with_set_up(
 
 
 def starts(
-    drives: Drives, before: Fitted, effect: Effect, numbers: Sequence[FreeParameter]
+    drives: FitDrives, before: Fitted, effect: Effect, numbers: Sequence[FreeParameter]
 ) -> tuple[Start, ...]:
     """Starts for fits of an effect: at the values of its score, for the best of its shapes."""
     found = scored(drives, before, [effect], numbers)
@@ -137,7 +137,7 @@ def starts(
 
 
 def scored(
-    drives: Drives, before: Fitted, effects: Sequence[Effect], numbers: Sequence[FreeParameter]
+    drives: FitDrives, before: Fitted, effects: Sequence[Effect], numbers: Sequence[FreeParameter]
 ) -> tuple[Score, ...]:
     """Score tests of effects beside a model: each shape of each effect."""
     runs = drives.laid
@@ -149,7 +149,7 @@ def scored(
 def start_at(before: Fitted, score: Score, numbers: Sequence[FreeParameter]) -> Start:
     """A start at the values that a score suggests."""
     own = parameters_of_candidate(score.candidate)
-    point = replace(before.point, model=put_in(before.point.model, score))
+    point = replace(before.point, model=with_candidate(before.point.model, score))
     return Start(point, (*before.names, score.candidate.name), (*numbers, *own), score.gain)
 
 
@@ -162,7 +162,7 @@ def _best_shapes(found: Sequence[Score]) -> list[Score]:
     return chosen
 
 
-def start_of_held(drives: Drives, robot: Robot, names: tuple[str, ...]) -> Start:
+def start_of_held(drives: FitDrives, robot: Robot, names: tuple[str, ...]) -> Start:
     """A start at the values of the robot."""
     point, numbers = drives.begin(robot)
     return Start(point, names, numbers)

@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
 from werrimbi_odom.inference.chances import upper_part
-from werrimbi_odom.inference.diagnosis.post_selection import Law, spread_over_choices
+from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
-from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
+from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, choices
 from werrimbi_odom.inference.fitting.design import Costs, stacked
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -28,21 +28,21 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     shared_of,
     value_of,
 )
-from werrimbi_odom.inference.fitting.noise import NoiseEstimate, likeliest, noise_estimates
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, map_variances, noise_estimates
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.rules import NOISE_TOLD
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 
-def noises_of(drives: Drives, fit: Fitted) -> dict[str, NoiseEstimate]:
+def noises_of(drives: FitDrives, fit: Fitted) -> dict[str, NoiseEstimate]:
     """Noise of a model as its file has it (`as_written`)."""
     costs = Costs(drives.laid, fit.point)
     information = _precision(drives, fit).information
     return noise_estimates(costs, fit.point.variances, drives.options.sigmas_known, information)
 
 
-def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
+def as_written(drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     """The fit with its sizes as multipliers, and the noise fitted to that.
 
     A size that a search put in as an effect corrects the motion, but the covariance still uses the
@@ -54,23 +54,25 @@ def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
     if robot is model.robot:
         return fit
     point = replace(fit.point, model=Model(robot, model.own))
-    variances = likeliest(Costs(drives.laid, point), point.variances, drives.options.sigmas_known)
+    variances = map_variances(
+        Costs(drives.laid, point), point.variances, drives.options.sigmas_known
+    )
     return replace(fit, point=replace(point, variances=variances))
 
 
 def with_spread(
     effects: Sequence[Effect],
-    drives: Drives,
+    drives: FitDrives,
     fit: Fitted,
     given: Robot,
     wanted: Collection[str],
-    sizes: Sizes,
+    sizes: FreeSizes,
     noises: Mapping[str, NoiseEstimate],
 ) -> Fitted:
     """The fit with standard deviations that allow for all choices made on the same drives.
 
     These are which sizes differ from the file's, which parameters effects need
-    (`spread_over_choices`), and the noise (`Precision.widening`). A threshold is no more precise
+    (`model_averaged_stds`), and the noise (`Precision.widening`). A threshold is no more precise
     than its law (`grain_of`). Lengths have the uncertainty of their logarithm, as scale parameters
     do.
     """
@@ -89,7 +91,7 @@ def with_spread(
     free = np.linalg.matrix_rank(fit.moves[[number.name in MULTIPLIERS for number, _ in columns]])
     if free != sizes.free:  # the other sizes could not be reset (`with_sizes`)
         *_, sizes = choices()
-    spread = spread_over_choices(fit, given, wanted, sizes, laws, design)
+    spread = model_averaged_stds(fit, given, wanted, sizes, laws, design)
     told = [index for index, (_, run) in enumerate(columns) if run < 0 and fit.moves[index].any()]
     names = [columns[index][0].name for index in told]
     wide = _precision(drives, as_written(drives, fit, given)).widening(noises, names)
@@ -127,6 +129,6 @@ def _local(fit: Fitted) -> list[FreeParameter]:
     return [*CALIBRATION, *own_of(numbers), *shared_of(fit.numbers)]
 
 
-def _precision(drives: Drives, fit: Fitted) -> Precision:
+def _precision(drives: FitDrives, fit: Fitted) -> Precision:
     local = [number for number in _local(fit) if number.name != START_YAW]
     return Precision.of(drives.laid, fit.point, local, fit.moves)

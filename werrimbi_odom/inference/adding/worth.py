@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.adding.added import Side
+from werrimbi_odom.inference.adding.added import JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, parameters_of
 from werrimbi_odom.inference.adding.objection import Worth, objection
-from werrimbi_odom.inference.adding.start_values import Drives
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.adding.start_values import FitDrives
+from werrimbi_odom.inference.chances import chi2_survival
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
@@ -29,14 +29,14 @@ class Question:
     """Which of some effects should be added."""
 
     effects: tuple[Effect, ...]
-    drives: Drives
+    drives: FitDrives
     fits: Fits
     final: Fitted
     """The fit with all of them, with unneeded sizes reset."""
     given: Robot
     also: tuple[str, ...]
     """Set-up mistakes that are corrected together."""
-    kept: Side
+    kept: JudgedSide
     """The held-out drives."""
     alone: Mapping[str, Sides]
     """Their error without one of several effects, and with all."""
@@ -83,7 +83,7 @@ class Question:
             )
         [size] = found.values()
         away = ((size.value or 0.0) - size.declared.null) / size.std if size.std else 0.0
-        return chi2_above(away**2, 1) < SURE_WHEN_ASKED
+        return chi2_survival(away**2, 1) < SURE_WHEN_ASKED
 
     def _without(self, effect: Effect) -> Fitted:
         return self.fits.without.get(effect.name, self.fits.none)

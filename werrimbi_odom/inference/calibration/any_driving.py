@@ -19,8 +19,8 @@ from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPL
 from werrimbi_odom.inference.fitting.likelihood import relative_errors
 from werrimbi_odom.inference.fitting.noise import (
     NoiseEstimate,
+    beyond_wheel_noise,
     noise_estimates,
-    of_no_wheel,
     with_noise,
 )
 from werrimbi_odom.inference.fitting.precision import Precision
@@ -121,7 +121,7 @@ def calibrate(
     wheels = {
         name: noises[name]
         for name in ("left_wheel_noise", "right_wheel_noise")
-        if noises[name].determined and not of_no_wheel(noises[name])
+        if noises[name].determined and not beyond_wheel_noise(noises[name])
     }
     changes = {name: item.value for name, item in multipliers.items() if item.determined}
     usual = np.sqrt(np.diag(fit.covariance))
@@ -141,7 +141,7 @@ def calibrate(
 def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]:
     said = [f"{number.name} ran against what is possible" for number in fit.at_bound]
     for name in ("left_wheel_noise", "right_wheel_noise"):
-        if of_no_wheel(noises[name]):
+        if beyond_wheel_noise(noises[name]):
             said.append(
                 f"{name} would have to be {STRANGE_NOISE:g} m^0.5 or more, "
                 "which is no rolling wheel's noise"

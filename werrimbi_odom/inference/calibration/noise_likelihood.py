@@ -29,7 +29,7 @@ _LEAST, _MOST = 1e-8, 1e4  # bounds of k², relative to that of the dispersion
 
 
 @dataclass(frozen=True, slots=True)
-class Design:
+class EndErrorDesign:
     """Covariance model of a drive's end errors (x, y, yaw): k_L² left + k_R² right + given."""
 
     left: Floats
@@ -55,7 +55,7 @@ def design(
     *,
     sigma_xy: float = 0.0,
     sigma_yaw: float = 0.0,
-) -> Design:
+) -> EndErrorDesign:
     """Covariance model of a drive: closed form of each piece (equation 17), chained (equation 16).
 
     Parameters
@@ -68,7 +68,7 @@ def design(
         Standard deviation of one measured pose [m, rad]. The error of a run is the difference of
         two measured poses, so their variances count twice.
     """
-    return Design(
+    return EndErrorDesign(
         _chained(pieces, track, 1.0, 0.0),
         _chained(pieces, track, 0.0, 1.0),
         2.0 * np.diag([sigma_xy**2, sigma_xy**2, sigma_yaw**2]),
@@ -92,7 +92,7 @@ def _chained(
 class Likelihood:
     """Likelihood of k_L² and k_R² [m] from a sample covariance (the mean costs one degree)."""
 
-    design: Design
+    design: EndErrorDesign
     data: Floats
     """Sample covariance of (x, y, yaw), with divisor `freedom`."""
     freedom: int

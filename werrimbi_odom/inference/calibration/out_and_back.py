@@ -26,7 +26,7 @@ import numpy as np
 from scipy import optimize, stats
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.calibration.noise_likelihood import Design, Likelihood
+from werrimbi_odom.inference.calibration.noise_likelihood import EndErrorDesign, Likelihood
 from werrimbi_odom.inference.chances import NORMAL_95
 from werrimbi_odom.inference.rules import ADVISED_RUNS, LEAST_RUNS, SURE_WHEN_ASKED, UNKNOWN_SPLIT
 from werrimbi_odom.model.motion import WheelTravel
@@ -58,7 +58,7 @@ def pivot_scatter(noise: float, track: float, turns: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class NoiseEstimate:
+class NoiseInterval:
     """k of one wheel [m^0.5], its standard deviation and its 95 % interval."""
 
     value: float
@@ -72,8 +72,8 @@ class NoiseFit:
     """Wheel noise estimated from the dispersion of the runs."""
 
     runs: int
-    left: NoiseEstimate
-    right: NoiseEstimate
+    left: NoiseInterval
+    right: NoiseInterval
     split_known: bool
     """Whether drive and reference can tell the wheels apart; if not, both have the same k."""
     difference_std: float
@@ -97,7 +97,7 @@ class NoiseFit:
     """If the model does not fit: reference noise (xy [m], yaw [rad]) with which it would."""
 
 
-def fit_noise(errors: Floats, design: Design) -> NoiseFit:
+def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     """Maximum-likelihood estimate of k_L and k_R.
 
     Parameters
@@ -185,13 +185,13 @@ def _split_std(covariance: Floats, same: float) -> float:
     )
 
 
-def _of_roots(covariance: Floats, left: NoiseEstimate, right: NoiseEstimate) -> Floats:
+def _of_roots(covariance: Floats, left: NoiseInterval, right: NoiseInterval) -> Floats:
     """Covariance of (k_L, k_R) from that of their squares (delta method)."""
     slope = 0.5 / np.array([left.value, right.value])
     return np.asarray(slope[:, None] * covariance * slope[None, :])
 
 
-def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseEstimate, NoiseEstimate]:
+def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseInterval, NoiseInterval]:
     """Estimates of both wheels, with profile-likelihood intervals.
 
     If a few runs have a small dispersion by chance, k and its Fisher standard deviation are both
@@ -204,19 +204,19 @@ def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseEstim
         value = math.sqrt(best[wheel])
         low, high = (math.sqrt(end) for end in likelihood.interval(wheel, best))
         std = max(value if low == 0.0 else 0.0, high - value) / NORMAL_95
-        estimates.append(NoiseEstimate(value, std, low, high))
+        estimates.append(NoiseInterval(value, std, low, high))
     return estimates[0], estimates[1]
 
 
-def _alike(likelihood: Likelihood, same: float) -> tuple[NoiseEstimate, NoiseEstimate]:
+def _alike(likelihood: Likelihood, same: float) -> tuple[NoiseInterval, NoiseInterval]:
     """Estimates with the sum shared equally: either wheel may have all of it, or none."""
     value = math.sqrt(same)
     high = math.sqrt(2.0 * likelihood.interval_of_same(same)[1])
-    estimate = NoiseEstimate(value, max(value, high - value) / NORMAL_95, 0.0, high)
+    estimate = NoiseInterval(value, max(value, high - value) / NORMAL_95, 0.0, high)
     return estimate, estimate
 
 
-def by_moments(data: Floats, design: Design) -> tuple[float, float]:
+def by_moments(data: Floats, design: EndErrorDesign) -> tuple[float, float]:
     """k_L, k_R by the method of moments: least squares on the normalised covariance entries.
 
     This is what the paper does by fitting ellipses to scatter plots. It treats all entries as

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.calibration.squares import Driven, Squares
+from werrimbi_odom.inference.calibration.squares import CountedSquare, Squares
 from werrimbi_odom.inference.rules import LAP_TOLERANCE, LEG_TOLERANCE, TURN_TOLERANCE
 from werrimbi_odom.model.encoder import Counts, EncoderLimits
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
@@ -22,7 +22,7 @@ from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class SquareRecording:
     """One recorded drive: n rows of counters, m of reference, on one clock.
 
     Parameters
@@ -52,7 +52,7 @@ class RecordedSquare:
     name: str
     sense: int
     offset: Floats
-    driven: Driven
+    driven: CountedSquare
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def squares_of(recorded: Sequence[RecordedSquare], side: float) -> Squares:
 
 
 def recorded_square(
-    record: Record, robot: Robot, side: float, limits: EncoderLimits | None = None
+    record: SquareRecording, robot: Robot, side: float, limits: EncoderLimits | None = None
 ) -> RecordedSquare:
     """End position of a recorded square, measured minus odometry.
 
@@ -123,11 +123,13 @@ def recorded_square(
             f"{record.name}: the square is not closed: it ends {gap:.2f} m from its start, by "
             "odometry and by the reference. Drive all four legs, back to the mark"
         )
-    return RecordedSquare(record.name, sense, measured - reckoned, Driven(path.travel, -first_leg))
+    return RecordedSquare(
+        record.name, sense, measured - reckoned, CountedSquare(path.travel, -first_leg)
+    )
 
 
 def _reckoned(
-    record: Record, robot: Robot, rows: NDArray[np.intp], limits: EncoderLimits | None
+    record: SquareRecording, robot: Robot, rows: NDArray[np.intp], limits: EncoderLimits | None
 ) -> _Path:
     """Odometry from the first measured position to the last; at rest outside its rows."""
     steps = wheel_steps(robot, record.time, record.left, record.right, limits)
@@ -190,7 +192,7 @@ def _check_legs(name: str, path: _Path, corners: NDArray[np.intp], side: float) 
 
 
 def _facing(
-    record: Record, rows: NDArray[np.intp], path: _Path, corner: int, first_leg: float
+    record: SquareRecording, rows: NDArray[np.intp], path: _Path, corner: int, first_leg: float
 ) -> float:
     """Direction of the first leg in the frame of the reference [rad]."""
     yaw = float(record.reference_yaw[rows[0]])

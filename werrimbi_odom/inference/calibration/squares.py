@@ -25,7 +25,7 @@ OTHER_VEHICLES = (
 
 
 @dataclass(frozen=True, slots=True)
-class Driven:
+class CountedSquare:
     """Odometry of one square.
 
     Parameters
@@ -69,8 +69,8 @@ class Squares:
     side: float
     cw: Floats
     ccw: Floats
-    driven_cw: tuple[Driven, ...] = ()
-    driven_ccw: tuple[Driven, ...] = ()
+    driven_cw: tuple[CountedSquare, ...] = ()
+    driven_ccw: tuple[CountedSquare, ...] = ()
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.side) and self.side > 0.0):
@@ -96,16 +96,16 @@ class Squares:
                     "are, drive a smaller square first"
                 )
 
-    def driven(self, sense: int, track: float) -> tuple[Driven, ...]:
+    def driven(self, sense: int, track: float) -> tuple[CountedSquare, ...]:
         """Odometry of the squares of a sense (+1 anticlockwise, -1 clockwise)."""
         recorded = self.driven_ccw if sense > 0 else self.driven_cw
         return recorded or (perfect_square(self.side, track, sense),)
 
 
-def perfect_square(side: float, track: float, sense: int) -> Driven:
+def perfect_square(side: float, track: float, sense: int) -> CountedSquare:
     """Four legs and four corners on the spot, as odometry sees them; +1 anticlockwise."""
     corner = sense * 0.25 * math.pi * track
-    return Driven(WheelTravel(np.array([side, -corner] * 4), np.array([side, corner] * 4)))
+    return CountedSquare(WheelTravel(np.array([side, -corner] * 4), np.array([side, corner] * 4)))
 
 
 def e_max_syst(squares: Squares) -> float:

@@ -43,7 +43,7 @@ from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class ValueAndStd:
     """A value with its standard deviation.
 
     The standard deviation is widened by Student's t for the few runs, so that value ± 1.96 std
@@ -53,9 +53,9 @@ class Estimate:
     value: float
     std: float
 
-    def times(self, factor: float) -> Estimate:
+    def times(self, factor: float) -> ValueAndStd:
         """Scale the estimate."""
-        return Estimate(self.value * factor, self.std * abs(factor))
+        return ValueAndStd(self.value * factor, self.std * abs(factor))
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +70,12 @@ class Umbmark:
     angles: Angles
     paper: Factors
     """First-order factors by the paper's equations 6 to 11."""
-    alpha: Estimate
-    beta: Estimate
-    ratio: Estimate
-    base: Estimate
-    left: Estimate
-    right: Estimate
+    alpha: ValueAndStd
+    beta: ValueAndStd
+    ratio: ValueAndStd
+    base: ValueAndStd
+    left: ValueAndStd
+    right: ValueAndStd
     """α, β, E_d, C_B, C_L, C_R without approximations: the ones to use."""
     disagreement: tuple[float, float]
     """Remaining difference between α and β from x and from y, with the best factors [rad]."""
@@ -87,7 +87,7 @@ class Umbmark:
         """The corrections to use."""
         return Factors(self.base.value, self.ratio.value)
 
-    def multipliers(self, old: Robot) -> dict[str, Estimate]:
+    def multipliers(self, old: Robot) -> dict[str, ValueAndStd]:
         """New multipliers for a robot file whose robot is `old`."""
         return {
             "wheel_separation_multiplier": self.base.times(old.wheel_separation_multiplier),
@@ -128,7 +128,7 @@ def umbmark(squares: Squares, robot: Robot) -> Umbmark:
     inverse = np.linalg.pinv(solution.jac)
     bend = 2.0 * squares.side / (robot.track * base)  # β of a unit imbalance
 
-    def estimate(value: float, per_base: float, per_imbalance: float) -> Estimate:
+    def estimate(value: float, per_base: float, per_imbalance: float) -> ValueAndStd:
         return _estimate(value, np.array([per_base, per_imbalance]) @ inverse, squares)
 
     return Umbmark(
@@ -193,7 +193,7 @@ def _offsets(squares: Squares, track: float, off: float, imbalance: float) -> Fl
     return np.concatenate(means)
 
 
-def _estimate(value: float, slope: Floats, squares: Squares) -> Estimate:
+def _estimate(value: float, slope: Floats, squares: Squares) -> ValueAndStd:
     """Estimate linear in the four mean offsets; Welch-Satterthwaite degrees of freedom."""
     parts = [
         (float(slope[rows] @ covariance_of_mean(offsets) @ slope[rows]), len(offsets) - 1)
@@ -201,10 +201,10 @@ def _estimate(value: float, slope: Floats, squares: Squares) -> Estimate:
     ]
     variance = sum(part for part, _ in parts)
     if variance <= 0.0:
-        return Estimate(value, 0.0)
+        return ValueAndStd(value, 0.0)
     freedom = variance**2 / sum(part**2 / runs for part, runs in parts)
     widening = float(stats.t.ppf(0.975, freedom)) / NORMAL_95
-    return Estimate(value, math.sqrt(variance) * widening)
+    return ValueAndStd(value, math.sqrt(variance) * widening)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.changes.drives import Drives, drives_told
+from werrimbi_odom.inference.changes.drives import DriveNumbers, information_of_drives
 from werrimbi_odom.inference.changes.numbers import (
     MOUNT,
     PARTS,
@@ -26,7 +26,7 @@ from werrimbi_odom.inference.changes.numbers import (
     numbers_of,
     value_at,
 )
-from werrimbi_odom.inference.changes.search import Segmented, Step, segmented
+from werrimbi_odom.inference.changes.search import ChangePoints, GroupChange, find_changes
 from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -90,13 +90,13 @@ class Evidence:
     run: NDArray[np.intp]
     """Drive of each row."""
 
-    def drives(self, time: Floats) -> Drives:
+    def drives(self, time: Floats) -> DriveNumbers:
         """The same as information by drive."""
-        return drives_told(
+        return information_of_drives(
             self.names, self.values, self.white, self.shared, self.own, self.run, time
         )
 
-    def columns(self, step: Step, place: NDArray[np.intp]) -> Floats:
+    def columns(self, step: GroupChange, place: NDArray[np.intp]) -> Floats:
         """Derivative of the innovations in a change, (n, d); `place`: rank of each drive."""
         size = step.shape.over(np.arange(place.size, dtype=np.float64))[place]
         return np.asarray(size[self.run, None] * (self.shared @ step.group.directions))
@@ -138,7 +138,7 @@ def _beside(
     groups = groups_of(
         [number.name for number in evidence.numbers], evidence.values, len(drives.names)
     )
-    found = segmented(drives, groups, fit.price_of_one)
+    found = find_changes(drives, groups, fit.penalty_of_one)
     place = np.argsort(order)
     steps = [
         step
@@ -148,7 +148,7 @@ def _beside(
     ]
     if not steps:
         return ()
-    worth = sum(step.gain - fit.price_of_one * (step.degrees + 1) for step in steps)
+    worth = sum(step.gain - fit.penalty_of_one * (step.degrees + 1) for step in steps)
     least = WORTH_OF_A_CHANGE * _worth_of(dependences, fit)
     if worth < max(_worth_of_effects(diagnosis, fit, effects) + RIVAL, least, RIVAL):
         return ()
@@ -156,7 +156,7 @@ def _beside(
     if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
         return ()
     if len(steps) < len(found.steps):
-        found = segmented(drives, [step.group for step in steps], fit.price_of_one)
+        found = find_changes(drives, [step.group for step in steps], fit.penalty_of_one)
     names = [runs.runs[index].name for index in order.tolist()]
     return moves_of(found, evidence.numbers, drives.names, names)
 
@@ -212,7 +212,7 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
     )
 
 
-def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
+def _of_several(step: GroupChange, drives: int, kind: ReferenceKind) -> bool:
     """Whether more than one drive is on either side of a change, where that is required.
 
     A reference with correlated or accumulating errors now and then errs differently in one drive.
@@ -229,8 +229,8 @@ def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
 def _lasts(
     runs: Concatenated,
     evidence: Evidence,
-    steps: Sequence[Step],
-    step: Step,
+    steps: Sequence[GroupChange],
+    step: GroupChange,
     place: NDArray[np.intp],
 ) -> bool:
     """Homogeneity test of a change, with the others as nuisances."""
@@ -246,7 +246,7 @@ def _stands_beside(
     diagnosis: Diagnosis,
     fit: Fitted,
     evidence: Evidence,
-    steps: Sequence[Step],
+    steps: Sequence[GroupChange],
     place: NDArray[np.intp],
     cell: Dependence,
 ) -> bool:
@@ -260,8 +260,8 @@ def _stands_beside(
     pattern = pattern_of(diagnosis.runs, fit.point, cell) / np.sqrt(fit.scatter)
     beside = nuisance(np.concatenate([evidence.shared, evidence.own, pattern], axis=-1))
     test = score_test(columns, beside.residual(columns), beside.residual(evidence.white))
-    price = fit.price_of_one * len(steps)
-    return test is not None and test.gain - fit.price_of_one * test.degrees - price > RIVAL
+    penalty = fit.penalty_of_one * len(steps)
+    return test is not None and test.gain - fit.penalty_of_one * test.degrees - penalty > RIVAL
 
 
 def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> float:
@@ -277,12 +277,12 @@ def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effec
 
 
 def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> float:
-    worth = (each.gain / fit.scatter - fit.price_of_one * each.degrees for each in found)
+    worth = (each.gain / fit.scatter - fit.penalty_of_one * each.degrees for each in found)
     return max(worth, default=0.0)
 
 
 def moves_of(
-    found: Segmented, numbers: Sequence[FreeParameter], names: Sequence[str], runs: Sequence[str]
+    found: ChangePoints, numbers: Sequence[FreeParameter], names: Sequence[str], runs: Sequence[str]
 ) -> tuple[Moved, ...]:
     """List each parameter of each change, once for a drive.
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-from werrimbi_odom.inference.changes.history import Course, DriveTold
+from werrimbi_odom.inference.changes.history import Course, DriveEstimate
 from werrimbi_odom.inference.rules import COPIED_WITHIN
 from werrimbi_odom.model.robot import Robot
 
@@ -30,7 +30,7 @@ class Dated:
     """A drive with its date and its information."""
 
     run: Path
-    told: DriveTold
+    told: DriveEstimate
     date: float
     """Date [s since 1970]; the number of the drive if it is unknown."""
     date_from: DateFrom

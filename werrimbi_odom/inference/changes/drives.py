@@ -22,7 +22,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 @dataclass(frozen=True, slots=True)
-class Drives:
+class DriveNumbers:
     """Information of R drives about s parameters."""
 
     names: tuple[str, ...]
@@ -39,11 +39,13 @@ class Drives:
         """Number of drives."""
         return int(self.time.size)
 
-    def chosen(self, which: NDArray[np.intp]) -> Drives:
+    def chosen(self, which: NDArray[np.intp]) -> DriveNumbers:
         """Some of the drives, in that order."""
-        return Drives(self.names, self.information[which], self.weighted[which], self.time[which])
+        return DriveNumbers(
+            self.names, self.information[which], self.weighted[which], self.time[which]
+        )
 
-    def with_scatter(self, scatter: Floats) -> Drives:
+    def with_scatter(self, scatter: Floats) -> DriveNumbers:
         """Add a random effect: scatter of each parameter from drive to drive.
 
         Parameters
@@ -54,7 +56,7 @@ class Drives:
         spread = np.diag(scatter**2)
         shrunk = np.linalg.inv(np.eye(scatter.size) + self.information @ spread)
         information = shrunk @ self.information
-        return Drives(
+        return DriveNumbers(
             self.names,
             0.5 * (information + information.swapaxes(-1, -2)),
             (shrunk @ self.weighted[..., None])[..., 0],
@@ -62,7 +64,7 @@ class Drives:
         )
 
 
-def drives_told(
+def information_of_drives(
     names: tuple[str, ...],
     values: Floats,
     white: Floats,
@@ -70,7 +72,7 @@ def drives_told(
     own: Floats,
     run: NDArray[np.intp],
     time: Floats,
-) -> Drives:
+) -> DriveNumbers:
     """Summarise the whitened innovations of each drive.
 
     Parameters
@@ -98,4 +100,4 @@ def drives_told(
         slopes, rest = beside.residual(shared[here]), beside.residual(white[here])
         information[index] = slopes.T @ slopes
         weighted[index] = information[index] @ values - slopes.T @ rest
-    return Drives(names, information, weighted, time)
+    return DriveNumbers(names, information, weighted, time)

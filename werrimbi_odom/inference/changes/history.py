@@ -24,17 +24,23 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
+from werrimbi_odom.inference.chances import bonferroni, chi2_survival, fisher_survival
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
-from werrimbi_odom.inference.changes.drives import Drives
-from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, numbers_of, value_at
-from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented
+from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.numbers import (
+    MOUNT,
+    NumberGroup,
+    groups_of,
+    numbers_of,
+    value_at,
+)
+from werrimbi_odom.inference.changes.search import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     CALIBRATE_AGAIN,
@@ -52,7 +58,7 @@ _MEDIAN_CHI2_1 = 0.4549
 
 
 @dataclass(frozen=True, slots=True)
-class DriveTold:
+class DriveEstimate:
     """Information of one drive."""
 
     names: tuple[str, ...]
@@ -110,7 +116,7 @@ class Course:
     """Parameters of the robot file that differ from the last drives."""
 
 
-def drive_told(run: Run, robot: Robot, options: EvaluationOptions) -> DriveTold:
+def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> DriveEstimate:
     """Fit one drive by itself.
 
     Raises
@@ -119,17 +125,17 @@ def drive_told(run: Run, robot: Robot, options: EvaluationOptions) -> DriveTold:
         When it has no usable reference or no ticks.
     """
     laid = concatenated(
-        match_finely([looked_at(run, robot, options.limits)], robot, options.leg, options.limits)
+        match_for_fit([looked_at(run, robot, options.limits)], robot, options.leg, options.limits)
     )
-    fit = first_fit(laid, robot, with_stated_noise(options, laid.runs))
+    fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
     evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
     told = evidence.drives(np.zeros(1))
     way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
     begin = float(laid.runs[0].counters.time[0])
-    return DriveTold(told.names, told.information[0], told.weighted[0], begin, laid.data, way)
+    return DriveEstimate(told.names, told.information[0], told.weighted[0], begin, laid.data, way)
 
 
-def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
+def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
     """Combine the drives into the course of the parameters.
 
     Parameters
@@ -151,13 +157,13 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
     heard = std < 0.5 * limits
     scatter = np.array([_scatter(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
     wide = drives.with_scatter(scatter)
-    price = max(PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
+    penalty = max(PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
     groups = groups_of(names, given, given.size)
     most = MOST_CHANGES if len(told) >= SCATTER_DRIVES else 1
-    found = segmented(wide, groups, price, KINDS, most)
+    found = find_changes(wide, groups, penalty, KINDS, most)
     lasting = _beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
-        found = segmented(wide, lasting, price, KINDS) if lasting else _constant(wide)
+        found = find_changes(wide, lasting, penalty, KINDS) if lasting else _constant(wide)
     values = Values(given[None], np.zeros((1, given.size, given.size)))
     return Course(
         tuple(
@@ -186,7 +192,7 @@ class Values(NamedTuple):
     """Covariance, (R, s, s)."""
 
 
-def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[FreeParameter, ...]:
+def _numbers(told: Sequence[DriveEstimate], robot: Robot) -> tuple[FreeParameter, ...]:
     """Parameters that any drive knows of."""
     known = {name for each in told for name in each.names}
     held = {applied.name for applied in robot.effects}
@@ -194,7 +200,7 @@ def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[FreeParameter, ..
     return tuple(number for number in numbers_of(robot, mounts) if number.name in known)
 
 
-def _laid(told: Sequence[DriveTold], names: Sequence[str], time: Floats) -> Drives:
+def _laid(told: Sequence[DriveEstimate], names: Sequence[str], time: Floats) -> DriveNumbers:
     """All drives on the same parameters, with no information about those a drive does not have."""
     information = np.zeros((len(told), len(names), len(names)))
     weighted = np.zeros((len(told), len(names)))
@@ -203,10 +209,10 @@ def _laid(told: Sequence[DriveTold], names: Sequence[str], time: Floats) -> Driv
         own = [each.names.index(names[number]) for number in there]
         information[np.ix_([index], there, there)] = each.information[np.ix_(own, own)]
         weighted[index, there] = each.weighted[own]
-    return Drives(tuple(names), information, weighted, time)
+    return DriveNumbers(tuple(names), information, weighted, time)
 
 
-def _alone(drives: Drives, given: Floats, limits: Floats) -> Values:
+def _alone(drives: DriveNumbers, given: Floats, limits: Floats) -> Values:
     """Estimate by each drive alone, with a weak prior at the given values."""
     before = np.diag(limits**-2.0)
     spread = np.asarray(np.linalg.inv(drives.information + before))
@@ -244,7 +250,9 @@ def _scatter(values: Floats, std: Floats) -> float:
     return high
 
 
-def _beyond_scatter(drives: Drives, found: Segmented, own: Values, scatter: Floats) -> list[Group]:
+def _beyond_scatter(
+    drives: DriveNumbers, found: ChangePoints, own: Values, scatter: Floats
+) -> list[NumberGroup]:
     """Groups of the changes that exceed the scatter between drives, by Fisher's F.
 
     The scatter is estimated from few drives, separately for each parameter. So the test uses the
@@ -263,16 +271,16 @@ def _beyond_scatter(drives: Drives, found: Segmented, own: Values, scatter: Floa
                 return []
             usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
         worth = step.gain / step.degrees / usual
-        if in_any_of(found.tried, fisher_above(worth, step.degrees, free)) < SURE_OF_A_CHANGE:
+        if bonferroni(found.tried, fisher_survival(worth, step.degrees, free)) < SURE_OF_A_CHANGE:
             lasting.append(step.group)
     return lasting
 
 
-def _constant(drives: Drives) -> Segmented:
-    return Segmented((), *levels_of(rows_of(drives), ()), 0)
+def _constant(drives: DriveNumbers) -> ChangePoints:
+    return ChangePoints((), *levels_of(rows_of(drives), ()), 0)
 
 
-def _pooled(drives: Drives, found: Segmented, scatter: Floats) -> Values:
+def _pooled(drives: DriveNumbers, found: ChangePoints, scatter: Floats) -> Values:
     """Estimate of each drive, shrunk towards the level by their relative information."""
     wide = np.diag(scatter**2)
     shrunk = np.linalg.inv(np.eye(scatter.size) + wide @ drives.information)
@@ -317,7 +325,7 @@ def _shown(names: Sequence[str], values: Values) -> list[tuple[Floats, Floats]]:
 
 
 def _off(
-    names: Sequence[str], given: Floats, found: Segmented, heard: NDArray[np.bool_]
+    names: Sequence[str], given: Floats, found: ChangePoints, heard: NDArray[np.bool_]
 ) -> tuple[OffNow, ...]:
     """Sizes in the robot file that differ significantly, and noticeably, from the last drives."""
     values, spread = found.levels[-1], found.spread[-1]
@@ -326,7 +334,7 @@ def _off(
         if name not in MULTIPLIERS or not heard[:, number].any():
             continue
         away, variance = values[number] - given[number], float(spread[number, number])
-        chance = len(MULTIPLIERS) * chi2_above(float(away**2) / max(variance, 1e-30), 1)
+        chance = len(MULTIPLIERS) * chi2_survival(float(away**2) / max(variance, 1e-30), 1)
         if chance < SURE and abs(away / given[number]) > CALIBRATE_AGAIN:
             off.append(
                 OffNow(name, float(values[number]), math.sqrt(variance), float(given[number]))

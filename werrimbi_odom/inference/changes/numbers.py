@@ -30,7 +30,7 @@ PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", "mount")
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class NumberGroup:
     """Parameters that change together: one cause on the robot."""
 
     what: str
@@ -77,7 +77,7 @@ def value_at(robot: Robot, name: str, nulls: Mapping[str, float]) -> float:
         return nulls.get(name, 0.0)
 
 
-def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[Group, ...]:
+def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[NumberGroup, ...]:
     """Groups of parameters that may change by one cause, the simplest first.
 
     Parameters
@@ -93,15 +93,17 @@ def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[Group, .
     columns = np.eye(size)
     base, left, right = (names.index(name) for name in MULTIPLIERS)
     for what, index in (("left_wheel", left), ("right_wheel", right), ("wheel_base", base)):
-        found.append(Group(what, (names[index],), columns[:, [index]]))
+        found.append(NumberGroup(what, (names[index],), columns[:, [index]]))
     alike = columns[:, [left]] * values[left] + columns[:, [right]] * values[right]
-    found.append(Group("both_wheels", (names[left], names[right]), alike))
+    found.append(NumberGroup("both_wheels", (names[left], names[right]), alike))
     effects = dict.fromkeys(name.rpartition(".")[0] for name in names if "." in name)
     for effect in effects:
         own = [index for index, name in enumerate(names) if name.rpartition(".")[0] == effect]
         what = "mount" if effect in MOUNT else effect
-        found.append(Group(what, tuple(names[index] for index in own), columns[:, own]))
+        found.append(NumberGroup(what, tuple(names[index] for index in own), columns[:, own]))
     mount = [index for index, name in enumerate(names) if name.rpartition(".")[0] in MOUNT]
     if len({names[index].rpartition(".")[0] for index in mount}) > 1:
-        found.append(Group("mount", tuple(names[index] for index in mount), columns[:, mount]))
+        found.append(
+            NumberGroup("mount", tuple(names[index] for index in mount), columns[:, mount])
+        )
     return tuple(found)

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
-from werrimbi_odom.inference.changes.drives import Drives
-from werrimbi_odom.inference.changes.numbers import Group
+from werrimbi_odom.inference.chances import bonferroni, chi2_survival
+from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.numbers import NumberGroup
 from werrimbi_odom.inference.changes.shapes import (
     Kind,
     Rows,
@@ -33,10 +33,10 @@ _FEW = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class GroupChange:
     """A change of a group over the drives."""
 
-    group: Group
+    group: NumberGroup
     shape: Shape
     gain: float = 0.0
     """Fall of the squares by this change, beside all others."""
@@ -48,10 +48,10 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Segmented:
+class ChangePoints:
     """Course of the parameters over the drives, with their changes."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[GroupChange, ...]
     """In the order of the drives."""
     levels: Floats
     """Value of each parameter in each drive, without its scatter from drive to drive; (R, s)."""
@@ -61,13 +61,13 @@ class Segmented:
     """Number of changes tried."""
 
 
-def segmented(
-    drives: Drives,
-    groups: Sequence[Group],
-    price: float,
+def find_changes(
+    drives: DriveNumbers,
+    groups: Sequence[NumberGroup],
+    penalty: float,
     kinds: Sequence[Kind] = ("step", "alone"),
     most: int = MOST_CHANGES,
-) -> Segmented:
+) -> ChangePoints:
     """Find the changes.
 
     Parameters
@@ -89,19 +89,19 @@ def segmented(
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)
-    steps: list[Step] = []
+    steps: list[GroupChange] = []
     while len(steps) < most:
-        best = _best(rows, groups, kinds, steps, price)
-        if best is None or not _earned(best, price, tried):
+        best = _best(rows, groups, kinds, steps, penalty)
+        if best is None or not _earned(best, penalty, tried):
             break
         steps.append(best)
         if len(steps) <= _FEW:
-            steps = _refined(rows, groups, kinds, steps, price)
-    steps = _refined(rows, groups, kinds, steps, price)
+            steps = _refined(rows, groups, kinds, steps, penalty)
+    steps = _refined(rows, groups, kinds, steps, penalty)
     while steps:
         steps = [_beside_others(rows, steps, number) for number in range(len(steps))]
-        least = min(steps, key=lambda step: _worth(step, price))
-        if _earned(least, price, tried):
+        least = min(steps, key=lambda step: _worth(step, penalty))
+        if _earned(least, penalty, tried):
             break
         steps.remove(least)
     told = sorted(
@@ -111,10 +111,10 @@ def segmented(
         ),
         key=lambda step: (step.shape.first, -step.gain),
     )
-    return Segmented(tuple(told), *levels_of(rows, told), tried)
+    return ChangePoints(tuple(told), *levels_of(rows, told), tried)
 
 
-def levels_of(rows: Rows, steps: Sequence[Step]) -> tuple[Floats, Floats]:
+def levels_of(rows: Rows, steps: Sequence[GroupChange]) -> tuple[Floats, Floats]:
     """Parameters in each drive (R, s) and their covariance (R, s, s), with these changes."""
     columns = _columns(rows, steps)
     size = np.sqrt(np.sum(columns**2, axis=0))
@@ -135,29 +135,31 @@ def levels_of(rows: Rows, steps: Sequence[Step]) -> tuple[Floats, Floats]:
 
 def _best(
     rows: Rows,
-    groups: Sequence[Group],
+    groups: Sequence[NumberGroup],
     kinds: Sequence[Kind],
-    steps: Sequence[Step],
-    price: float,
-) -> Step | None:
+    steps: Sequence[GroupChange],
+    penalty: float,
+) -> GroupChange | None:
     beside = _beside(rows, steps)
     rest = beside.residual(rows.seen.ravel())
-    found: list[Step] = []
+    found: list[GroupChange] = []
     for group in groups:
         for kind in kinds:
             each = gains(rows, beside, rest, group.directions, kind)
             if not each.gain.size:
                 continue
-            worth = each.gain - price * each.degrees - _doubt(kind)
+            worth = each.gain - penalty * each.degrees - _doubt(kind)
             index = int(np.argmax(worth))
             if each.degrees[index] > 0:
                 shape = Shape(kind, each.first[index])
-                found.append(Step(group, shape, float(each.gain[index]), int(each.degrees[index])))
-    return max(found, key=lambda step: _worth(step, price), default=None)
+                found.append(
+                    GroupChange(group, shape, float(each.gain[index]), int(each.degrees[index]))
+                )
+    return max(found, key=lambda step: _worth(step, penalty), default=None)
 
 
-def _worth(step: Step, price: float) -> float:
-    return step.gain - price * step.degrees - _doubt(step.shape.kind)
+def _worth(step: GroupChange, penalty: float) -> float:
+    return step.gain - penalty * step.degrees - _doubt(step.shape.kind)
 
 
 def _doubt(kind: Kind) -> float:
@@ -167,24 +169,24 @@ def _doubt(kind: Kind) -> float:
 
 def _refined(
     rows: Rows,
-    groups: Sequence[Group],
+    groups: Sequence[NumberGroup],
     kinds: Sequence[Kind],
-    steps: list[Step],
-    price: float,
-) -> list[Step]:
+    steps: list[GroupChange],
+    penalty: float,
+) -> list[GroupChange]:
     """Search each change again beside the others: the first was found without them."""
     if len(steps) < 2:
         return steps
     for number in range(len(steps)):
         others = [step for index, step in enumerate(steps) if index != number]
-        best = _best(rows, groups, kinds, others, price)
+        best = _best(rows, groups, kinds, others, penalty)
         own = _beside_others(rows, steps, number)
-        if best is not None and _worth(best, price) > _worth(own, price):
+        if best is not None and _worth(best, penalty) > _worth(own, penalty):
             steps[number] = best
     return steps
 
 
-def _beside_others(rows: Rows, steps: Sequence[Step], number: int) -> Step:
+def _beside_others(rows: Rows, steps: Sequence[GroupChange], number: int) -> GroupChange:
     step = steps[number]
     beside = _beside(rows, [each for index, each in enumerate(steps) if index != number])
     column = rows.column(step.shape, step.group.directions)
@@ -193,7 +195,7 @@ def _beside_others(rows: Rows, steps: Sequence[Step], number: int) -> Step:
     return replace(step, gain=test.gain, degrees=test.degrees) if test else replace(step, gain=0.0)
 
 
-def _span(rows: Rows, steps: Sequence[Step], number: int) -> tuple[int, int]:
+def _span(rows: Rows, steps: Sequence[GroupChange], number: int) -> tuple[int, int]:
     """Drives at which the likelihood of a change is nearly as high as at the best."""
     step = steps[number]
     beside = _beside(rows, [each for index, each in enumerate(steps) if index != number])
@@ -211,18 +213,18 @@ def _span(rows: Rows, steps: Sequence[Step], number: int) -> tuple[int, int]:
     return each.first[low], each.first[high]
 
 
-def _earned(step: Step, price: float, tried: int) -> bool:
-    return _worth(step, price) > price and _chance(step, tried) < SURE
+def _earned(step: GroupChange, penalty: float, tried: int) -> bool:
+    return _worth(step, penalty) > penalty and _chance(step, tried) < SURE
 
 
-def _chance(step: Step, tried: int) -> float:
-    return in_any_of(tried, chi2_above(step.gain, step.degrees))
+def _chance(step: GroupChange, tried: int) -> float:
+    return bonferroni(tried, chi2_survival(step.gain, step.degrees))
 
 
-def _beside(rows: Rows, steps: Sequence[Step]) -> Nuisance:
+def _beside(rows: Rows, steps: Sequence[GroupChange]) -> Nuisance:
     return nuisance(_columns(rows, steps))
 
 
-def _columns(rows: Rows, steps: Sequence[Step]) -> Floats:
+def _columns(rows: Rows, steps: Sequence[GroupChange]) -> Floats:
     taken = [rows.column(step.shape, step.group.directions) for step in steps]
     return np.concatenate([rows.constant, *taken], axis=-1)

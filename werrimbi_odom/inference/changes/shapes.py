@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.changes.drives import Drives
+from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.linear import DETERMINED, ROUNDING, SILENT, Nuisance
 from werrimbi_odom.inference.rules import TREND_DRIVES
 from werrimbi_odom.model.pose import Floats
@@ -73,7 +73,7 @@ class Rows(NamedTuple):
         return self.root.reshape(self.seen.size, -1)
 
 
-def rows_of(drives: Drives) -> Rows:
+def rows_of(drives: DriveNumbers) -> Rows:
     """The least-squares problem with these information matrices."""
     size = np.sqrt(np.einsum("rii->ri", drives.information))
     unit = np.where(size > SILENT, size, 1.0)

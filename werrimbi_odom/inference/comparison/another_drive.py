@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import Prepared
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.rules import (
     FAR_ABOVE_NOISE,
@@ -24,7 +24,7 @@ Driven = Callable[[Legs], tuple[slice, Floats, Floats]]
 """For some legs: columns of the errors, and the motion by wheels and by reference, (m,) each."""
 
 
-def of_another_drive(prepared: Prepared, model: Model) -> bool:
+def of_another_drive(prepared: PreparedRuns, model: Model) -> bool:
     """Whether a calibrated model explains next to nothing of the reference.
 
     At every leg length its errors are as large as the motion, by position or by heading (for drives

@@ -21,7 +21,7 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     squared_deviation,
     statistics,
 )
-from werrimbi_odom.inference.comparison.prepared import Prepared, prepare
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns, prepare
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.reference_noise import Residual
 from werrimbi_odom.inference.comparison.systematic import (
@@ -48,7 +48,7 @@ class LegFigures:
     outliers: int
     rmse_all_position_m: float
     """Position RMSE including outliers."""
-    scatter_nees: float
+    dispersion_nees: float
     """NEES after removing the systematic part."""
     noise: NoiseFactor
     """Maximum-likelihood factor on the variance of the wheel noise, from this dispersion."""
@@ -70,9 +70,9 @@ class OfLength:
         return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
 
     @property
-    def of_scatter(self) -> AtLength:
+    def consistency_of_dispersion(self) -> AtLength:
         """NEES after removing the systematic part of the errors."""
-        return replace(self.consistency, nees=self.all.scatter_nees)
+        return replace(self.consistency, nees=self.all.dispersion_nees)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ class RunFigures:
 class Comparison:
     """Result of a comparison, with the legs themselves for plots."""
 
-    prepared: Prepared
+    prepared: PreparedRuns
     model: Model
     runs: tuple[RunFigures, ...]
     lengths: tuple[OfLength, ...]
@@ -152,7 +152,7 @@ def compare(
 
 
 def judged(
-    prepared: Prepared,
+    prepared: PreparedRuns,
     robot: Robot | Model,
     *,
     show: Show = silent,

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import fisher_above, in_any_of, student_above
+from werrimbi_odom.inference.chances import bonferroni, fisher_survival, student_survival
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.inference.rules import (
@@ -87,7 +87,7 @@ def by_variables(
     result = []
     for name, found in members.items():
         p_values = {
-            channel: in_any_of(tried, _differ([signs[rows] for _, _, rows in found]))
+            channel: bonferroni(tried, _differ([signs[rows] for _, _, rows in found]))
             for channel, signs in _signals(legs, left).items()
         }
         bins = tuple(
@@ -146,7 +146,7 @@ def _differ(groups: list[Floats]) -> float:
     free = len(groups) - 1
     lam = float(np.sum((1.0 - weight / total) ** 2 / (count - 1.0)))
     ratio = between / free / (1.0 + 2.0 * (free - 1) / ((free + 1) ** 2 - 1.0) * lam)
-    return fisher_above(ratio, free, ((free + 1) ** 2 - 1.0) / (3.0 * max(lam, 1e-300)))
+    return fisher_survival(ratio, free, ((free + 1) ** 2 - 1.0) / (3.0 * max(lam, 1e-300)))
 
 
 def _means(errors: Floats) -> tuple[float, float, float]:
@@ -188,14 +188,14 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
             size[here].var(ddof=1) / here.sum() + size[others].var(ddof=1) / others.sum()
         )
         ahead = float((size[here].mean() - size[others].mean()) / max(spread, 1e-12))
-        chance = student_above(ahead, here.sum() - 1)
+        chance = student_survival(ahead, here.sum() - 1)
         found.append(
             Cell(
                 float((at[0] + 0.5) * side),
                 float((at[1] + 0.5) * side),
                 side,
                 statistics(legs.chosen(here)),
-                in_any_of(len(places), chance),
+                bonferroni(len(places), chance),
             )
         )
     return tuple(sorted(found, key=lambda cell: cell.p_value))

@@ -18,8 +18,8 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     statistics,
 )
 from werrimbi_odom.inference.comparison.prepared import (
-    Group,
-    Prepared,
+    PreparedRuns,
+    ReferenceGroup,
     finely,
     judged_by,
     jumped_in,
@@ -30,8 +30,8 @@ from werrimbi_odom.inference.comparison.reference_noise import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
-from werrimbi_odom.inference.fitting.prediction import legs_shown
-from werrimbi_odom.inference.fitting.run_phases import known_at_home
+from werrimbi_odom.inference.fitting.prediction import predicted_legs
+from werrimbi_odom.inference.fitting.run_phases import model_in_runs
 from werrimbi_odom.inference.rules import (
     DRIFT_LEGS,
     FAR_ABOVE_NOISE,
@@ -80,7 +80,7 @@ class Legs:
         return self.chosen(~self.event) if self.event.any() else self
 
 
-def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
+def in_runs(prepared: PreparedRuns, robot: Robot | Model) -> Model:
     """Model of a robot for these runs, the same for all commands.
 
     Per-run values that the robot lacks are estimated in each run; those of a `Model` are kept.
@@ -94,10 +94,10 @@ def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
     bare = Model(robot, tuple({} for _ in prepared.runs))
     if all(applied.ready for applied in robot.effects):
         return bare
-    return known_at_home(bare, finely(prepared), prepared.options.reference_kind)
+    return model_in_runs(bare, finely(prepared), prepared.options.reference_kind)
 
 
-def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
+def judged_legs(prepared: PreparedRuns, model: Model, leg: float) -> Legs:
     """Errors of all legs of one length, in the order of the runs, without gaps."""
     parts = []
     asked = prepared.cuts[prepared.options.leg]
@@ -123,7 +123,7 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
     return _in_order(parts)
 
 
-def figures_of(prepared: Prepared, robot: Robot | Model) -> LegStatistics:
+def figures_of(prepared: PreparedRuns, robot: Robot | Model) -> LegStatistics:
     """Statistics of a robot or model over the legs of the requested length, for all commands.
 
     Legs on which the reference jumped only count for the median.
@@ -138,7 +138,7 @@ def statistics_of(legs: Legs) -> LegStatistics:
     return replace(kept, median_position_m=statistics(legs.errors).median_position_m)
 
 
-def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
+def paths(prepared: PreparedRuns, model: Model) -> tuple[Residual, ...]:
     """Measured and dead-reckoned path of every run, in order."""
     found: dict[int, Residual] = {}
     for group in prepared.groups:
@@ -149,7 +149,7 @@ def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
     return tuple(found[index] for index in range(len(prepared.runs)))
 
 
-def _of_group(group: Group, model: Model) -> Model:
+def _of_group(group: ReferenceGroup, model: Model) -> Model:
     """Model restricted to the runs of a group."""
     return Model(model.robot, tuple(model.own[index] for index in group.index))
 
@@ -161,7 +161,7 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
     deviations: a median of slopes weighted by the legs' durations. A run of fewer than `DRIFT_LEGS`
     has none, as the drift would absorb the whole error of one leg.
     """
-    seen = legs_shown(model, runs)[:, 2]
+    seen = predicted_legs(model, runs)[:, 2]
     error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
     known = np.isfinite(error) & ~runs.gap & (runs.duration > 0.0)
     own = []
@@ -177,7 +177,7 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
 
 
 def _table(
-    prepared: Prepared, group: Group, runs: Concatenated, errors: LegErrors, leg: float
+    prepared: PreparedRuns, group: ReferenceGroup, runs: Concatenated, errors: LegErrors, leg: float
 ) -> Legs:
     times = [run.measured.time for run in runs.runs]
     begin = np.concatenate([time[:-1] for time in times])
@@ -250,7 +250,7 @@ def _in_order(parts: list[Legs]) -> Legs:
     return whole.chosen(np.argsort(whole.run, kind="stable"))
 
 
-def far_above_noise(prepared: Prepared, model: Model) -> bool:
+def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     """Whether a model's errors are larger than any noise of wheels and reference explains.
 
     A likelihood with free noise accepts any model. This test uses the largest plausible wheel

@@ -19,8 +19,8 @@ from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
     paces,
-    reading_noise,
-    wheel_part,
+    quantisation_variance,
+    wheel_covariance,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.legs.cutting import MatchedRun
@@ -153,7 +153,7 @@ def errors_of(
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
     noises = np.square([[robot.left_wheel_noise], [robot.right_wheel_noise]])
-    [wheels] = wheel_part(prediction, runs, *noises)
+    [wheels] = wheel_covariance(prediction, runs, *noises)
     heading = start[:, 2]
     if wandering is not None and jumped is not None:
         error, total = errors_on_map(model, runs, prediction, wandering, jumped)
@@ -166,7 +166,7 @@ def errors_of(
             usual * (prediction.per_left + prediction.per_right),
             start[:, :2],
             finish[:, :2],
-            np.square(sigma_xy) + float(reading_noise(robot)[0]),
+            np.square(sigma_xy) + float(quantisation_variance(robot)[0]),
             runs.legs,
             _headings(model, runs, start),
             runs.gap,
@@ -215,7 +215,7 @@ def _reference_part(
 
     The reference's part is that of its positions, headings and stamps.
     """
-    reading = reading_noise(robot)
+    reading = quantisation_variance(robot)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
     begun = ended = np.zeros((runs.count, 3))
     if sigmas[2] > 0.0:  # speeds for an hour of steps are costly

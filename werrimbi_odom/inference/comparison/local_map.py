@@ -23,7 +23,7 @@ from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
-from werrimbi_odom.inference.legs.cutting import Record, cut_finely
+from werrimbi_odom.inference.legs.cutting import AlignedRun, cut_for_fit
 from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
@@ -43,12 +43,14 @@ class Wandering:
     """False if there were too few poses, so that typical values are used."""
 
 
-def wandering_of(records: Sequence[Record], robot: Robot, options: EvaluationOptions) -> Wandering:
+def wandering_of(
+    records: Sequence[AlignedRun], robot: Robot, options: EvaluationOptions
+) -> Wandering:
     """Maximum-likelihood noise of a reference, with the robot's calibration free.
 
     So a wrong base or radius is not taken for a random walk of the reference.
     """
-    laid = concatenated([cut_finely(record, robot, options.leg) for record in records])
+    laid = concatenated([cut_for_fit(record, robot, options.leg) for record in records])
     point = start_point(laid, robot, options)
     if laid.data < NOISE_NUMBERS:
         return Wandering(point.variances, False)

@@ -47,7 +47,7 @@ class Closeness(NamedTuple):
     are not quantised."""
 
 
-def refuse_circle(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
+def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
     """Check that a run's reference is an independent measurement.
 
     Returns

@@ -28,12 +28,12 @@ from werrimbi_odom.inference.comparison.reference_noise import (
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import (
-    Record,
-    cut_finely,
+    AlignedRun,
+    cut_for_fit,
     divided,
     every_pose,
     leg_ends,
-    match_finely,
+    match_for_fit,
     record_of,
 )
 from werrimbi_odom.inference.legs.cutting import (
@@ -53,7 +53,7 @@ from werrimbi_odom.progress import Show, silent
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Group:
+class ReferenceGroup:
     """Runs whose references measure the same quantities."""
 
     index: tuple[int, ...]
@@ -69,14 +69,14 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Prepared:
+class PreparedRuns:
     """Runs ready for comparison."""
 
     robot: Robot
     """Robot whose travel cuts the legs."""
     options: EvaluationOptions
     runs: tuple[Run, ...]
-    groups: tuple[Group, ...]
+    groups: tuple[ReferenceGroup, ...]
     cuts: Mapping[float, tuple[Concatenated, ...]]
     """Legs by length, for each group."""
 
@@ -128,7 +128,7 @@ def prepare(
     options: EvaluationOptions = EvaluationOptions(),
     *,
     show: Show = silent,
-) -> Prepared:
+) -> PreparedRuns:
     """Match runs, estimate the reference's noise, find its jumps, and cut legs of several lengths.
 
     Raises
@@ -137,7 +137,7 @@ def prepare(
         If a run has no usable reference or no ticks.
     """
     runs = [looked_at(run, robot, options.limits) for run in runs]
-    members: dict[Measure, list[tuple[int, Record, bool]]] = {}
+    members: dict[Measure, list[tuple[int, AlignedRun, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")
         alike, measure = measured_alike(run)
@@ -145,13 +145,13 @@ def prepare(
         members.setdefault(measure, []).append((index, record, alike is run))
     groups = tuple(_group(robot, measure, found, options) for measure, found in members.items())
     show(0.5, "cutting legs")
-    return Prepared(
+    return PreparedRuns(
         robot, options, tuple(runs), groups, _cut_to_lengths(groups, robot, options.leg)
     )
 
 
 def _cut_to_lengths(
-    groups: Sequence[Group], robot: Robot, leg: float
+    groups: Sequence[ReferenceGroup], robot: Robot, leg: float
 ) -> dict[float, tuple[Concatenated, ...]]:
     """Legs of all lengths with enough legs, merged from the shortest.
 
@@ -193,23 +193,23 @@ def _cut_to_lengths(
     }
 
 
-def _way(record: Record, robot: Robot, leg: float) -> Floats:
+def _way(record: AlignedRun, robot: Robot, leg: float) -> Floats:
     """Cumulative travel at each pose of a record, in legs."""
     counters = record.counters
     way = counters.way(robot, leg, QUARTER_TURN)
     return np.interp(record.measured.time, counters.time, way)
 
 
-def finely(prepared: Prepared) -> Concatenated:
-    """Cut the runs into the short legs of a fit, as `match_finely`, reusing what is there."""
+def finely(prepared: PreparedRuns) -> Concatenated:
+    """Cut the runs into the short legs of a fit, as `match_for_fit`, reusing what is there."""
     found = {}
     for group in prepared.groups:
         for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
             if whole:
-                found[index] = cut_finely(every.record, prepared.robot, prepared.options.leg)
+                found[index] = cut_for_fit(every.record, prepared.robot, prepared.options.leg)
             else:
                 run = prepared.runs[index]
-                [found[index]] = match_finely(
+                [found[index]] = match_for_fit(
                     [run], prepared.robot, prepared.options.leg, prepared.options.limits
                 )
     return concatenated([found[index] for index in range(len(prepared.runs))])
@@ -218,9 +218,9 @@ def finely(prepared: Prepared) -> Concatenated:
 def _group(
     robot: Robot,
     measure: Measure,
-    members: list[tuple[int, Record, bool]],
+    members: list[tuple[int, AlignedRun, bool]],
     options: EvaluationOptions,
-) -> Group:
+) -> ReferenceGroup:
     every = concatenated([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
@@ -228,7 +228,7 @@ def _group(
     jumps = tuple(
         jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
     )
-    return Group(
+    return ReferenceGroup(
         tuple(index for index, _, _ in members),
         measure,
         every,
@@ -239,12 +239,12 @@ def _group(
     )
 
 
-def jumped_in(group: Group, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
+def jumped_in(group: ReferenceGroup, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
     """Legs that a jump of the reference invalidates, shape (m,)."""
     both = zip(group.jumps, runs.runs, strict=True)
     return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
 
 
-def judged_by(prepared: Prepared) -> Literal["position", "heading"]:
+def judged_by(prepared: PreparedRuns) -> Literal["position", "heading"]:
     """Quantity that legs are judged by: position, or heading where only headings are measured."""
     return "heading" if all(measure == "heading" for measure in prepared.measures) else "position"

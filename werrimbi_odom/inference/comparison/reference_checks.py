@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
-from werrimbi_odom.inference.comparison.prepared import Prepared
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_noise import Residual
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.rules import (
@@ -90,7 +90,7 @@ class _Looked:
     sigma: Floats
 
 
-def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
+def remarks_on(prepared: PreparedRuns) -> tuple[ReferenceRemark, ...]:
     """Anomalies of the references of some runs; none where only headings are measured.
 
     Uses the prepared legs and the path length by the given robot file. A wrong scale of that only

@@ -23,8 +23,8 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
-from werrimbi_odom.inference.fitting.likelihood import reading_noise
-from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
+from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
+from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
 from werrimbi_odom.inference.rules import (
     DIFFERENCE_REACH,
     DIFFERENCES,
@@ -108,10 +108,10 @@ def residuals_of(
         model has none, it is the one that best aligns the whole path with them.
     """
     view = view_of(model.robot.effects)
-    relative = legs_shown(model, every)
+    relative = predicted_legs(model, every)
     if measure == "position":
         model = _with_headings(model, every, relative)
-        relative = legs_shown(model, every)
+        relative = predicted_legs(model, every)
     found = []
     for index, run in enumerate(every.runs):
         own = slice(every.legs[index], every.legs[index + 1])
@@ -197,7 +197,7 @@ def reference_noise(
     Of each pose (absolute) or of each interval (incremental). None if poses are too few, or if the
     quantity is not measured.
     """
-    reading = reading_noise(robot)
+    reading = quantisation_variance(robot)
     if kind == "incremental":
         errors = np.concatenate([_steps(item) for item in residuals])
         sigmas = [_growing(errors[:, part]) for part in ((0, 1), (2,))]
@@ -222,7 +222,7 @@ def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
     this. Spans are longer than two messages of the ticks, since the interpolation between two
     messages causes the same error in all headings.
     """
-    if not every.stamps_err:
+    if not every.has_stamp_noise:
         return 0.0
     pairs = zip(every.runs, residuals, strict=True)
     found = [_scatter_and_rate(item, run.counters.time) for run, item in pairs]

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA, student_above
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA, student_survival
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, root_mean_square
 from werrimbi_odom.inference.rules import (
     LEGS_OF_A_PART,
@@ -95,14 +95,14 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
             rows = np.flatnonzero((legs.kind == kind) & np.isfinite(legs.error[:, channel]))
             if rows.size < LEGS_OF_A_PART + len(names):
                 continue
-            parts, predicted = _laid_on(legs, rows, channel, kind, names)
+            parts, predicted = _regressed_on(legs, rows, channel, kind, names)
             found += parts
             if any(part.finding for part in parts):
                 left[rows, channel] -= predicted
     return tuple(found), left
 
 
-def _laid_on(
+def _regressed_on(
     legs: LegErrors, rows: np.ndarray, channel: int, kind: str, names: tuple[str, ...]
 ) -> tuple[list[Systematic], Floats]:
     """Regress one channel's errors of some legs on the given variables."""
@@ -123,7 +123,7 @@ def _laid_on(
     hat = np.einsum("ij,jk,ik->i", design, inverse, design)
     scaled = design * ((error - predicted) / np.maximum(1.0 - hat, 0.05))[:, None]
     std = np.sqrt(np.maximum(np.diag(inverse @ (scaled.T @ scaled) @ inverse), 0.0))
-    of_most = _of_most(design, error, slopes)
+    of_most = _huber_slopes(design, error, slopes)
     promised = float(np.sqrt(np.mean(legs.covariance[rows, channel, channel])))
     parts = []
     for column, name in enumerate(names):
@@ -137,7 +137,7 @@ def _laid_on(
                 name,
                 float(slopes[column] / size[column]),
                 float(std[column] / size[column]),
-                2.0 * student_above(abs(ratio), rows.size - len(names)),
+                2.0 * student_survival(abs(ratio), rows.size - len(names)),
                 root_mean_square(design[:, column] * slopes[column]),
                 promised,
                 bool(of_most[column] * np.sign(slopes[column]) >= OF_MOST * abs(slopes[column])),
@@ -149,7 +149,7 @@ def _laid_on(
 _HUBER = 1.5  # Huber's threshold, in standard deviations
 
 
-def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
+def _huber_slopes(design: Floats, error: Floats, slopes: Floats) -> Floats:
     """Robust slopes: Huber's M-estimate, by iteratively reweighted least squares."""
     for _ in range(20):
         left = np.abs(error - design @ slopes)

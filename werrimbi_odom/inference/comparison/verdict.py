@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.chances import chi2_survival
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
@@ -221,7 +221,7 @@ def _scatters(figures: LegFigures) -> bool:
     known = figures.figures
     return (
         known.count >= FEWEST_LEGS
-        and consistency(figures.scatter_nees, known.freedom) == "too small"
+        and consistency(figures.dispersion_nees, known.freedom) == "too small"
         and figures.noise.low > HONEST_WITHIN
     )
 
@@ -231,7 +231,7 @@ def _bad(figures: LegFigures) -> bool:
     count, nees = figures.figures.count, figures.figures.nees
     if not 0 < count < FEWEST_LEGS or not nees > HONEST_WITHIN:
         return False
-    return chi2_above(count * nees, count) < SURE_OF_LEGS
+    return chi2_survival(count * nees, count) < SURE_OF_LEGS
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
@@ -245,7 +245,7 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     longest = many[-1] if many else main
     longest = longest if longest.leg >= main.leg else main
     factor, short = longest.all.noise, main.all.noise
-    scatter = [item.of_scatter for item in comparison.lengths]
+    scatter = [item.consistency_of_dispersion for item in comparison.lengths]
     said = of_all(scatter)
     if said == "unknown":
         return "unknown", factor, longest.leg
@@ -254,7 +254,11 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     if said == "too large":
         return "too large", factor, longest.leg
     known = np.isfinite(factor.value) and longest.all.figures.count >= FEWEST_LEGS
-    if known and factor.low > HONEST_WITHIN and longest.of_scatter.says == "too small":
+    if (
+        known
+        and factor.low > HONEST_WITHIN
+        and longest.consistency_of_dispersion.says == "too small"
+    ):
         if factor.low > ALIKE * short.high:
             return "grows", factor, longest.leg
         if short.low > ALIKE * factor.high:

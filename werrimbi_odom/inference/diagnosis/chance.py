@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import fisher_above, in_any_of
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
+from werrimbi_odom.inference.chances import bonferroni, fisher_survival
+from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.rules import LASTING_PARTS
@@ -20,12 +20,12 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 
     A likelihood-ratio test; where few data determine the noise, by Fisher's F.
     """
-    gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
-    numbers = max(round((fit.price - before.price) / fit.price_of_one), 1)
-    return in_any_of(max(tried, 1), fisher_above(gain / numbers, numbers, fit.spare))
+    gain = (before.cost + before.needless_gain - fit.cost - fit.needless_gain) / fit.scatter
+    numbers = max(round((fit.penalty - before.penalty) / fit.penalty_of_one), 1)
+    return bonferroni(max(tried, 1), fisher_survival(gain / numbers, numbers, fit.spare))
 
 
-def chance_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> float:
+def p_value_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> float:
     """P-value of an effect in the model, by the disagreement between the parts (homogeneity test).
 
     It is corrected for the number of candidates only where the parts disagree beyond chance.
@@ -33,14 +33,14 @@ def chance_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> f
     """
     mine = [number.name.rpartition(".")[0] == name for number, _ in fit.design.columns]
     apart = bool(np.any(fit.widening[mine] > 1.0))
-    return in_any_of(max(tried, 1) if apart else 1, lasting_effect(runs, fit, name))
+    return bonferroni(max(tried, 1) if apart else 1, homogeneity_of_effect(runs, fit, name))
 
 
-def chance_of_size(fit: Fitted, name: str) -> float:
+def p_value_of_size(fit: Fitted, name: str) -> float:
     """P-value of a calibration effect's importance.
 
     Where the parts disagree, by Fisher's F with their degrees of freedom, as few parts estimate
     their own scatter poorly.
     """
     parts = LASTING_PARTS - 1 if fit.doubts[name] > 1.0 else math.inf
-    return fisher_above(fit.importance.get(name, 0.0), 1, parts)
+    return fisher_survival(fit.importance.get(name, 0.0), 1, parts)

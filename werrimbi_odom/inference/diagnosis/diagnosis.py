@@ -20,8 +20,8 @@ from dataclasses import replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.calibration_sizes import to_cut_by
-from werrimbi_odom.inference.diagnosis.chance import chance, chance_by_parts
+from werrimbi_odom.inference.calibration_sizes import robot_for_cutting
+from werrimbi_odom.inference.diagnosis.chance import chance, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
@@ -31,20 +31,20 @@ from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,
-    first_fit,
+    fit_calibration,
     instead_of_calibration,
-    jumps_anew,
+    refit_with_jumps,
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
-from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitted_without_events
+from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
-from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
     LAW_SHARE,
@@ -106,7 +106,7 @@ def diagnose(
             return found, Events()
         return found, events_beside(found.runs, found.final.point, judge)
 
-    found, happened = fitted_without_events(search, runs, holdout)
+    found, happened = refit_without_events(search, runs, holdout)
     return replace(found, happened=happened)
 
 
@@ -122,11 +122,11 @@ def _searched(
     show(0.0, "set-up")
     begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
-    cutter = to_cut_by(set_up.robot, robot)
-    laid = concatenated(match_finely(judge.fitted_on, cutter, options.leg, options.limits))
+    cutter = robot_for_cutting(set_up.robot, robot)
+    laid = concatenated(match_for_fit(judge.fitted_on, cutter, options.leg, options.limits))
     effects = askable(effects, laid, set_up.robot)
     show(0.1, "calibration")
-    fit = first_fit(laid, set_up.robot, with_stated_noise(options, laid.runs))
+    fit = fit_calibration(laid, set_up.robot, with_stated_noise(options, laid.runs))
     rounds: list[Round] = []
     beyond = misfit = None
     for number in range(ROUNDS):
@@ -142,7 +142,7 @@ def _searched(
             break
         if not holds_when_cross_validated(laid, fit, best):
             break
-        fit = jumps_anew(laid, best, set_up.robot)
+        fit = refit_with_jumps(laid, best, set_up.robot)
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit
@@ -167,10 +167,10 @@ def _best(this: Round, runs: Concatenated) -> Fitted | None:
     fit = next((fit for fit in this.tried if not fit.at_bound), None)
     if fit is None:
         return None
-    before = this.before.cost + this.before.needless + this.before.price * fit.scatter
+    before = this.before.cost + this.before.needless_gain + this.before.penalty * fit.scatter
     if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
         return None
-    return fit if chance_by_parts(runs, fit, fit.names[-1], this.number) < SURE else None
+    return fit if p_value_by_parts(runs, fit, fit.names[-1], this.number) < SURE else None
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:
@@ -191,9 +191,9 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
     if score is not None and best is not None:
         support = _support(score, runs, this.before.point.model)
-        data, penalty = runs.data, this.before.price_of_one
+        data, penalty = runs.data, this.before.penalty_of_one
         fall = max(_fall(score.gain, data), this.before.cost - best.cost)
-        worth = fall - (best.price - this.before.price)
+        worth = fall - (best.penalty - this.before.penalty)
 
         def more_than_a_law_leaves(cell: Dependence) -> bool:
             own = cell.channel in support.outputs and bool(

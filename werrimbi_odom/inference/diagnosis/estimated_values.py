@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import base_told, sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
-from werrimbi_odom.inference.diagnosis.post_selection import spread_over_choices
+from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
 from werrimbi_odom.inference.diagnosis.selection import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
@@ -184,7 +184,7 @@ def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]
     wanted = set(diagnosis.found) & set(CALIBRATED)
     needed = sizes_needed(final, given, wanted)
     values = sizes_at(final, given, needed)
-    spread = spread_over_choices(final, given, wanted, needed)
+    spread = model_averaged_stds(final, given, wanted, needed)
     return {
         name: (values[name], spread[name] if moves.any() else 0.0)
         for name, moves in zip(MULTIPLIERS, needed.directions, strict=True)

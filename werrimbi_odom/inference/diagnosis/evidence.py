@@ -20,7 +20,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.chances import bonferroni, chi2_survival
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -29,7 +29,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
-from werrimbi_odom.inference.fitting.candidates import unexplained
+from werrimbi_odom.inference.fitting.candidates import residual_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
@@ -135,7 +135,7 @@ def dependences(
 
     `numbers` are the nuisance parameters: what they can explain is no evidence.
     """
-    frame, rest = unexplained(runs, point, numbers, predict_all(point.model, runs))
+    frame, rest = residual_innovations(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
     known = np.concatenate([frame.basis, rest[:, None]], axis=-1)
@@ -161,7 +161,7 @@ def dependences(
             else test.coefficients,
             test.gain,
             test.degrees,
-            in_any_of(len(found), chi2_above(test.gain, test.degrees)),
+            bonferroni(len(found), chi2_survival(test.gain, test.degrees)),
             shares[amount],
         )
         for amount, variable, form, test in found
@@ -204,7 +204,7 @@ def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]
     path = path_of(point.model, runs)
     of_wheels = [amount for amount in AMOUNTS if amount.channel in _OF_WHEELS]
     both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
-    left, right = pushes_of(runs, path, AMOUNTS, point)
+    left, right = step_jacobians(runs, path, AMOUNTS, point)
     for begin in range(0, both.shape[0], _BLOCK):
         steps = np.arange(begin, min(begin + _BLOCK, both.shape[0]))
         both[steps] = left(steps) + right(steps)
@@ -217,21 +217,21 @@ def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]
                 chosen = amounts[begin : begin + each]
                 if alike:
                     columns = both[:, 3 * begin : 3 * (begin + each)]
-                    sums = legs_pushed(runs, of_left, columns.__getitem__)
+                    sums = summed_over_legs(runs, of_left, columns.__getitem__)
                 else:
-                    left, right = pushes_of(runs, path, chosen, point)
-                    sums = legs_pushed(runs, of_left, left)
-                    sums += legs_pushed(runs, of_right, right)
+                    left, right = step_jacobians(runs, path, chosen, point)
+                    sums = summed_over_legs(runs, of_left, left)
+                    sums += summed_over_legs(runs, of_right, right)
                 shaped = sums.reshape(runs.count, len(chosen), 3, -1).swapaxes(1, 2)
                 yield _Cells(variable, form, chosen), shaped.reshape(runs.count, 3, -1)
 
 
-Pushes = Callable[[NDArray[np.intp]], Floats]
+StepJacobian = Callable[[NDArray[np.intp]], Floats]
 """Function of step numbers (...): change of the legs' relative poses for unit errors of these
 steps, (..., p). It is evaluated on demand, as the array for all steps is large."""
 
 
-def legs_pushed(runs: Concatenated, functions: Floats, pushes: Pushes) -> Floats:
+def summed_over_legs(runs: Concatenated, functions: Floats, pushes: StepJacobian) -> Floats:
     """Sum functions (n, k) times pushes over the steps of each leg: (m, p, k)."""
     size = runs.end - runs.begin
     width = pushes(np.zeros(0, dtype=np.intp)).shape[-1]
@@ -250,9 +250,9 @@ _BLOCK = 4096
 """Steps in a block, so that their arrays fit into the processor's cache."""
 
 
-def pushes_of(
+def step_jacobians(
     runs: Concatenated, path: DrivenPath, amounts: Sequence[Amount], point: Point
-) -> tuple[Pushes, Pushes]:
+) -> tuple[StepJacobian, StepJacobian]:
     """Change of the legs' relative poses for unit errors of steps: of left wheel, of right wheel.
 
     Three coordinates for each of the amounts, one amount after the other, (..., 3 a). For an amount

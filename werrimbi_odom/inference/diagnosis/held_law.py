@@ -17,14 +17,14 @@ from dataclasses import dataclass
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
 from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
+from werrimbi_odom.inference.diagnosis.selection import Fitted, wald_statistic
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Candidate,
     Score,
+    residual_innovations,
     signatures,
-    unexplained,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
@@ -94,10 +94,10 @@ def misfit_of_found(
     certain : sequence of Dependence
         Significant cells of the final model's map.
     """
-    worth = sorted(certain, key=lambda cell: cell.degrees * fit.price_of_one - cell.gain)
+    worth = sorted(certain, key=lambda cell: cell.degrees * fit.penalty_of_one - cell.gain)
     numbers = (*CALIBRATION, *fit.numbers)
     for cell, p_value, only_in in lasting(runs, fit.point, numbers, worth[:LEFT_ASKED]):
-        dear = cell.gain <= cell.degrees * fit.price_of_one  # does not pay its penalty as a law
+        dear = cell.gain <= cell.degrees * fit.penalty_of_one  # does not pay its penalty as a law
         if only_in or (p_value < SURE and not dear):
             for law, support, explained in _laws(fit, runs):
                 if _shares(support, cell):
@@ -116,7 +116,7 @@ def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Supp
         parameters = applied.effect.parameters
         shape = {name: applied.values[name] for name, item in parameters.items() if item.tries}
         support = support_of(Candidate(applied.effect, shape), drive)
-        explained = rise_without(applied.name, fit.design, fit.by_noise, fit.point)
+        explained = wald_statistic(applied.name, fit.design, fit.by_noise, fit.point)
         if support.outputs and explained > 0.0:
             yield applied, support, explained
 
@@ -135,7 +135,7 @@ def _gain_beside(
 ) -> float:
     """Score gain of a candidate with the cell's pattern as a further nuisance."""
     prediction = predict_all(point.model, runs)
-    turned, rest = unexplained(runs, point, numbers, prediction)
+    turned, rest = residual_innovations(runs, point, numbers, prediction)
     pattern = pattern_of(runs, point, cell)
     freer = nuisance(turned.residual(pattern))
     signature = next(signatures(runs, point, numbers, [score.candidate])[1])

@@ -13,7 +13,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import Prepared, finely, judged_by, prepare
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by, prepare
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import (
     Sides,
@@ -26,7 +26,7 @@ from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.fitting.run_phases import at_home, known_at_home
+from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_runs
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
@@ -61,8 +61,8 @@ class Judge:
     options: EvaluationOptions
     fitted_on: tuple[Run, ...]
     kept_back: tuple[Run, ...]
-    train: Prepared
-    holdout: Prepared
+    train: PreparedRuns
+    holdout: PreparedRuns
     fine: Concatenated
     """Held-out runs in the short legs of a fit, for the estimation of their per-run parameters."""
 
@@ -79,7 +79,7 @@ class Judge:
     def of(self, model: Model) -> Errors:
         """Errors of a model; per-run parameters of a held-out run are fitted to that run alone."""
         train = _legs(self.train, in_runs(self.train, model))
-        holdout = _legs(self.holdout, known_at_home(model, self.fine, self.options.reference_kind))
+        holdout = _legs(self.holdout, model_in_runs(model, self.fine, self.options.reference_kind))
         unit: Unit = "rad" if judged_by(self.train) == "heading" else "m"
         return Errors(
             error_of(train, unit),
@@ -91,9 +91,9 @@ class Judge:
             holdout,
         )
 
-    def at_home(self, model: Model) -> Point:
+    def fitted_per_run(self, model: Model) -> Point:
         """The model for the held-out runs: shared values kept, per-run parameters estimated."""
-        return at_home(model, self.fine, self.options.reference_kind)
+        return fitted_per_run(model, self.fine, self.options.reference_kind)
 
 
 @dataclass(frozen=True)
@@ -186,5 +186,5 @@ def judge_of(
     return Judge(robot, options, fitted_on, kept_back, train, held, finely(held))
 
 
-def _legs(prepared: Prepared, model: Model) -> Legs:
+def _legs(prepared: PreparedRuns, model: Model) -> Legs:
     return judged_legs(prepared, model, prepared.options.leg)

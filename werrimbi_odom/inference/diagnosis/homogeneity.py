@@ -18,15 +18,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import chi2_above, fisher_above
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.chances import chi2_survival, fisher_survival
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, step_jacobians, summed_over_legs
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import functions_of
-from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
+from werrimbi_odom.inference.fitting.candidates import of_each_run, residual_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
-from werrimbi_odom.inference.fitting.parts import heard_share, parts_of_innovations
+from werrimbi_odom.inference.fitting.parts import least_informative_share, parts_of_innovations
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
@@ -48,7 +48,7 @@ class Lasting(NamedTuple):
     """The one drive that shows the dependence where the others could and do not."""
 
 
-def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
+def homogeneity_of_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
     """P-value of an effect in the model, by the disagreement between the parts.
 
     The size of the effect in each part comes from the derivatives *at the fit*. For a law that is
@@ -88,7 +88,7 @@ def lasting(
     `numbers` are the nuisance parameters of the map.
     """
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, numbers, prediction)
+    frame, rest = residual_innovations(runs, point, numbers, prediction)
     parts = parts_of_innovations(runs, rest)
     if parts is None:
         yield from (Lasting(cell, 0.0, None) for cell in cells)
@@ -105,10 +105,10 @@ def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
     path = path_of(point.model, runs)
     sides = zip(
         functions_of(cell.variable)[cell.form],
-        pushes_of(runs, path, [cell.amount], point),
+        step_jacobians(runs, path, [cell.amount], point),
         strict=True,
     )
-    change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
+    change = np.asarray(sum(summed_over_legs(runs, *side) for side in sides))
     own = unexpected(runs, point).marks(change)[..., :-1]
     if cell.variable.per_run:
         own = of_each_run(runs, own)
@@ -158,7 +158,7 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | Non
     basis, values, _ = np.linalg.svd(scaled[others], full_matrices=False)
     own = basis[:, values > LASTING_HEARD]
     gain = float(np.sum((own.T @ rest[others]) ** 2))
-    return None if chi2_above(gain, own.shape[1]) < SURE_WHEN_ASKED else first
+    return None if chi2_survival(gain, own.shape[1]) < SURE_WHEN_ASKED else first
 
 
 def _chance(
@@ -168,7 +168,7 @@ def _chance(
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0
-    heard = heard_share(parts)
+    heard = least_informative_share(parts)
     for part in range(parts.max() + 1):
         here = parts == part
         basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)
@@ -177,4 +177,4 @@ def _chance(
         freedom += own.shape[1]
     freedom = max(freedom - degrees, 1)
     disagreement = max((apart - gain) / freedom, 1.0)
-    return fisher_above(gain / degrees / disagreement, degrees, freedom)
+    return fisher_survival(gain / degrees / disagreement, degrees, freedom)

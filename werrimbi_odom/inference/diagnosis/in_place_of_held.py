@@ -18,8 +18,8 @@ from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     candidates,
     parameters_of_candidate,
-    put_in,
     scores,
+    with_candidate,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
@@ -63,7 +63,7 @@ def _rivals(
     near = [each for each in ordered if each.candidate.name != held.name and each.gain > least]
     found = {}
     for score in near[:INSTEAD_FITTED]:
-        start = replace(point, model=put_in(point.model, score))
+        start = replace(point, model=with_candidate(point.model, score))
         free = (*numbers, *parameters_of_candidate(score.candidate))
         other = fitted(runs, start, (score.candidate.name,), free, given)
         if other.told and not other.at_bound and other.total < fit.total + RIVAL * fit.scatter:

@@ -18,7 +18,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import judged_legs
-from werrimbi_odom.inference.comparison.prepared import Prepared
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
@@ -42,7 +42,7 @@ class RecordedOtherwise:
 
 
 def recorded_otherwise(
-    fitted: Prepared, held_out: Prepared, mended: Robot, options: EvaluationOptions
+    fitted: PreparedRuns, held_out: PreparedRuns, mended: Robot, options: EvaluationOptions
 ) -> tuple[RecordedOtherwise, ...]:
     """Fitted and held-out drives that were recorded with another set-up than most fitted ones.
 
@@ -73,7 +73,7 @@ def _differing(run: Run, mended: Robot, options: EvaluationOptions) -> tuple[Set
     return findings if clear > OWN_GAIN else ()
 
 
-def typical_errors(prepared: Prepared, robot: Robot) -> Sequence[float]:
+def typical_errors(prepared: PreparedRuns, robot: Robot) -> Sequence[float]:
     """Median error of each drive's legs, of position [m], or of heading [rad] where that is all."""
     model = Model(robot, tuple({} for _ in prepared.runs))
     legs = judged_legs(prepared, model, prepared.options.leg)

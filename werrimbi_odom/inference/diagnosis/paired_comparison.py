@@ -21,7 +21,7 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import student_above
+from werrimbi_odom.inference.chances import student_survival
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.fitting.parts import parts_of
 from werrimbi_odom.inference.rules import HELD_OUT_FALL, SURE_WHEN_ASKED
@@ -99,4 +99,4 @@ def _chance(before: Legs, after: Legs, unit: Unit) -> float:
     share = float(np.sum(difference * first)) / size
     left = np.sum(difference * (first - share * difference), axis=1)
     scatter = math.sqrt(float(np.sum(np.bincount(parts, left) ** 2)) * count / (count - 1)) / size
-    return student_above((0.5 - share) / max(scatter, 1e-12), count - 1)
+    return student_survival((0.5 - share) / max(scatter, 1e-12), count - 1)

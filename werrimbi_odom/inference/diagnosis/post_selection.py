@@ -17,7 +17,7 @@ from itertools import chain, combinations, product
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
+from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, choices
 from werrimbi_odom.inference.fitting.design import Design
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance
@@ -29,11 +29,11 @@ Law = dict[str, float]
 """Optional parameters of an effect, of which at least one is kept, with their null values."""
 
 
-def spread_over_choices(
+def model_averaged_stds(
     fit: Fitted,
     given: Robot,
     wanted: Collection[str],
-    told: Sizes,
+    told: FreeSizes,
     laws: Sequence[Law] = (),
     design: Design | None = None,
 ) -> dict[str, float]:
@@ -96,7 +96,7 @@ def spread_over_choices(
         step = -covariance @ (columns.T @ left)
         there = absent + moves @ step
         cost = float(np.sum((left + columns @ step) ** 2)) / fit.scatter
-        cost += fit.price_of_one * (sizes.free + len(kept))
+        cost += fit.penalty_of_one * (sizes.free + len(kept))
         there_now = there if is_told else there_now
         found.append((cost, there, moves @ covariance @ moves.T))
     least = min(cost for cost, *_ in found)

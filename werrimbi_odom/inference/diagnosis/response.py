@@ -16,10 +16,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.evidence import (
+    Amount,
+    Dependence,
+    step_jacobians,
+    summed_over_legs,
+)
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED, unexplained
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, residual_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter, Model
@@ -75,13 +80,13 @@ def response(
         Edges of the bins.
     """
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, numbers, prediction)
+    frame, rest = residual_innovations(runs, point, numbers, prediction)
     path = path_of(point.model, runs)
-    of_left, of_right = pushes_of(runs, path, [amount], point)
+    of_left, of_right = step_jacobians(runs, path, [amount], point)
     left, right = (_marks(side, edges) for side in values)
-    change = legs_pushed(runs, left, of_left)
+    change = summed_over_legs(runs, left, of_left)
     if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
-        change = change + legs_pushed(runs, right, of_right)
+        change = change + summed_over_legs(runs, right, of_right)
     marks = unexpected(runs, point, prediction).marks(change)
     flat = marks[..., : change.shape[-1]].reshape(rest.size, -1)
     length = np.sqrt(np.sum(flat**2, axis=0))

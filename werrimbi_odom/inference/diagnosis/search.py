@@ -14,8 +14,8 @@ from werrimbi_odom.inference.fitting.candidates import (
     Score,
     candidates,
     parameters_of_candidate,
-    put_in,
     scores,
+    with_candidate,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
@@ -55,7 +55,7 @@ class Round:
     """Number of candidates scored."""
 
 
-def first_fit(
+def fit_calibration(
     runs: Concatenated, robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Fitted:
     """Fit of the robot as given, with calibration."""
@@ -72,7 +72,7 @@ def first_fit(
     return min(fits, key=lambda fit: fit.total)
 
 
-def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
+def refit_with_jumps(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
     """Fit again, with the jumps of the reference found by the better model.
 
     Only a reference with correlated errors has jumps that stay. Where the errors of poses are
@@ -114,12 +114,12 @@ def instead_of_calibration(
     found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
     results = []
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
-        start = replace(point, model=put_in(point.model, score))
+        start = replace(point, model=with_candidate(point.model, score))
         numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
-            price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
-            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))
+            penalty = calibrated.penalty_of_one * len(fit.free) * calibrated.scatter
+            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + penalty))
     return tuple(sorted(results, key=lambda item: item.total))
 
 
@@ -146,7 +146,7 @@ def search_round(
         options = [score] + ([max(variants, key=lambda other: other.gain)] if variants else [])
         fits = []
         for option in options:
-            start = replace(point, model=put_in(point.model, option))
+            start = replace(point, model=with_candidate(point.model, option))
             numbers = (*before.numbers, *parameters_of_candidate(option.candidate))
             names = (*before.names, option.candidate.name)
             fits.append(fitted(runs, start, names, numbers, given))

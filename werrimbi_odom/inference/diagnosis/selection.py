@@ -72,15 +72,15 @@ class Fitted:
     """Those of the three calibration effects that the model needs."""
     alternatives: tuple[tuple[str, ...], ...]
     """Other subsets of the same size that explain as much."""
-    price: float
+    penalty: float
     """Penalty of all free parameters, without the needless calibration effects."""
-    price_of_one: float
+    penalty_of_one: float
     """Penalty of one free parameter."""
     scatter: float
     """Dispersion: factor by which costs are too large where few data determine the noise."""
     spare: float
     """Degrees of freedom of `scatter`; infinite where the noise was fitted."""
-    needless: float
+    needless_gain: float
     """Rise of the cost when needless calibration effects are reset to the given values."""
     at_bound: tuple[str, ...]
     """Free parameters at their physical bound; `RATIO` where the two wheels differ by more than
@@ -107,7 +107,9 @@ class Fitted:
     @property
     def doubts(self) -> dict[str, float]:
         """Factor by which the parts scaled the variance of each calibration effect."""
-        return doubts_of_sizes(self.design, self.by_noise, self.widening, self.point.model.robot)
+        return variance_inflation_of_sizes(
+            self.design, self.by_noise, self.widening, self.point.model.robot
+        )
 
     @property
     def told(self) -> bool:
@@ -122,7 +124,7 @@ class Fitted:
     @property
     def total(self) -> float:
         """Cost with all penalties."""
-        return self.cost + self.needless + self.price * self.scatter
+        return self.cost + self.needless_gain + self.penalty * self.scatter
 
 
 def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
@@ -135,17 +137,17 @@ def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
     return not is_ordinary(ratio)
 
 
-def price_of_one(runs: Concatenated) -> float:
+def penalty_of_one(runs: Concatenated) -> float:
     """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor."""
     return max(PENALTY_FLOOR, math.log(max(runs.data, 2)))
 
 
 def scatter_of(runs: Concatenated, design: Design) -> float:
     """Dispersion of the innovations where few data determine the noise; else 1."""
-    return max(1.0, float(np.sum(design.white**2)) / spare_of(runs, design))
+    return max(1.0, float(np.sum(design.white**2)) / residual_degrees_of(runs, design))
 
 
-def spare_of(runs: Concatenated, design: Design) -> float:
+def residual_degrees_of(runs: Concatenated, design: Design) -> float:
     """Residual degrees of freedom for the noise; infinite where there are enough data."""
     if runs.data >= NOISE_NUMBERS:
         return math.inf
@@ -166,17 +168,17 @@ def fitted(
     result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
     ways = determined(design, result.robot)
-    price, scatter = price_of_one(runs), scatter_of(runs, design)
+    penalty, scatter = penalty_of_one(runs), scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)
-    totals = {each.kept: each.rise / scatter + price * len(each.kept) for each in rises}
+    totals = {each.kept: each.rise / scatter + penalty * len(each.kept) for each in rises}
     kept, rise, *_ = min(
         (each for each in rises if each.fitted), key=lambda each: totals[each.kept]
     )
     wide = widening(*design.flat(), ways.matrix, runs)
     covariance = covariance_of(design, ways)
-    doubt = doubts_of_sizes(design, covariance, wide, result.robot)
+    doubt = variance_inflation_of_sizes(design, covariance, wide, result.robot)
     covariance = covariance * np.outer(wide, wide) + np.diag(grain_of(design, result.robot))
-    importance = {name: rise_without(name, design, covariance, result.point) for name in names}
+    importance = {name: wald_statistic(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
         rest = next(each.rise for each in rises if each.kept == without)
@@ -200,10 +202,10 @@ def fitted(
             and totals[each.kept] - totals[kept] < RIVAL
             and each.believed
         ),
-        price * (len(kept) + counted),
-        price,
+        penalty * (len(kept) + counted),
+        penalty,
         scatter,
-        spare_of(runs, design),
+        residual_degrees_of(runs, design),
         rise,
         (
             *(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
@@ -244,10 +246,10 @@ def calibration_rises(
     names = [number.name for number, _ in design.columns]
     others = nuisance(flat[1][:, [name not in MULTIPLIERS for name in names]])
     free = others.residual(marks)
-    put_back = others.residual(flat[0]) - free @ calibration_deviation(robot, given)
+    with_held_as_given = others.residual(flat[0]) - free @ calibration_deviation(robot, given)
     found = []
     for chosen in map(list, _subsets(range(len(CALIBRATED)))):
-        test = score_test(marks[:, chosen], free[:, chosen], put_back)
+        test = score_test(marks[:, chosen], free[:, chosen], with_held_as_given)
         kept = tuple(CALIBRATED[index] for index in chosen)
         sizes = zip(kept, np.zeros(len(kept)) if test is None else test.coefficients, strict=True)
         off = [abs(size) for name, size in sizes if name in held]
@@ -258,7 +260,7 @@ def calibration_rises(
     return [each._replace(rise=each.rise - least) for each in found]
 
 
-def doubts_of_sizes(
+def variance_inflation_of_sizes(
     design: Design, covariance: Floats, wide: Floats, robot: Robot
 ) -> dict[str, float]:
     """Factor by which the variance of each calibration effect is widened, for all three."""
@@ -296,7 +298,7 @@ def grain_of(design: Design, robot: Robot) -> Floats:
     return np.asarray(widths**2 / 12.0)
 
 
-def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
+def wald_statistic(name: str, design: Design, covariance: Floats, point: Point) -> float:
     """Rise of the cost without an effect, by the curvature at the fit (Wald statistic)."""
     chosen, away = [], []
     for index, (number, run) in enumerate(design.columns):

@@ -50,7 +50,7 @@ _MOVES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Sizes:
+class FreeSizes:
     """Free sizes, as directions in the logarithms of the three multipliers."""
 
     parts: tuple[str, str]
@@ -64,11 +64,11 @@ class Sizes:
         return int(self.directions.shape[1])
 
 
-def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
+def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> FreeSizes:
     """The cheapest set of sizes that may differ from the given file's.
 
     To first order, with everything else fitted again. The penalty of a parameter is that of all
-    model selection (`Fitted.price_of_one`).
+    model selection (`Fitted.penalty_of_one`).
 
     Parameters
     ----------
@@ -80,8 +80,8 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
     for sizes in choices(wanted):
         away = _solved(marks, sizes, rest)
         gained = float(np.sum((marks @ sizes.directions @ away) ** 2))
-        price = fit.price_of_one * sizes.free + _surprise(sizes.directions @ away)
-        weighed.append((price - gained / fit.scatter, sizes))
+        penalty = fit.penalty_of_one * sizes.free + _surprise(sizes.directions @ away)
+        weighed.append((penalty - gained / fit.scatter, sizes))
     return min(weighed, key=lambda item: item[0])[1]
 
 
@@ -95,7 +95,7 @@ def _surprise(logs: Floats) -> float:
     return float(2.0 * np.sum(np.log1p((logs / CALIBRATION_KNOWN) ** 2)))
 
 
-def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> Fitted:
+def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: FreeSizes) -> Fitted:
     """Fit again, with only those sizes free to differ from the given file's.
 
     The fit itself where all are free, or where the cost rises more than the approximation promised.
@@ -131,35 +131,35 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> F
     robot = changed(point.model.robot, _sized(given, sizes, away))
     point = replace(point, model=Model(robot, point.model.own))
     cost = float(Costs(runs, point)(point.variances)[0])
-    if not cost < fit.cost + fit.price_of_one * fit.scatter * len(MULTIPLIERS) + RIVAL:
+    if not cost < fit.cost + fit.penalty_of_one * fit.scatter * len(MULTIPLIERS) + RIVAL:
         return fit
     inverse = np.linalg.pinv((columns / size).T @ (columns / size), rcond=1e-12, hermitian=True)
     covariance = free @ (inverse / np.outer(size, size)) @ free.T
     heard = np.isin([number.name for number, _ in design.columns], MULTIPLIERS)
-    mute = ~heard & (np.sum(flat**2, axis=0) < 1e-18)
-    covariance[mute, mute] = 1e12
+    not_identifiable = ~heard & (np.sum(flat**2, axis=0) < 1e-18)
+    covariance[not_identifiable, not_identifiable] = 1e12
     others = fit.moves[:, ~fit.moves[heard].any(axis=0)]
     return replace(
         fit,
         point=point,
         cost=cost,
-        needless=0.0,
+        needless_gain=0.0,
         covariance=covariance * np.outer(fit.widening, fit.widening),
         moves=np.concatenate([free[:, : sizes.free], others], axis=1),
         design=design,
     )
 
 
-def sizes_at(fit: Fitted, given: Robot, sizes: Sizes) -> dict[str, float]:
+def sizes_at(fit: Fitted, given: Robot, sizes: FreeSizes) -> dict[str, float]:
     """Multipliers with only those sizes free, to first order; the others as given."""
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
     return _sized(given, sizes, -_solved(marks, sizes, rest))
 
 
-def choices(wanted: Collection[str] = ()) -> Iterator[Sizes]:
+def choices(wanted: Collection[str] = ()) -> Iterator[FreeSizes]:
     """All choices of free sizes that move the `wanted` effects, the fewest parameters first."""
     every = [
-        Sizes((base, radii), np.array([*_BASE[base], *_RADII[radii]]).reshape(-1, 3).T)
+        FreeSizes((base, radii), np.array([*_BASE[base], *_RADII[radii]]).reshape(-1, 3).T)
         for radii in _RADII
         for base in _BASE
     ]
@@ -183,14 +183,14 @@ def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Float
     return marks, others.residual(white) - marks @ np.log(now / before)
 
 
-def _solved(marks: Floats, sizes: Sizes, rest: Floats) -> Floats:
+def _solved(marks: Floats, sizes: FreeSizes, rest: Floats) -> Floats:
     """Least squares in the free directions, (k,)."""
     if sizes.free == 0:
         return np.zeros(0)
     return np.asarray(np.linalg.lstsq(marks @ sizes.directions, rest, rcond=1e-6)[0])
 
 
-def _sized(given: Robot, sizes: Sizes, away: Floats) -> dict[str, float]:
+def _sized(given: Robot, sizes: FreeSizes, away: Floats) -> dict[str, float]:
     """Multipliers at this distance from the given ones; those that are not free stay exact."""
     logs = sizes.directions @ away
     return {
@@ -199,7 +199,7 @@ def _sized(given: Robot, sizes: Sizes, away: Floats) -> dict[str, float]:
     }
 
 
-def _free(design: Design, robot: Robot, sizes: Sizes) -> Floats:
+def _free(design: Design, robot: Robot, sizes: FreeSizes) -> Floats:
     """Matrix from free directions (q,) to design columns (p,): the sizes first, then all others."""
     names = [number.name for number, _ in design.columns]
     rest = [index for index, name in enumerate(names) if name not in MULTIPLIERS]

@@ -40,7 +40,7 @@ def rivals_in_halves(runs: Concatenated, this: Round, best: Fitted) -> tuple[str
 
 def _price(best: Fitted, other: Fitted) -> float:
     """Difference of the penalties."""
-    return (best.price - other.price) * best.scatter
+    return (best.penalty - other.penalty) * best.scatter
 
 
 def _cost_of_legs(runs: Concatenated, fit: Fitted) -> Floats:

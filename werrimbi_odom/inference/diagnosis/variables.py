@@ -14,10 +14,10 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import (
     anchors,
+    extrinsics_of,
     headings_of,
     path_of,
     right_handed,
-    seen_by,
 )
 from werrimbi_odom.inference.rules import (
     CURVE_KNOTS,
@@ -68,7 +68,7 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
     robot = model.laid_out(runs.steps)
     drive = runs.drive(robot)
     path = path_of(model, runs)
-    view = seen_by(model, runs)
+    view = extrinsics_of(model, runs)
     heading = headings_of(path, runs, view, model.start_yaws)
 
     def own(name: str, unit: str, left: Floats, right: Floats, *fields: str) -> Variable:

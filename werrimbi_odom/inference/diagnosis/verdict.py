@@ -13,11 +13,11 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.chances import bonferroni, chi2_survival
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
-from werrimbi_odom.inference.diagnosis.chance import chance, chance_by_parts, chance_of_size
+from werrimbi_odom.inference.diagnosis.chance import chance, p_value_by_parts, p_value_of_size
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
@@ -227,8 +227,8 @@ def told(
 def _is_news(name: str, final: Fitted, tried: int) -> bool:
     """Whether a size is a finding: significant, with a gain well above its penalty."""
     worth = final.importance[name]
-    certain = in_any_of(tried, chance_of_size(final, name)) < SURE
-    return certain and worth > CALIBRATION_WORTH * final.price_of_one
+    certain = bonferroni(tried, p_value_of_size(final, name)) < SURE
+    return certain and worth > CALIBRATION_WORTH * final.penalty_of_one
 
 
 def _differs(name: str, final: Fitted, given: Robot) -> bool:
@@ -289,18 +289,18 @@ def _ranking(
             if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)
                 if taken:
-                    p_value = max(p_value, chance_by_parts(laid, final, name, this.number))
+                    p_value = max(p_value, p_value_by_parts(laid, final, name, this.number))
                 ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
     calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
-        p_value = in_any_of(rounds[0].number, chance_of_size(final, name))
+        p_value = bonferroni(rounds[0].number, p_value_of_size(final, name))
         untried = Ranked(name, p_value, None, None)
         worth = _worth(name, p_value, mended, calibrated) if importance else untried
         base = name_of_base(final.point.model.robot)
         ranked.setdefault(base if name == "track_width" else name, worth)
     for score in rounds[0].scores:
-        p_value = in_any_of(rounds[0].number, chi2_above(score.gain, score.degrees))
+        p_value = bonferroni(rounds[0].number, chi2_survival(score.gain, score.degrees))
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
     return [*first, *sorted(ranked.values(), key=_certainty)]

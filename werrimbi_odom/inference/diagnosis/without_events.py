@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.holdout import Judge
-from werrimbi_odom.inference.events.events import Events, Side, events_among, without
+from werrimbi_odom.inference.events.events import Events, EventSide, events_among, without
 from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
@@ -19,7 +19,7 @@ from werrimbi_odom.inference.rules import EVENT_ROUNDS
 Found = TypeVar("Found")
 
 
-def fitted_without_events(
+def refit_without_events(
     fit: Callable[[Sequence[Run], Sequence[Run], bool], tuple[Found, Events]],
     runs: Sequence[Run],
     holdout: Sequence[Run],
@@ -57,12 +57,12 @@ def events_beside(runs: Concatenated, fitted: Point, judge: Judge) -> Events:
     """Abrupt events beside a model, in the fitted and in the held-out drives."""
     noise = noise_of_most(runs, fitted)
     point = replace(fitted, variances=noise)
-    home = replace(judge.at_home(point.model), variances=noise)
+    home = replace(judge.fitted_per_run(point.model), variances=noise)
     fitted_on, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
     return events_among(
         [
-            Side(runs.runs, fitted_on, point, held_out=False),
-            Side(judge.fine.runs, kept, home, held_out=True),
+            EventSide(runs.runs, fitted_on, point, held_out=False),
+            EventSide(judge.fine.runs, kept, home, held_out=True),
         ],
         point.options.reference_kind,
     )

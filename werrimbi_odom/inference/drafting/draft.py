@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
@@ -26,8 +26,8 @@ from werrimbi_odom.inference.drafting.in_a_line import factor_of, in_a_line
 from werrimbi_odom.inference.drafting.laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.drafting.plan import (
     Claim,
+    LawForm,
     Option,
-    Plan,
     by_score,
     fitted_plan,
     keeps_laws,
@@ -104,7 +104,7 @@ def draft_effect(
             "there is nothing to draft: the errors go with no measured variable beyond chance"
         )
     final = diagnosis.final
-    drives = Drives(diagnosis.runs, final.point.excluded, final.point.options)
+    drives = FitDrives(diagnosis.runs, final.point.excluded, final.point.options)
     variables = {item.name: item for item in variables_of(diagnosis.runs, final.point.model)}
     options: list[Option] = []
     plans = [
@@ -156,7 +156,7 @@ def draft_effect(
     )
 
 
-def _in_a_line(last: Plan, fit: Fitted) -> str:
+def _in_a_line(last: LawForm, fit: Fitted) -> str:
     """The law as a formula, if it is linear in its variable."""
     if last.form.kind != "line":
         return ""

@@ -21,8 +21,8 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.inference.adding.start_values import Drives
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.adding.start_values import FitDrives
+from werrimbi_odom.inference.chances import bonferroni, chi2_survival
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
@@ -101,7 +101,7 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
         The draft of one variable; without one, the law must be better than calibration alone.
     """
     base = diagnosis.final
-    drives = Drives(diagnosis.runs, base.point.excluded, base.point.options)
+    drives = FitDrives(diagnosis.runs, base.point.excluded, base.point.options)
     noise = _as_calm(base.point.variances if one is None else one.fit.point.variances)
     found: list[_Found] = []
     for number in range(SEARCHES):
@@ -169,12 +169,12 @@ class _Found(NamedTuple):
 
 
 def _fitted(
-    diagnosis: Diagnosis, drives: Drives, laws: Sequence[LawOfTwo], tried: int, noise: Variances
+    diagnosis: Diagnosis, drives: FitDrives, laws: Sequence[LawOfTwo], tried: int, noise: Variances
 ) -> Iterator[_Found]:
     """Fit the few most promising laws."""
     planned_from = {}
     for law in laws:
-        chance = in_any_of(tried, chi2_above(law.gain, len(law.terms)))
+        chance = bonferroni(tried, chi2_survival(law.gain, len(law.terms)))
         plan = planned(diagnosis, Claim(law.amount, law.name, chance), law.seen, law.form)
         planned_from[plan.effect.apply] = law, plan
     ordered = by_score(diagnosis, drives, [plan for _, plan in planned_from.values()], noise)
@@ -206,17 +206,17 @@ def _searched(diagnosis: Diagnosis, point: Point) -> tuple[list[LawOfTwo], int]:
         amount: sums_of(runs, point, numbers, amount, terms[amount.of_wheels]) for amount in AMOUNTS
     }
     tried = sum(len(each.terms) for each in sums.values())
-    price = diagnosis.final.price_of_one + _price_of_search(tried)
+    penalty = diagnosis.final.penalty_of_one + _price_of_search(tried)
     found = []
     for amount, each in sums.items():
-        for chosen in selections(each.square, each.cross, price, _of_two_variables(each)):
+        for chosen in selections(each.square, each.cross, penalty, _of_two_variables(each)):
             own = tuple(each.terms[index] for index in chosen.terms)
             sizes = (chosen.coefficients / each.size[list(chosen.terms)]).tolist()
             law = LawOfTwo(amount, own, tuple(sizes), chosen.gain)
-            if chosen.worth(price) > 0.0 and any(is_of_two(term, amount) for term in own):
+            if chosen.worth(penalty) > 0.0 and any(is_of_two(term, amount) for term in own):
                 found.append(law)
     found = [law for law in found if len(law.variables) == 2]
-    found.sort(key=lambda law: price * len(law.terms) - law.gain)
+    found.sort(key=lambda law: penalty * len(law.terms) - law.gain)
     return found[: 2 * MOST_FITTED], tried
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.effects.contract import check_effect
-from werrimbi_odom.inference.adding.start_values import Drives, scored, start_at
+from werrimbi_odom.inference.adding.start_values import FitDrives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.selection import Fitted
@@ -41,7 +41,7 @@ class Claim(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plan:
+class LawForm:
     """A form of law that may be fitted."""
 
     claim: Claim
@@ -59,19 +59,19 @@ class Plan:
 class Option:
     """A form of law that was fitted."""
 
-    plan: Plan
+    plan: LawForm
     fit: Fitted
 
 
-def planned(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> Plan:
+def planned(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> LawForm:
     """Write the effect file of a form."""
     source = _written(diagnosis, claim, seen, form)
-    return Plan(claim, seen, form, loaded(source), source)
+    return LawForm(claim, seen, form, loaded(source), source)
 
 
 def by_score(
-    diagnosis: Diagnosis, drives: Drives, plans: Sequence[Plan], noise: Variances
-) -> list[Plan]:
+    diagnosis: Diagnosis, drives: FitDrives, plans: Sequence[LawForm], noise: Variances
+) -> list[LawForm]:
     """Rank forms by their score tests, without a fit; undetermined ones left out."""
     base = diagnosis.final
     before = replace(base, point=replace(base.point, variances=noise))
@@ -80,12 +80,12 @@ def by_score(
         scores = scored(drives, before, [plan.effect], base.numbers)
         if scores:
             best = max(scores, key=lambda each: each.gain)
-            paid = base.price_of_one * plan.form.numbers
+            paid = base.penalty_of_one * plan.form.numbers
             found.append(replace(plan, score=best, excess=best.gain - paid))
     return sorted(found, key=lambda plan: -plan.excess)
 
 
-def fitted_plan(diagnosis: Diagnosis, drives: Drives, plan: Plan) -> Option:
+def fitted_plan(diagnosis: Diagnosis, drives: FitDrives, plan: LawForm) -> Option:
     """Fit a draft, starting from the values that its score suggests."""
     base = diagnosis.final
     assert plan.score is not None
@@ -101,7 +101,7 @@ def _written(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> str:
     return source_of(name, claim.amount, seen, form, len(diagnosis.runs.runs), strength)
 
 
-def with_values(diagnosis: Diagnosis, option: Option) -> Plan:
+def with_values(diagnosis: Diagnosis, option: Option) -> LawForm:
     """The draft with the fitted values as typical values, so that fits begin there."""
     plan, robot = option.plan, option.fit.point.model.robot
     applied = next(item for item in robot.effects if item.name == plan.effect.name)
@@ -127,7 +127,7 @@ def with_values(diagnosis: Diagnosis, option: Option) -> Plan:
     return last if keeps_laws(last.effect) else plan
 
 
-def value_of(fit: Fitted, plan: Plan, name: str) -> float:
+def value_of(fit: Fitted, plan: LawForm, name: str) -> float:
     """Fitted value of a parameter of a draft."""
     held = fit.point.model.robot.effects
     return next(item for item in held if item.name == plan.effect.name).values[name]

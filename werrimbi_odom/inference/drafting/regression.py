@@ -30,15 +30,15 @@ class Selected(NamedTuple):
     gain: float
     """Fall of the squared innovations."""
 
-    def worth(self, price: float) -> float:
+    def worth(self, penalty: float) -> float:
         """Gain less the penalty."""
-        return self.gain - price * len(self.terms)
+        return self.gain - penalty * len(self.terms)
 
 
 def selections(
     square: Floats,
     cross: Floats,
-    price: float,
+    penalty: float,
     may_join: Callable[[Collection[int], int], bool] = lambda chosen, one: True,
 ) -> list[Selected]:
     """The best small sets of terms, one for each starting term; the best first.
@@ -67,12 +67,12 @@ def selections(
             more = _gains(square, cross, chosen)
             joins = [may_join(chosen, one) for one in range(cross.size)]
             more[~np.array(joins)] = 0.0
-            if more.max(initial=0.0) <= price:
+            if more.max(initial=0.0) <= penalty:
                 break
             chosen.append(int(np.argmax(more)))
-        kept = _thinned(square, cross, chosen, price)
+        kept = _thinned(square, cross, chosen, penalty)
         found.setdefault(kept.terms, kept)
-    return sorted(found.values(), key=lambda each: -each.worth(price))
+    return sorted(found.values(), key=lambda each: -each.worth(penalty))
 
 
 def _gains(square: Floats, cross: Floats, chosen: list[int]) -> Floats:
@@ -86,14 +86,14 @@ def _gains(square: Floats, cross: Floats, chosen: list[int]) -> Floats:
     return np.where(told, toward**2 / np.where(told, left, 1.0), 0.0)
 
 
-def _thinned(square: Floats, cross: Floats, chosen: list[int], price: float) -> Selected:
+def _thinned(square: Floats, cross: Floats, chosen: list[int], penalty: float) -> Selected:
     """Backward elimination: drop terms that later ones made needless."""
     best = _solved(square, cross, chosen)
     for one in chosen:
         others = [other for other in best.terms if other != one]
         if others and one in best.terms:
             without = _solved(square, cross, others)
-            best = max(without, best, key=lambda each: each.worth(price))
+            best = max(without, best, key=lambda each: each.worth(penalty))
     return best
 
 

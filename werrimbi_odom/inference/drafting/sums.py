@@ -13,9 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.evidence import BATCH, Amount, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.evidence import (
+    BATCH,
+    Amount,
+    step_jacobians,
+    summed_over_legs,
+)
 from werrimbi_odom.inference.drafting.terms import Term
-from werrimbi_odom.inference.fitting.candidates import unexplained
+from werrimbi_odom.inference.fitting.candidates import residual_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
@@ -53,16 +58,16 @@ def sums_of(
         Nuisance parameters: what they can explain is no evidence.
     """
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, numbers, prediction)
-    of_left, of_right = pushes_of(runs, path_of(point.model, runs), [amount], point)
+    frame, rest = residual_innovations(runs, point, numbers, prediction)
+    of_left, of_right = step_jacobians(runs, path_of(point.model, runs), [amount], point)
     told = unexpected(runs, point, prediction)
     columns = np.empty((rest.size, len(terms)))
     each = max(1, BATCH // max(runs.run_of_step.size, 1))
     for begin in range(0, len(terms), each):
         some = terms[begin : begin + each]
-        change = legs_pushed(runs, _values(some, 0), of_left)
+        change = summed_over_legs(runs, _values(some, 0), of_left)
         if amount.of_wheels:
-            change += legs_pushed(runs, _values(some, 1), of_right)
+            change += summed_over_legs(runs, _values(some, 1), of_right)
         marks = told.marks(change)[..., : len(some)]
         columns[:, begin : begin + len(some)] = marks.reshape(rest.size, len(some))
     size = np.sqrt(np.sum(columns**2, axis=0))

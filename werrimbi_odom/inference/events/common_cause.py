@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import binomial_above, in_any_of
+from werrimbi_odom.inference.chances import binomial_survival, bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.rules import (
@@ -112,8 +112,8 @@ def alike(
         share = sum(float(p @ here) for p, here in zip(weight, near, strict=True)) / whole
         # The event that gave the place is no evidence for it.
         told_by = 0 if np.isnan(at).all() else 1
-        chance = binomial_above(count - told_by, of - told_by, share)
-        found.append(Alike(what, count, of, at, in_any_of(len(tried), chance)))
+        chance = binomial_survival(count - told_by, of - told_by, share)
+        found.append(Alike(what, count, of, at, bonferroni(len(tried), chance)))
     common = [
         each
         for each in found

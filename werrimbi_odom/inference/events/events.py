@@ -110,7 +110,7 @@ class Events:
         return self.accidents and self.kind != "local_map"
 
 
-class Side(NamedTuple):
+class EventSide(NamedTuple):
     """Drives, and a model of them."""
 
     runs: Sequence[MatchedRun]
@@ -120,7 +120,7 @@ class Side(NamedTuple):
     held_out: bool
 
 
-def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Events:
+def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
     """Abrupt errors that a model does not explain."""
     events: list[Event] = []
     legs, looked = [], []
@@ -198,7 +198,7 @@ def _groups(steps: Steps) -> list[list[int]]:
     return groups
 
 
-def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
+def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     """The event that a group of steps makes, if it is sudden and large."""
     runs = steps.runs
     spike = all(steps.found[index].shape == "spike" for index in group)

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.chances import chi2_median
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Costs, Point, unexpected
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import likeliest
+from werrimbi_odom.inference.fitting.noise import map_variances
 from werrimbi_odom.inference.rules import NOISE_NUMBERS, NOISE_TRIMMED
 
 _ROUNDS = 4
@@ -35,5 +35,5 @@ def noise_of_most(runs: Concatenated, point: Point) -> Variances:
             break
         out = far | point.skip
         point = replace(point, excluded=tuple(out[first:last] for first, last in bounds))
-        point = replace(point, variances=likeliest(Costs(runs, point), point.variances, held))
+        point = replace(point, variances=map_variances(Costs(runs, point), point.variances, held))
     return point.variances

@@ -20,7 +20,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import chi2_above, chi2_median
+from werrimbi_odom.inference.chances import chi2_median, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.filtering import Shocks
@@ -41,7 +41,7 @@ _HEARD = 1e-4
 """Share of a direction's information below which a step does not determine it."""
 
 
-class Step(NamedTuple):
+class PoseStep(NamedTuple):
     """A step of the pose, along, sideways and in heading, at one leg."""
 
     shape: Shape
@@ -56,7 +56,7 @@ class Steps:
 
     runs: Concatenated
     """The runs, with a leg from each examined pose to the next."""
-    found: tuple[Step, ...]
+    found: tuple[PoseStep, ...]
     columns: Floats
     """Change of the whitened innovations for unit steps, (3 m, 3 q)."""
     white: Floats
@@ -142,7 +142,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     if told.ways is not None and not runs.headings_alone:
         shapes += ("reference",) if point.options.reference_kind == "local_map" else ("spike",)
     tests = len(shapes) * int(told.known.any(axis=-1).sum())
-    steps: list[Step] = []
+    steps: list[PoseStep] = []
     chances: list[float] = []
     columns = np.zeros((white.size, 0))
     scatter = np.ones(len(runs.runs))
@@ -189,7 +189,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
 
 def _kept(
     runs: Concatenated,
-    steps: Sequence[Step],
+    steps: Sequence[PoseStep],
     columns: Floats,
     white: Floats,
     scatter: Floats,
@@ -205,7 +205,7 @@ def _kept(
         gain = float(size @ np.linalg.solve(covariance[own, own], size))
         degrees = int((np.diag(covariance)[own] < 1.0).sum())
         gain /= scatter[runs.run_of_leg[step.leg]]
-        if degrees and tests * chi2_above(gain, degrees) < SURE_OF_EVENT:
+        if degrees and tests * chi2_survival(gain, degrees) < SURE_OF_EVENT:
             kept.append(index)
     return kept
 
@@ -250,29 +250,29 @@ def _scatter(runs: Concatenated, gain: tuple[Floats, Floats], told: Innovations)
 
 def _peaks(
     runs: Concatenated, gains: dict[Shape, tuple[Floats, Floats]], scatter: Floats, tests: int
-) -> list[tuple[Step, float]]:
+) -> list[tuple[PoseStep, float]]:
     """Local maxima of the significant steps, each with its corrected p-value."""
     own = scatter[runs.run_of_leg]
     names = list(gains)
     every = np.stack([(gain - degrees) / own for gain, degrees in gains.values()])
     shape = np.argmax(every, axis=0)
     end = runs.ends_at
-    found: list[tuple[Step, float]] = []
+    found: list[tuple[PoseStep, float]] = []
     for run in range(len(runs.runs)):
         legs = np.arange(runs.legs[run], runs.legs[run + 1])
         best = every[:, legs].max(axis=0)
         for leg in legs[np.argsort(-best)].tolist():
             gain, degrees = (float(part[leg]) for part in gains[names[shape[leg]]])
-            chance = tests * chi2_above(gain / own[leg], degrees) if degrees else 1.0
+            chance = tests * chi2_survival(gain / own[leg], degrees) if degrees else 1.0
             if chance >= SURE_OF_EVENT:
                 break
             near = legs[np.abs(end[legs] - end[leg]) < 2.0 * EVENT_SLOW]
             if every[:, near].max() <= every[shape[leg], leg]:
-                found.append((Step(names[shape[leg]], leg), chance))
+                found.append((PoseStep(names[shape[leg]], leg), chance))
     return found
 
 
-def _change(step: Step, axes: Floats, states: int) -> Floats:
+def _change(step: PoseStep, axes: Floats, states: int) -> Floats:
     """Change of the filter's states for a unit step, (m, s, 3)."""
     change = np.zeros((axes.shape[0], states, 3))
     first = 3 if step.shape == "reference" else 0

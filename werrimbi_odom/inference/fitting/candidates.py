@@ -28,8 +28,8 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     parameters_to_fit,
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
-from werrimbi_odom.inference.fitting.placed import best_placed
-from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
+from werrimbi_odom.inference.fitting.placed import best_angles
+from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -145,7 +145,7 @@ def signatures(
         return np.zeros(0), iter(())
     change = np.stack(columns, axis=-1)
     marks = unexpected(runs, point, prediction).marks(change)[..., :-1]
-    frame, rest = unexplained(runs, point, numbers, prediction)
+    frame, rest = residual_innovations(runs, point, numbers, prediction)
     owned = np.array(owners)
 
     def each() -> Iterator[Signature]:
@@ -159,7 +159,7 @@ def signatures(
     return rest, each()
 
 
-def unexplained(
+def residual_innovations(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], prediction: Prediction
 ) -> tuple[Nuisance, Floats]:
     """Span of the derivatives in `numbers`, and the innovations (n,) with it projected out."""
@@ -201,7 +201,7 @@ def _scores_of_places(
     assert candidate.place is not None
     tries = np.array(candidate.effect.parameters[candidate.place].tries)
     blocks = runs if candidate.per_run else 1
-    for found in best_placed(tries, free, rest, blocks):
+    for found in best_angles(tries, free, rest, blocks):
         size = np.array([found.size])
         yield Score(candidate, found.gain, 1 + blocks, size, found.places)
 
@@ -224,11 +224,11 @@ def _slope(
         if factor < 0.0 and one_sided:
             return np.asarray(poses[0] - prediction.relative)
         robot = replace(model.robot, effects=(*model.robot.effects, applied))
-        poses.append(legs_shown(replace(model, robot=robot), runs))
+        poses.append(predicted_legs(replace(model, robot=robot), runs))
     return np.asarray(0.5 * (poses[0] - poses[1]))
 
 
-def put_in(model: Model, score: Score) -> Model:
+def with_candidate(model: Model, score: Score) -> Model:
     """Add a candidate to the model, at the values that its score suggests."""
     candidate = score.candidate
     effect = candidate.effect

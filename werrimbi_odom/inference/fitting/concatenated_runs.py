@@ -95,7 +95,7 @@ class Concatenated:
         return not np.isfinite(self.finish[:, :2]).any()
 
     @property
-    def stamps_err(self) -> bool:
+    def has_stamp_noise(self) -> bool:
         """Whether stamp noise is estimated: for gyros and for scans.
 
         A scan match states its own uncertainty, but not that of its stamp.
@@ -103,7 +103,7 @@ class Concatenated:
         return self.headings_alone or self.own_axes
 
     @property
-    def headings_laid(self) -> bool:
+    def has_gyro_headings(self) -> bool:
         """Whether headings come from a gyro aligned to those of a localiser."""
         return any(run.measured.gyro is not None for run in self.runs)
 

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
-from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
+from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 
@@ -98,7 +98,7 @@ class Costs:
         return found.minus_two_log_likelihood()
 
 
-def slopes_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParameter]) -> Floats:
+def jacobian_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParameter]) -> Floats:
     """Jacobian of the legs' relative poses, (m, 3, p), by central differences.
 
     A per-run parameter is moved in all runs at once, since a leg depends only on its own run.
@@ -117,7 +117,7 @@ def _slope(runs: Concatenated, model: Model, number: FreeParameter) -> Floats:
     # one.
     looked_at = model.robot if number.name in MULTIPLIERS else None
     width = ahead.value(number) - behind.value(number) if not number.per_run else 2.0 * number.scale
-    poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
+    poses = [predicted_legs(side, runs, looked_at) for side in (ahead, behind)]
     return np.asarray((poses[0] - poses[1]) / width)
 
 
@@ -130,11 +130,11 @@ def stacked(
     """Design of parameters at a point, with start headings that were not measured among them."""
     local = [number for number in numbers if number.name != START_YAW]
     found = unexpected(runs, point, prediction)
-    marks = found.marks(slopes_of(runs, point.model, local))
-    return spread_out(runs, point.model, found.whitened(), marks, local)
+    marks = found.marks(jacobian_of(runs, point.model, local))
+    return with_columns_per_run(runs, point.model, found.whitened(), marks, local)
 
 
-def spread_out(
+def with_columns_per_run(
     runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[FreeParameter]
 ) -> Design:
     """Design with the columns of per-run parameters expanded to one for each run.

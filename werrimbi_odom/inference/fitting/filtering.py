@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, go_along
+from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, run_loop
 from werrimbi_odom.model.pose import Floats
 
 STRETCH = 100
@@ -25,7 +25,7 @@ SIDE_BY_SIDE = 50
 """Approximate number of stretches of a long record."""
 
 
-class Legs(NamedTuple):
+class FilterInput(NamedTuple):
     """Inputs of the filter for m legs and g sets of variances."""
 
     relative: Floats
@@ -150,7 +150,7 @@ _COLUMNS = 32
 """Columns of derivatives per block, which fits the processor's cache."""
 
 
-class Unexpected(NamedTuple):
+class FilterResult(NamedTuple):
     """Innovations in the frame of the robot at each leg's start."""
 
     value: Floats
@@ -161,7 +161,7 @@ class Unexpected(NamedTuple):
     """Linear map from perturbations of the legs to the innovations."""
 
 
-def stretches(legs: Legs) -> NDArray[np.intp]:
+def stretches(legs: FilterInput) -> NDArray[np.intp]:
     """First leg of each stretch."""
     length = max(legs.stretch, legs.begins.size // SIDE_BY_SIDE)
     full = np.all(np.isfinite(legs.start), axis=-1).tolist()
@@ -175,7 +175,7 @@ def stretches(legs: Legs) -> NDArray[np.intp]:
     return np.array(starts, dtype=np.intp)
 
 
-def in_rounds(legs: Legs) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slice]]:
+def in_rounds(legs: FilterInput) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slice]]:
     """First legs of the stretches, longest first; legs in loop order; rows of each iteration.
 
     Loop order is the first legs of all stretches, then the second legs of those that have one, ...
@@ -190,7 +190,7 @@ def in_rounds(legs: Legs) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slic
     return first, leg, [slice(begin, end) for begin, end in itertools.pairwise(bounds)]
 
 
-def filtered(legs: Legs) -> Unexpected:
+def filtered(legs: FilterInput) -> FilterResult:
     """Run the filter over all stretches at once.
 
     States and covariances go through the loop for all sets of variances. Their effect on
@@ -221,7 +221,9 @@ def filtered(legs: Legs) -> Unexpected:
         turns=np.empty((count, 3, 3)),
         carry=np.empty((count, 3, 3)),
     )
-    go_along(of)
+    run_loop(of)
     counted = (known & ~legs.skip[:, None])[leg]
     leave = -of.turns.swapaxes(-1, -2) * counted[:, None]
-    return Unexpected(of.values, of.covariances, Ways(leg, of.turns, of.carry, leave, free, rounds))
+    return FilterResult(
+        of.values, of.covariances, Ways(leg, of.turns, of.carry, leave, free, rounds)
+    )

@@ -27,10 +27,10 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.identifiable import Directions, determined, put_back
+from werrimbi_odom.inference.fitting.identifiable import Directions, determined, with_held_as_given
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
-from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
+from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
+from werrimbi_odom.inference.fitting.prediction import predict, predict_all, predicted_legs
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (
@@ -59,7 +59,7 @@ class ModelFit:
     """Shared parameters that the driving determines, and that were fitted."""
     covariance: Floats
     """Covariance of the values of `free`; singular where they exceed the identifiable `numbers`."""
-    mute: tuple[FreeParameter, ...]
+    not_identifiable: tuple[FreeParameter, ...]
     """Shared parameters that are not identifiable; left unchanged."""
     ways: Directions
     """Identifiable directions, in the columns of the design."""
@@ -141,16 +141,18 @@ def fit_model(
         point = _robustly(laid, point, numbers)
         if laid.data < NOISE_NUMBERS:
             point = replace(point, variances=noise)
-    point = replace(point, variances=held_variances(point.variances, point.options))
+    point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
         point = _turned_to_the_first_legs(laid, point)
     for _ in range(rounds):
         if laid.data >= NOISE_NUMBERS:
-            variances = likeliest(Costs(laid, point), point.variances, point.options.sigmas_known)
+            variances = map_variances(
+                Costs(laid, point), point.variances, point.options.sigmas_known
+            )
             point = replace(point, variances=variances)
         design = stacked(laid, point, numbers)
         ways = determined(design, point.model.robot)
-        model = put_back(point.model, given, ways.held, shared_of(numbers))
+        model = with_held_as_given(point.model, given, ways.held, shared_of(numbers))
         point, moved = _gauss_newton(laid, replace(point, model=model), numbers, ways)
         if not moved:
             break
@@ -229,7 +231,7 @@ def _gauss_newton(
             return point, number > 0
         for _ in range(5):
             tried = replace(point, model=moved(point.model, design, step))
-            ahead = replace(prediction, relative=legs_shown(tried.model, runs))
+            ahead = replace(prediction, relative=predicted_legs(tried.model, runs))
             cost = float(np.sum(unexpected(runs, tried, ahead).whitened() ** 2))
             if cost < best:
                 break

@@ -97,7 +97,7 @@ def determined(design: Design, robot: Robot) -> Directions:
     ]
     beside = nuisance(marks[:, own])
     free = beside.residual(marks)
-    shared = _plainest_first(asked, every.names, np.linalg.norm(free, axis=0))
+    shared = _by_sensitivity(asked, every.names, np.linalg.norm(free, axis=0))
 
     def known(tried: list[int]) -> bool:
         columns = [shared[number] for number in tried]
@@ -115,7 +115,7 @@ def determined(design: Design, robot: Robot) -> Directions:
     )
 
 
-def _plainest_first(asked: Sequence[int], names: Sequence[str], seen: Floats) -> list[int]:
+def _by_sensitivity(asked: Sequence[int], names: Sequence[str], seen: Floats) -> list[int]:
     """Order of precedence: calibration directions by sensitivity, then the others as they are.
 
     A robot that veers on straight lines has unequal wheels. Once the ratio is fitted, another base
@@ -131,7 +131,7 @@ def _plainest_first(asked: Sequence[int], names: Sequence[str], seen: Floats) ->
     return [*order, *(index for index in asked if names[index] not in CALIBRATED)]
 
 
-def put_back(
+def with_held_as_given(
     model: Model, given: Model, held: Iterable[str], numbers: Sequence[FreeParameter]
 ) -> Model:
     """Reset the held directions of a model to the given values."""

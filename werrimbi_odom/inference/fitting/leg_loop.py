@@ -53,11 +53,11 @@ class Loop(NamedTuple):
     """... and what becomes at the leg's end of a change at the end of the leg before, (m, 3, 3)."""
 
 
-def go_along(of: Loop) -> None:
+def run_loop(of: Loop) -> None:
     """Fill what the loop fills, the faster way."""
-    machine = compiled(leg_by_leg)
+    machine = compiled(loop_over_scalars)
     if machine is None:
-        side_by_side(of)
+        loop_over_arrays(of)
         return
     starts = np.array([0, *(now.stop for now in of.rounds)])
     spread = np.broadcast_to(of.spread, (of.noise.shape[0], *of.spread.shape[1:]))
@@ -66,8 +66,8 @@ def go_along(of: Loop) -> None:
     machine(of.leg, starts, *map(np.ascontiguousarray, given), UNMEASURED, *filled)
 
 
-def side_by_side(of: Loop) -> None:
-    """The loop, all stretches and sets in step: `leg_by_leg` for arrays."""
+def loop_over_arrays(of: Loop) -> None:
+    """The loop, all stretches and sets in step: `loop_over_scalars` for arrays."""
     state = np.repeat(of.state[None], of.noise.shape[0], axis=0)
     spread = of.spread
     reading = np.broadcast_to(of.reading, of.noise.shape)
@@ -111,7 +111,7 @@ def side_by_side(of: Loop) -> None:
         of.covariances[:, own] = back @ total @ turn
 
 
-def leg_by_leg(
+def loop_over_scalars(
     leg: NDArray[np.intp],
     starts: NDArray[np.intp],
     state: Floats,

@@ -20,14 +20,18 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.filtering import (
     STRETCH,
-    Legs,
+    FilterInput,
     Shocks,
     Ways,
     filtered,
 )
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
+from werrimbi_odom.inference.fitting.wandering import (
+    GaussMarkovError,
+    GyroHeading,
+    filtered_with_correlated_error,
+)
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
 from werrimbi_odom.inference.rules import EVENT_STEP
@@ -190,18 +194,20 @@ def innovations(
         if given is not None:
             begun[runs.legs[index]] = given
             start[runs.legs[index], 2] = np.nan
-    noise = wheel_part(prediction, runs, variances.left, variances.right)
+    noise = wheel_covariance(prediction, runs, variances.left, variances.right)
     reading = _reading(robot, variances, runs, prediction, kind)
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
-    legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch)
+    legs = FilterInput(
+        prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch
+    )
     if kind == "local_map":
         kept = np.exp(-np.sqrt(variances.reversion)[:, None] * runs.duration)
         laid = None
-        if runs.headings_laid:
-            laid = LaidHeading(prediction.turn, runs.duration, variances.walk_yaw)
-        wander = Wander(variances.wandered(), kept, runs.gap, heading, laid)
-        found = filtered_wandering(legs, wander)
+        if runs.has_gyro_headings:
+            laid = GyroHeading(prediction.turn, runs.duration, variances.walk_yaw)
+        wander = GaussMarkovError(variances.wandered(), kept, runs.gap, heading, laid)
+        found = filtered_with_correlated_error(legs, wander)
     else:
         found = filtered(legs)
     known = np.isfinite(finish) & ~skip[:, None]
@@ -223,12 +229,12 @@ def _of_increments(
     leg = BodyMotion(prediction.along, none, prediction.turn)
     swing = piece_covariance(leg, PathNoise(none, runs.intervals, none), none).matrix()
     covariance = (
-        wheel_part(prediction, runs, variances.left, variances.right)
+        wheel_covariance(prediction, runs, variances.left, variances.right)
         + variances.yaw[:, None, None, None] * swing
         + variances.xy[:, None, None, None]
         * runs.intervals[:, None, None]
         * np.diag([1.0, 1.0, 0.0])
-        + 2.0 * np.diag(reading_noise(robot))
+        + 2.0 * np.diag(quantisation_variance(robot))
     )
     covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
     value = np.where(known, value, 0.0)
@@ -281,7 +287,7 @@ def _reading(
     kind: ReferenceKind,
 ) -> Floats:
     """Covariance of a measured pose, including encoder quantisation; (g, 1 or m, 3, 3)."""
-    stamps = runs.stamps_err
+    stamps = runs.has_stamp_noise
     reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
     shares = runs.known("shares", lambda runs: runs.shares) if kind == "absolute" else None
     place, heading = (1.0, 1.0) if shares is None else shares.T
@@ -292,10 +298,12 @@ def _reading(
         pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
         late = variances.stamp[:, None, None] * pace
         reading += late[..., None] * np.eye(3)
-    return np.asarray(reading + np.diag(reading_noise(robot)))
+    return np.asarray(reading + np.diag(quantisation_variance(robot)))
 
 
-def wheel_part(prediction: Prediction, runs: Concatenated, left: Floats, right: Floats) -> Floats:
+def wheel_covariance(
+    prediction: Prediction, runs: Concatenated, left: Floats, right: Floats
+) -> Floats:
     """Covariance of the legs by the wheel noise k_L² and k_R² (g,) [m]; (g, m, 3, 3).
 
     A leg with an abrupt event may end anywhere.
@@ -308,7 +316,7 @@ def wheel_part(prediction: Prediction, runs: Concatenated, left: Floats, right: 
     return noise
 
 
-def reading_noise(robot: Robot) -> Floats:
+def quantisation_variance(robot: Robot) -> Floats:
     """Quantisation variance of a pose from one reading of both counters (uniform), shape (3,)."""
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
     along = 0.25 * (left + right)

@@ -77,7 +77,7 @@ class NoiseEstimate:
         return upper_part(self.value, self.share)
 
 
-def of_no_wheel(noise: NoiseEstimate) -> bool:
+def beyond_wheel_noise(noise: NoiseEstimate) -> bool:
     """Whether a wheel's noise is at its upper bound, so that it is no wheel noise."""
     return noise.determined and bool(np.isclose(noise.value, STRANGE_NOISE))
 
@@ -99,7 +99,7 @@ def with_noises(variances: Variances, sigmas: Mapping[str, float]) -> Variances:
     )
 
 
-def held_variances(variances: Variances, options: EvaluationOptions) -> Variances:
+def with_known_noise(variances: Variances, options: EvaluationOptions) -> Variances:
     """Variances with the known noise of the reference put in."""
     if options.sigma_xy is not None:
         variances = replace(variances, xy=np.array([options.sigma_xy**2]))
@@ -108,7 +108,7 @@ def held_variances(variances: Variances, options: EvaluationOptions) -> Variance
     return variances
 
 
-def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
+def map_variances(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
     """Maximum a posteriori variances for a fixed model (`fisher_scoring`)."""
     prediction = costs.prediction()
     moving = _moving(costs, held)
@@ -240,7 +240,7 @@ def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
             True,
             not held[0] and places,
             not held[1] and headings,
-            runs.stamps_err,
+            runs.has_stamp_noise,
             wanders and places,
             wanders and headings,
             wanders,

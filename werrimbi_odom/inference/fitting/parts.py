@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.chances import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.linear import SILENT, covariance_of
 from werrimbi_odom.inference.rules import (
@@ -64,7 +64,7 @@ def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] 
     return np.repeat(parts, 3)
 
 
-def heard_share(parts: NDArray[np.intp]) -> float:
+def least_informative_share(parts: NDArray[np.intp]) -> float:
     """Share of a pattern's norm that a part must hold to be informative.
 
     With very many drives each part holds less, so the share required falls below that for 28.
@@ -105,12 +105,12 @@ def widening(white: Floats, flat: Floats, moves: Floats, runs: Concatenated) -> 
         expected.append(np.sum((influence @ (here.T @ here)) * influence, axis=1))
     squares, shares = np.square(moved), np.array(expected)
     for column in np.flatnonzero(moves.any(axis=1)):
-        known = shares[:, column] > heard_share(parts) ** 2 * usual[column]
+        known = shares[:, column] > least_informative_share(parts) ** 2 * usual[column]
         freedom = int(known.sum()) - 1
         if freedom < 1:
             continue
         disagreement = float(np.sum(squares[known, column] / shares[known, column]))
-        if chi2_above(disagreement, freedom) < SURE:
+        if chi2_survival(disagreement, freedom) < SURE:
             count = len(squares) / (len(squares) - 1)
             wide[column] = math.sqrt(
                 max(count * float(np.sum(squares[:, column])) / usual[column], 1.0)

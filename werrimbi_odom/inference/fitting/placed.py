@@ -25,7 +25,7 @@ _ROUNDS = 4
 """Alternations between size and angles; they hardly move after the second."""
 
 
-class Placed(NamedTuple):
+class LocalScore(NamedTuple):
     """Best fit of one sign."""
 
     gain: float
@@ -36,7 +36,7 @@ class Placed(NamedTuple):
     """Angle in each block [rad]."""
 
 
-def best_placed(tries: Floats, free: Floats, rest: Floats, blocks: int) -> list[Placed]:
+def best_angles(tries: Floats, free: Floats, rest: Floats, blocks: int) -> list[LocalScore]:
     """Best angles and size for a positive and for a negative size; those without gain left out.
 
     Parameters
@@ -69,7 +69,7 @@ def best_placed(tries: Floats, free: Floats, rest: Floats, blocks: int) -> list[
                 break
             size = likeness / power
             gain = likeness * size
-            best = Placed(gain, size, at[chosen])
+            best = LocalScore(gain, size, at[chosen])
             chosen = np.argmax(2.0 * size * alike - size * size * energy, axis=-1)
         else:
             found.append(best)

@@ -12,7 +12,13 @@ import numpy as np
 
 from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
+from werrimbi_odom.inference.fitting.design import (
+    Design,
+    Point,
+    jacobian_of,
+    unexpected,
+    with_columns_per_run,
+)
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
@@ -39,13 +45,13 @@ class Precision:
     ) -> Precision:
         """Precision at the end point of a fit; start headings are not in `local`."""
         numbers = tuple(local)
-        return cls(runs, point, numbers, slopes_of(runs, point.model, numbers), moves)
+        return cls(runs, point, numbers, jacobian_of(runs, point.model, numbers), moves)
 
     def _design(self, variances: Variances) -> Design:
         point = replace(self.point, variances=variances)
         found = unexpected(self.runs, point)
         marks = found.marks(self.slopes)
-        return spread_out(self.runs, point.model, found.whitened(), marks, self.local)
+        return with_columns_per_run(self.runs, point.model, found.whitened(), marks, self.local)
 
     def information(self, variances: Variances) -> float:
         """Log determinant of the information matrix of the free directions."""

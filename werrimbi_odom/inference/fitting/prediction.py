@@ -62,7 +62,7 @@ def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Pr
     return predict_all(Model(robot, (own,)), concatenated([run]))
 
 
-def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None) -> Floats:
+def predicted_legs(model: Model, runs: Concatenated, looked_at: Robot | None = None) -> Floats:
     """Relative pose of every leg as seen by the reference, shape (m, 3) [m, m, rad].
 
     Parameters
@@ -74,7 +74,7 @@ def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None)
     looked_at : Robot, optional
         Robot whose travel is the input of the effects, where that is cached and close enough.
     """
-    view = seen_by(model, runs)
+    view = extrinsics_of(model, runs)
     runs = runs.delayed(view.delay)
     robot = model.laid_out(runs.steps)
     path = _path(robot, runs, view, model.start_yaws, looked_at)
@@ -87,7 +87,7 @@ def predict_all(model: Model, runs: Concatenated) -> Prediction:
 
 
 def _predicted(model: Model, runs: Concatenated) -> Prediction:
-    view = seen_by(model, runs)
+    view = extrinsics_of(model, runs)
     runs = runs.delayed(view.delay)
     path = _path_of(model, runs)
     return Prediction(
@@ -111,10 +111,10 @@ def path_of(model: Model, runs: Concatenated) -> DrivenPath:
 
 def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
     robot = model.laid_out(runs.steps)
-    return _path(robot, runs, seen_by(model, runs), model.start_yaws)
+    return _path(robot, runs, extrinsics_of(model, runs), model.start_yaws)
 
 
-def seen_by(model: Model, runs: Concatenated) -> View:
+def extrinsics_of(model: Model, runs: Concatenated) -> View:
     """Extrinsics of the reference; per-run values are arrays over the legs.
 
     The only per-run value can be the wander of the heading.

@@ -16,8 +16,8 @@ from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Candidate,
     Score,
-    put_in,
     scores,
+    with_candidate,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
@@ -33,15 +33,15 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.model.effect import AppliedEffect
 
 
-def known_at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Model:
+def model_in_runs(model: Model, runs: Concatenated, kind: ReferenceKind) -> Model:
     """Model in other runs, without the nuisance parameters of the references."""
     plain = model.without_nuisances()
     if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
         return Model(plain.robot, tuple({} for _ in runs.runs))
-    return at_home(model, runs, kind).model.without_nuisances()
+    return fitted_per_run(model, runs, kind).model.without_nuisances()
 
 
-def at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
+def fitted_per_run(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
     """Model in other runs: shared values stay, per-run values are fitted."""
     own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
     effects = tuple(
@@ -98,7 +98,7 @@ def _learnt(runs: Concatenated, point: Point, applied: AppliedEffect) -> Model:
     score = next((each for each in found if _of_sign(each, applied)), None)
     if score is None:
         return bare.model
-    model = put_in(bare.model, score)
+    model = with_candidate(bare.model, score)
     known = {
         f"{applied.name}.{name}": value
         for name, value in applied.values.items()

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.filtering import Legs, Unexpected, Ways, in_rounds
+from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, Ways, in_rounds
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, turn_into
 from werrimbi_odom.inference.rules import LAID_DRIFT, LAID_SCALE, LAID_YAW, LOST_XY, LOST_YAW
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -31,7 +31,7 @@ ANEW = 1e2
 _LOST = np.square([LOST_XY, LOST_XY, LOST_YAW])
 
 
-class LaidHeading(NamedTuple):
+class GyroHeading(NamedTuple):
     """Headings from a gyro in place of a localiser's, for m legs and g sets of variances."""
 
     turn: Floats
@@ -42,7 +42,7 @@ class LaidHeading(NamedTuple):
     """Random walk of the gyro, variance per second, (g,) [rad²/s]."""
 
 
-class Wander(NamedTuple):
+class GaussMarkovError(NamedTuple):
     """Gauss-Markov error of the reference, for g sets of variances."""
 
     variance: Floats
@@ -54,7 +54,7 @@ class Wander(NamedTuple):
     legs it jumped: its error is unknown, while the robot drove on."""
     heading: float
     """Variance of a start heading that was not measured; zero where it is fitted [rad²]."""
-    laid: LaidHeading | None = None
+    laid: GyroHeading | None = None
     """Headings from a gyro; their error does not revert to zero."""
 
     def kept_of_each(self) -> Floats:
@@ -79,7 +79,7 @@ class Wander(NamedTuple):
         return np.column_stack([self.variance[:, :2], np.tile(known, (len(self.variance), 1))])
 
 
-def filtered_wandering(legs: Legs, wander: Wander) -> Unexpected:
+def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) -> FilterResult:
     """Run the filter over all stretches at once; innovations are of the measurements."""
     sets, count = legs.noise.shape[0], legs.relative.shape[0]
     first, leg, rounds = in_rounds(legs)
@@ -148,7 +148,7 @@ def filtered_wandering(legs: Legs, wander: Wander) -> Unexpected:
         carry[now] = moves[0, now] @ less[last.start : last.start + now.stop - now.start]
     enter = np.concatenate([turns[0], np.zeros((count, size - 3, 3))], axis=1)
     away = np.zeros((count, 3, size - 6))
-    return Unexpected(
+    return FilterResult(
         (back @ values[..., None])[..., 0][:, place],
         (back @ covariances @ turns)[:, place],
         Ways(leg, enter, carry, np.concatenate([leave, leave, away], axis=-1), free, rounds),

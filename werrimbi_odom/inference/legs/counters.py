@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.legs.even_stamps import evened
-from werrimbi_odom.inference.legs.leaps import Leap, bridged
+from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
+from werrimbi_odom.inference.legs.leaps import CounterJump, bridged
 from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
@@ -95,7 +95,7 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
 
 def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float) -> Counters:
     ticks = run.ticks
-    read = evened(ticks.time, ticks.left, ticks.right, least=least)
+    read = with_even_stamps(ticks.time, ticks.left, ticks.right, least=least)
     steps = wheel_steps(robot, read, ticks.left, ticks.right, limits)
     if steps.first_row < 0 or steps.time.size == 0:
         raise InputError(f"{run.path}: fewer than two usable rows of ticks")
@@ -127,7 +127,7 @@ def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float)
 
 
 def _told(
-    leaps: Sequence[Leap], time: Floats, robot: Robot
+    leaps: Sequence[CounterJump], time: Floats, robot: Robot
 ) -> tuple[tuple[float, float, str], ...]:
     """Describe counter jumps: begin and end [s], and a sentence."""
     found = []

@@ -51,7 +51,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class AlignedRun:
     """A run on one clock: counters, r usable reference poses, excluded stretches."""
 
     name: str
@@ -73,7 +73,7 @@ class Record:
 class MatchedRun:
     """A run on common nodes: n steps, m legs."""
 
-    record: Record
+    record: AlignedRun
     rows: NDArray[np.intp]
     """Poses of the record at which legs begin and end, shape (m + 1,)."""
     measured: Reference
@@ -175,27 +175,27 @@ def match(
     return divided(record, rows_of_legs(record, robot, leg, turn))
 
 
-def match_finely(
+def match_for_fit(
     runs: Sequence[Run], robot: Robot, leg: float, limits: EncoderLimits | None = None
 ) -> list[MatchedRun]:
     """Cut runs into the short legs of a fit, given the leg length used for evaluation [m]."""
     records = (record_of(run, robot, limits, leg) for run in runs)
-    return [cut_finely(record, robot, leg) for record in records]
+    return [cut_for_fit(record, robot, leg) for record in records]
 
 
-def cut_finely(record: Record, robot: Robot, leg: float) -> MatchedRun:
+def cut_for_fit(record: AlignedRun, robot: Robot, leg: float) -> MatchedRun:
     """Cut one record into the short legs of a fit."""
     parts = 1.0 / PARTS_OF_A_LEG
     record = replace(record, counters=record.counters.at_most(RATE_OF_FIT))
     return divided(record, rows_of_legs(record, robot, parts * leg, parts * QUARTER_TURN))
 
 
-def every_pose(record: Record) -> MatchedRun:
+def every_pose(record: AlignedRun) -> MatchedRun:
     """Cut a record at every usable reference pose."""
     return divided(record, np.arange(record.measured.time.size))
 
 
-def divided(record: Record, rows: NDArray[np.intp]) -> MatchedRun:
+def divided(record: AlignedRun, rows: NDArray[np.intp]) -> MatchedRun:
     """Cut a record at the given reference poses."""
     measured = _poses(record.measured, rows)
     time, left, right, ends, channels = nodes_at(record.counters, measured.time)
@@ -251,7 +251,7 @@ def record_of(
     limits: EncoderLimits | None = None,
     leg: float = 1.0,
     turn: float = QUARTER_TURN,
-) -> Record:
+) -> AlignedRun:
     """Put ticks and reference on one clock, and list the stretches to exclude.
 
     Parameters
@@ -284,7 +284,7 @@ def record_of(
         )
     measured = _poses(reference, rows)
     found = _silences(run, robot, counters, measured.time, leg, turn)
-    return Record(
+    return AlignedRun(
         run.name,
         counters,
         measured,
@@ -366,7 +366,7 @@ def usable_rows(
     return np.asarray(rows[later])
 
 
-def rows_of_legs(record: Record, robot: Robot, leg: float, turn: float) -> NDArray[np.intp]:
+def rows_of_legs(record: AlignedRun, robot: Robot, leg: float, turn: float) -> NDArray[np.intp]:
     """Poses of a record at which legs begin and end."""
     counters = record.counters
     way = np.interp(record.measured.time, counters.time, counters.way(robot, leg, turn))
@@ -409,7 +409,7 @@ def legs_worth(path: float, turned: float, leg: float, turn: float) -> float:
     return path / leg + turned / turn
 
 
-def _gaps_between(record: Record, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+def _gaps_between(record: AlignedRun, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
     before = np.concatenate([[0], np.cumsum(record.gap)])
     return np.asarray(np.diff(before[rows]) > 0)
 

@@ -32,7 +32,7 @@ from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
 
 
-def evened(
+def with_even_stamps(
     time: Floats,
     left: Counts,
     right: Counts,
@@ -78,7 +78,7 @@ def stamped_together(run: Run) -> bool:
     Their relative delay is then zero, and correcting the wheels alone would introduce an error.
     """
     time = run.ticks.time
-    late = time - evened(time, run.ticks.left, run.ticks.right)
+    late = time - with_even_stamps(time, run.ticks.left, run.ticks.right)
     if run.reference is None or run.reference.time.size <= EVEN_WINDOW or not late.any():
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
@@ -89,7 +89,7 @@ def stamped_together(run: Run) -> bool:
     return bool(np.corrcoef(*both)[0, 1] > EVEN_TOGETHER)
 
 
-def evened_scans(reference: Reference) -> Reference:
+def with_even_scan_stamps(reference: Reference) -> Reference:
     """Put scan stamps where the lidar turned, if the scan-matched path is even in the scan number.
 
     For any other reference no timer is known, and its stamps stay. They also stay where gyro
@@ -108,7 +108,7 @@ def evened_scans(reference: Reference) -> Reference:
     time = np.asarray(reference.time, dtype=np.float64)
     if time.size < EVEN_MESSAGES:
         return reference
-    even = evened(time, left, right, _lost(time, left, right))
+    even = with_even_stamps(time, left, right, _lost(time, left, right))
     # A larger correction means the numbering is wrong: too many scans are missing.
     late = float(np.std(even - time)) > EVEN_MOST * float(np.median(np.diff(time)))
     return reference if even is time or late else replace(reference, time=even)

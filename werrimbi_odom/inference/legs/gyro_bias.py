@@ -10,12 +10,12 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.files.run import Reference
-from werrimbi_odom.inference.legs.spans import Span
+from werrimbi_odom.inference.legs.spans import TimeSpan
 from werrimbi_odom.inference.rules import BIAS_EDGE, BIAS_REST, BIAS_SURE
 from werrimbi_odom.model.pose import wrap_all
 
 
-def without_bias(reference: Reference, spans: Sequence[Span]) -> Reference:
+def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
     """Headings alone without the rate that they have at rest; as they are where none is sure.
 
     No model of the robot takes part in that, so it is the same for all parts of a drive. What a

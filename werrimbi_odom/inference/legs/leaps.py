@@ -23,7 +23,7 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.pose import Floats
 
 
-class Leap(NamedTuple):
+class CounterJump(NamedTuple):
     """Steps of a record in which a counter jumped."""
 
     first: int
@@ -45,7 +45,7 @@ class Bridged(NamedTuple):
     left: Floats
     """Travel in turns of a step and the dropped steps before it, shape (n,)."""
     right: Floats
-    leaps: tuple[Leap, ...]
+    leaps: tuple[CounterJump, ...]
 
 
 def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
@@ -61,7 +61,7 @@ def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
     left, right : ndarray, shape (n,)
         Travel between them, in turns of the wheel.
     """
-    found = leaps_in(time, left, right)
+    found = counter_jumps_in(time, left, right)
     kept = np.ones(left.size, dtype=np.bool_)
     sides = [left.copy(), right.copy()] if found else [left, right]
     for leap in found:
@@ -79,7 +79,7 @@ def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
     return Bridged(kept, sides[0], sides[1], found)
 
 
-def leaps_in(time: Floats, left: Floats, right: Floats) -> tuple[Leap, ...]:
+def counter_jumps_in(time: Floats, left: Floats, right: Floats) -> tuple[CounterJump, ...]:
     """Find where counters jumped; see `bridged`."""
     lasted = np.diff(time)
     turns = np.maximum(np.abs(left), np.abs(right))
@@ -103,5 +103,5 @@ def leaps_in(time: Floats, left: Floats, right: Floats) -> tuple[Leap, ...]:
         reach = fastest * float(lasted[group].sum())
         net = max(abs(float(side[group].sum())) for side in (left, right))
         size = float(turns[group].max())
-        found.append(Leap(first, last, size, bool(of_left), group.size > 1 and net <= reach))
+        found.append(CounterJump(first, last, size, bool(of_left), group.size > 1 and net <= reach))
     return tuple(found)

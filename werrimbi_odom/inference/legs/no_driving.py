@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
-from werrimbi_odom.inference.legs.even_stamps import evened_scans, stamped_together
+from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
@@ -65,7 +65,7 @@ BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
 
 
 @dataclass(frozen=True, slots=True)
-class _Seen:
+class _MeasuredMotion:
     """One quantity measured by the reference, compared with the wheels; k windows."""
 
     agreement: Agreement
@@ -96,7 +96,7 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
     """
     if run.no_driving is not None or run.reference is None:
         return run
-    seen = replace(evened_scans(run.reference), stamped_together=stamped_together(run))
+    seen = replace(with_even_scan_stamps(run.reference), stamped_together=stamped_together(run))
     run = replace(run, reference=seen)
     try:
         counters = counters_of(run, robot, limits)
@@ -109,7 +109,7 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:
     """Find stretches in which the robot was held or carried, in order."""
-    seen: list[_Seen] = []
+    seen: list[_MeasuredMotion] = []
     turns = windows_of(counters, reference, robot, ways=False)
     by_turns = None if turns is None else turns_agree(turns, robot.track)
     if by_turns is not None:
@@ -137,7 +137,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     return tuple(parts)
 
 
-def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> _Seen:
+def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> _MeasuredMotion:
     """Flag windows whose deviation neither driving nor clock jitter explains.
 
     Parameters
@@ -169,7 +169,7 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     unsure = least * np.where(halved, 0.5, np.where(np.abs(expected) > least, 1.0, at_rest))
     edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, unsure)
     moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
-    return _Seen(found, beyond, edge, moves & keeps, enough)
+    return _MeasuredMotion(found, beyond, edge, moves & keeps, enough)
 
 
 def _standing(found: Agreement) -> Agreement:
@@ -231,7 +231,7 @@ def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
     return found
 
 
-def _stretches(seen: _Seen) -> list[tuple[float, float]]:
+def _stretches(seen: _MeasuredMotion) -> list[tuple[float, float]]:
     """Stretches [s] whose deviation stays above what driving explains for long enough."""
     windows, off = seen.agreement.windows, seen.agreement.off
     more = np.abs(windows.measured) > np.abs(seen.agreement.expected)
@@ -263,7 +263,7 @@ def _stretches(seen: _Seen) -> list[tuple[float, float]]:
     return found
 
 
-def _reaching(stretch: tuple[float, float], seen: Sequence[_Seen]) -> tuple[float, float]:
+def _reaching(stretch: tuple[float, float], seen: Sequence[_MeasuredMotion]) -> tuple[float, float]:
     """Extend a stretch by the adjacent outlier windows, of any measured quantity.
 
     A robot turned by hand while its wheels begin to turn can match them for a moment by chance.
@@ -278,7 +278,7 @@ def _reaching(stretch: tuple[float, float], seen: Sequence[_Seen]) -> tuple[floa
 
 
 def _joined(
-    found: Sequence[tuple[float, float]], seen: Sequence[_Seen]
+    found: Sequence[tuple[float, float]], seen: Sequence[_MeasuredMotion]
 ) -> list[tuple[float, float]]:
     """Merge stretches, and with the ends of the drive, unless driving is seen between."""
     if not found:
@@ -306,7 +306,7 @@ def _joined(
     return [(begin, end) for begin, end in joined if end > begin]
 
 
-def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]:
+def _by_kind(begin: float, end: float, seen: Sequence[_MeasuredMotion]) -> list[NoDriving]:
     """Split a stretch by what happened in it: held, carried, or one after the other."""
     grid = np.linspace(begin, end, max(2, round((end - begin) / _GRID)))
     shares = np.stack([each.at(each.beyond, grid) for each in seen])

@@ -21,7 +21,7 @@ _GRID = 0.1  # [s]
 What = Literal["stood", "drove", "held", "carried"]
 
 
-class Span(NamedTuple):
+class TimeSpan(NamedTuple):
     """A stretch of a drive in one state."""
 
     begin: float
@@ -30,10 +30,10 @@ class Span(NamedTuple):
     what: What
 
 
-class Driven(NamedTuple):
+class DrivenAmount(NamedTuple):
     """Total driving, without held and carried stretches."""
 
-    spans: tuple[Span, ...]
+    spans: tuple[TimeSpan, ...]
     way: float
     """Path by the wheels [m]."""
     turned: float
@@ -42,7 +42,7 @@ class Driven(NamedTuple):
     """Changes between forwards and backwards."""
 
 
-def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) -> Driven:
+def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) -> DrivenAmount:
     """Segment a drive into states, by its wheels and the known stretches without driving."""
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(np.arange(first, last, _GRID), last)
@@ -60,12 +60,12 @@ def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) 
         if part.why in ("held", "carried"):
             state[(middle >= part.begin) & (middle <= part.end)] = part.why
     spans = tuple(
-        Span(float(grid[begin]), float(grid[end]), state[begin])
+        TimeSpan(float(grid[begin]), float(grid[end]), state[begin])
         for begin, end in itertools.pairwise(_changes(state))
     )
     drove = state == "drove"
     along = np.sign(way[drove & (np.abs(way) > 0.5 * rolled) & moving])
-    return Driven(
+    return DrivenAmount(
         spans,
         float(np.abs(way[drove]).sum()),
         float(np.abs(turn[drove]).sum()),

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.changes.between_drives import Moved, changes_betwee
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre, strongest
+from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre, next_manoeuvre, strongest
 from werrimbi_odom.progress import Show, silent
 
 
@@ -21,7 +21,7 @@ class Told:
     """A diagnosis and everything that is reported with it."""
 
     diagnosis: Diagnosis
-    manoeuvre: Manoeuvre | None
+    manoeuvre: ProposedManoeuvre | None
     sights: Sequence[DetectionLimit]
     leg: float = 1.0
     """Length of the judged legs [m]."""

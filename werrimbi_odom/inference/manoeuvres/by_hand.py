@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 from werrimbi_odom.effects.page import page_of
-from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre
 from werrimbi_odom.model.effect import Effect, Twin, twin_of
 
 
@@ -18,7 +18,7 @@ def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:
     return None if twin is None or (twin.of_headings and positions) else twin
 
 
-def for_twins(rivals: Sequence[Effect], positions: bool) -> Manoeuvre | None:
+def for_twins(rivals: Sequence[Effect], positions: bool) -> ProposedManoeuvre | None:
     """What to do at the robot; None if drives may tell some rivals apart, or nothing is declared.
 
     Set-up mistakes are equivalent in larger sets than pairs: two of them may equal a third. A check
@@ -29,11 +29,11 @@ def for_twins(rivals: Sequence[Effect], positions: bool) -> Manoeuvre | None:
     mistakes = [effect for effect in rivals if effect.is_mistake]
     said = next((twin for twin in twins if twin.do), None)
     if said is not None and (len(twins) == len(pairs) or mistakes):
-        return Manoeuvre(said.manoeuvre, said.told_apart_by, said.do, said.minutes)
+        return ProposedManoeuvre(said.manoeuvre, said.told_apart_by, said.do, said.minutes)
     if not mistakes:
         return None
     checks = dict.fromkeys(" ".join(page_of(each).sections["Ruler"].split()) for each in mistakes)
-    return Manoeuvre(
+    return ProposedManoeuvre(
         "push_by_hand",
         "no drive can tell them apart, because the robot file alone says which end is ahead; a "
         "hand can",

@@ -35,7 +35,7 @@ from werrimbi_odom.inference.fitting.candidates import (
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import STEP
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
@@ -147,7 +147,7 @@ def information_limits(
         By effect and parameter the distance from null, in the parameter's unit; infinite where the
         drives do not show it.
     """
-    laid = concatenated(match_finely(runs, robot, options.leg))
+    laid = concatenated(match_for_fit(runs, robot, options.leg))
     look = sensitivities_of(
         Experiment(
             laid,

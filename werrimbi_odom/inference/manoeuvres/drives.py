@@ -30,7 +30,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
-__all__ = ["MANOEUVRES", "Ideal", "Pace", "ideal_run", "pace_of", "rates_of"]
+__all__ = ["MANOEUVRES", "DrivingLimits", "Ideal", "ideal_run", "pace_of", "rates_of"]
 
 REST = 0.6
 """Standstill before and after [s]."""
@@ -40,7 +40,7 @@ FINE = 0.005
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class DrivingLimits:
     """Speeds that a robot can reach, taken from its recorded drives; at pace 1."""
 
     speed: float
@@ -61,14 +61,14 @@ class Pace:
         return 1.2 * self.speed / self.base
 
 
-def pace_of(runs: Concatenated, robot: Robot) -> Pace:
+def pace_of(runs: Concatenated, robot: Robot) -> DrivingLimits:
     """The pace of the recorded drives."""
     travel, drive = runs.raw(robot), runs.drive(robot)
     duration = np.maximum(drive.duration, 1e-6)
     rims = np.concatenate([np.abs(travel.left), np.abs(travel.right)]) / np.tile(duration, 2)
     speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else PACE_UNKNOWN
     speed = min(max(speed, SLOWEST_PACE), FASTEST_PACE)
-    return Pace(speed, HARD_START * speed, robot.track)
+    return DrivingLimits(speed, HARD_START * speed, robot.track)
 
 
 def rates_of(runs: Concatenated) -> tuple[float, float]:
@@ -89,7 +89,7 @@ def rates_of(runs: Concatenated) -> tuple[float, float]:
 def ideal_run(
     ideal: Ideal,
     robot: Robot,
-    pace: Pace,
+    pace: DrivingLimits,
     *,
     ticks: float,
     poses: float,
@@ -155,7 +155,7 @@ def _recorded(wiring: Wiring, left: Floats, right: Floats) -> tuple[Floats, Floa
     return (right, left) if wiring.swapped else (left, right)
 
 
-def _path(ideal: Ideal, pace: Pace) -> tuple[Floats, Floats, Floats]:
+def _path(ideal: Ideal, pace: DrivingLimits) -> tuple[Floats, Floats, Floats]:
     """Times (n + 1,), and travel [m] and turn [rad] of each step (n,)."""
     corners: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0), (REST, 0.0, 0.0)]
     for length, turn, share in ideal.moves(pace.size):

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import NUISANCES
 from werrimbi_odom.inference.legs.cutting import match
-from werrimbi_odom.inference.manoeuvres.drives import Ideal, Pace, ideal_run, rates_of
+from werrimbi_odom.inference.manoeuvres.drives import DrivingLimits, Ideal, ideal_run, rates_of
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment
 from werrimbi_odom.inference.rules import (
     MOTION_CAPTURE_INTERVAL,
@@ -33,7 +33,7 @@ def measured_in(runs: Concatenated) -> tuple[bool, bool]:
 
 
 def imagined(
-    ideal: Ideal, runs: Concatenated, point: Point, pace: Pace, *, better: bool = False
+    ideal: Ideal, runs: Concatenated, point: Point, pace: DrivingLimits, *, better: bool = False
 ) -> tuple[Experiment, float]:
     """Predict the record of a manoeuvre, and its duration in minutes.
 

@@ -36,7 +36,7 @@ from werrimbi_odom.inference.manoeuvres.rivals import (
     trace_along,
     trace_at,
 )
-from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
+from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre, for_the_unknown, strongest
 from werrimbi_odom.inference.rules import (
     APART_HEADING,
     APART_POSITION,
@@ -48,7 +48,7 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
-__all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "strongest"]
+__all__ = ["Discrimination", "ProposedManoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 
 Pair = tuple[str, str]
@@ -86,7 +86,7 @@ class Discrimination:
         return [pair for pair in self.rises if self.minutes_for([pair]) <= LONGEST_DRIVE]
 
 
-def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
+def next_manoeuvre(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
     """The next thing to do; None if the diagnosis leaves nothing open that could be resolved."""
     if diagnosis.verdict == "ambiguous":
         named = [diagnosis.effect_named(name) for name in diagnosis.rivals]
@@ -152,7 +152,7 @@ def _gained(
     return separation([known, ahead], rival) - separation([known], rival)
 
 
-def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
+def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> ProposedManoeuvre | None:
     """The quickest manoeuvre that leaves one rival; else that tells the first from all others.
 
     If none does within the longest drive: the one that tells the most pairs, those with the first
@@ -180,7 +180,7 @@ def _tells(item: Discrimination, first: str) -> tuple[int, int, float]:
     return sum(first in pair for pair in told), len(told), -item.minutes_for(told) if told else 0.0
 
 
-def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> Manoeuvre:
+def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> ProposedManoeuvre:
     one, other = best.hardest([pair for pair in pairs if first in pair] or pairs)
     why = (
         f"{one} and {other} look alike on these drives, but {best.ideal.where} "
@@ -189,7 +189,7 @@ def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> Manoeu
     minutes = min(best.minutes_for(pairs), LONGEST_DRIVE)
     chance = best.chance_in(minutes, pairs)
     do = f"drive {best.ideal.words}"
-    return Manoeuvre(best.ideal.name, why, do, float(np.ceil(minutes)), chance)
+    return ProposedManoeuvre(best.ideal.name, why, do, float(np.ceil(minutes)), chance)
 
 
 def _size(apart: Floats) -> str:

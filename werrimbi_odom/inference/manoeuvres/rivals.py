@@ -19,7 +19,7 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter, Model
-from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
+from werrimbi_odom.inference.fitting.prediction import predict_all, predicted_legs
 from werrimbi_odom.inference.linear import SILENT, nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
@@ -52,21 +52,23 @@ class Experiment:
     def marks(self, candidate: Candidate) -> Floats:
         """Derivatives of the legs along a candidate's coordinates, (m, 3, k)."""
         model = self.point.model
-        none = legs_shown(model, self.runs)
+        none = predicted_legs(model, self.runs)
         columns = []
         for coordinate in candidate.coordinates:
             ahead = candidate.with_value(coordinate, 1.0)
             behind = candidate.with_value(coordinate, -1.0)
-            forth = legs_shown(_holding(model, ahead), self.runs)
+            forth = predicted_legs(_holding(model, ahead), self.runs)
             one_sided = behind.values == candidate.with_value(coordinate, 0.0).values
-            back = none if one_sided else legs_shown(_holding(model, behind), self.runs)
+            back = none if one_sided else predicted_legs(_holding(model, behind), self.runs)
             columns.append((forth - back) / (1.0 if one_sided else 2.0))
         return np.stack(columns, axis=-1)
 
     def change(self, applied: AppliedEffect) -> Floats:
         """Change of the legs by an effect of a given size, (m, 3, 1)."""
         model = self.point.model
-        changed = legs_shown(_holding(model, applied), self.runs) - legs_shown(model, self.runs)
+        changed = predicted_legs(_holding(model, applied), self.runs) - predicted_legs(
+            model, self.runs
+        )
         return changed[..., None]
 
     def each_run(self, marks: Floats) -> Floats:

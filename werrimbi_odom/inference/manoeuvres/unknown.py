@@ -21,7 +21,7 @@ from werrimbi_odom.inference.rules import (
 
 
 @dataclass(frozen=True, slots=True)
-class Manoeuvre:
+class ProposedManoeuvre:
     """The next thing to do, to know more."""
 
     name: str
@@ -56,7 +56,7 @@ _VARYING = {
 """Manoeuvre that varies a variable by itself as far as possible, and the variable in words."""
 
 
-def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
+def for_the_unknown(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
     """Vary what the error depends on, and keep all else constant."""
     found = strongest(diagnosis)
     if found is None:
@@ -66,9 +66,9 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
         manoeuvre, words = _VARYING[name]
         ideal = next(item for item in MANOEUVRES if item.name == manoeuvre)
         why = f"it varies the {words} and holds as much else as can be held, so that the law shows"
-        return Manoeuvre(manoeuvre, why, f"drive {ideal.words}", MINUTES_OF_A_LAW)
+        return ProposedManoeuvre(manoeuvre, why, f"drive {ideal.words}", MINUTES_OF_A_LAW)
     if name == "position":
-        return Manoeuvre(
+        return ProposedManoeuvre(
             "square",
             "the same drive on different places of the floor shows where the error is and how wide",
             "drive the same small square, in both senses, on and off the places where the error is "
@@ -76,7 +76,7 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
             MINUTES_OF_PLACES,
         )
     if name in ("time", "duration", "distance"):
-        return Manoeuvre(
+        return ProposedManoeuvre(
             "out_and_back",
             "the same line, repeated, shows how the error grows with time, and whether it comes "
             "back after a rest",
@@ -84,7 +84,7 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
             "again",
             MINUTES_OF_TIME,
         )
-    return Manoeuvre(
+    return ProposedManoeuvre(
         "out_and_back",
         f"the same short drive at different values of {name}, all else held, shows how the error "
         "follows it",

@@ -30,7 +30,7 @@ from werrimbi_odom.inference.rules import (
     DELAY_WINDOW,
     FEWEST_CUTS,
 )
-from werrimbi_odom.inference.set_up.records import Record
+from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 _Numbers = TypeVar("_Numbers", np.float64, np.complex128)
@@ -39,7 +39,7 @@ _PERIOD = 0.1
 _STEPS = round(DELAY_WINDOW / _PERIOD)
 
 
-def lag_of(records: Sequence[Record]) -> tuple[float, float]:
+def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     """Estimate the delay of the reference [s], and the gain in unexplained variance over no delay.
 
     Returns
@@ -68,7 +68,7 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
     used = [total for total in sums if total.rows > DELAY_ROWS]
     if not used:
         return 0.0, 1.0
-    misfit = np.sum([total.rows * np.log(total.unexplained()) for total in used], axis=0)
+    misfit = np.sum([total.rows * np.log(total.residual_innovations()) for total in used], axis=0)
     misfit = misfit / sum(total.rows for total in used)
     best = int(np.argmin(misfit))
     lag = (best - most) * _PERIOD
@@ -113,29 +113,29 @@ class _Sums:
             both = np.fft.irfft(of_output * np.conj(np.fft.rfft(values, size)), size)
             self.cross[row] += np.concatenate([both[-self.most :], both[: self.most + 1]])
 
-    def unexplained(self) -> Floats:
+    def residual_innovations(self) -> Floats:
         """Unexplained share of the variance at each lag."""
         solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
         explained = np.sum(self.cross * solved, axis=0) / self.square
         return np.asarray(np.clip(1.0 - explained, DELAY_UNEXPLAINED, 1.0))
 
 
-def _turns(record: Record, grid: Floats) -> Floats | None:
+def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
     known = np.isfinite(record.yaw)
     if known.sum() < FEWEST_CUTS:
         return None
     yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
-    return _tamed(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
+    return _winsorised(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
 
 
-def _squared_steps(record: Record, grid: Floats) -> Floats | None:
+def _squared_steps(record: SetUpRecord, grid: Floats) -> Floats | None:
     known = np.isfinite(record.place)
     if known.sum() < FEWEST_CUTS:
         return None
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
     )
-    return _tamed(np.abs(_over(place)) ** 2)
+    return _winsorised(np.abs(_over(place)) ** 2)
 
 
 def _over(values: NDArray[_Numbers]) -> NDArray[_Numbers]:
@@ -149,7 +149,7 @@ def _in_any(steps: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(held > 0.5)
 
 
-def _tamed(values: Floats) -> Floats:
+def _winsorised(values: Floats) -> Floats:
     """Winsorise outliers (failed matches)."""
     size = np.abs(values[np.isfinite(values)])
     if size.size == 0:

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.rules import ASKEW, ASKEW_BY, BOTH_REVERSED, TWIN_W
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class SetUpEstimate:
     """Measured set-up, independent of the robot file's wiring; in the metres of the file [m]."""
 
     left: float
@@ -100,7 +100,7 @@ class Setting:
 AS_ENTERED = Setting(Wired(False, False, False, False, 0.0), 1.0, 1.0, 1.0)
 
 
-def wirings(estimate: Estimate) -> list[Wired]:
+def wirings(estimate: SetUpEstimate) -> list[Wired]:
     """All combinations that explain the measured signs, simplest first."""
     left_back, right_back = estimate.left < 0.0, estimate.right < 0.0
     yaw = estimate.yaw
@@ -112,7 +112,7 @@ def wirings(estimate: Estimate) -> list[Wired]:
     return sorted([straight, crossed, seen, both], key=lambda each: each.mistakes)
 
 
-def setting_of(estimate: Estimate, wired: Wired, track: float) -> Setting:
+def setting_of(estimate: SetUpEstimate, wired: Wired, track: float) -> Setting:
     """Set-up with this wiring; where only yaw is measured, the base is assumed right."""
     base = track if estimate.base is None else estimate.base
     left, right = abs(estimate.left) * base, abs(estimate.right) * base

@@ -160,7 +160,7 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
         yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, wider)
 
 
-def as_skid(finding: SetUpFinding) -> SetUpFinding:
+def as_skid_steer(finding: SetUpFinding) -> SetUpFinding:
     """Replace a finding of a wide base by `skid_steer`, for a robot that is known to skid."""
     base = finding.values.get("multiplier", 1.0)
     if finding.effect == "wheel_radius_scale" and "track_width" in finding.twins:

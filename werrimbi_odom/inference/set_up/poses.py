@@ -22,14 +22,20 @@ from werrimbi_odom.inference.rules import (
 )
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
-    Estimate,
     Setting,
+    SetUpEstimate,
     setting_of,
     wirings,
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, arm_finding, findings_of
-from werrimbi_odom.inference.set_up.records import Cuts, Record, cut, effective_track
-from werrimbi_odom.inference.set_up.regression import Moving, Turning, errors, moving, turning
+from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, effective_track
+from werrimbi_odom.inference.set_up.regression import (
+    HeadingRegression,
+    Moving,
+    errors,
+    moving,
+    turning,
+)
 from werrimbi_odom.model.robot import Robot
 
 
@@ -38,7 +44,7 @@ class Regressed:
     """Both regressions of a session."""
 
     cuts: Cuts
-    turning: Turning
+    turning: HeadingRegression
     moving: Moving
 
     @property
@@ -68,7 +74,7 @@ class Regressed:
         )
 
 
-def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
+def regressed(records: Sequence[SetUpRecord], robot: Robot) -> Regressed | None:
     """Both regressions; None where the drives do not determine them."""
     cuts = cut(records, robot, "pose")
     if cuts.count < FEWEST_CUTS:
@@ -78,7 +84,7 @@ def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
     return None if turn is None or move is None else Regressed(cuts, turn, move)
 
 
-def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measure) -> float:
+def degrees_gain(records: Sequence[SetUpRecord], robot: Robot, measured: Measure) -> float:
     """Improvement of the fit if the reference's yaw is in degrees; 1 if it is in radians."""
     yaw = np.concatenate([each.yaw[np.isfinite(each.yaw)] for each in records])
     if measured == "position" or yaw.size == 0 or np.ptp(yaw) < DEGREES_RANGE:
@@ -100,7 +106,7 @@ def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measure) -> 
 
 
 def search_poses(
-    records: Sequence[Record], robot: Robot
+    records: Sequence[SetUpRecord], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """Findings, and the measured sizes; None where these are not determined."""
     fit = regressed(records, robot)
@@ -108,7 +114,7 @@ def search_poses(
         return [], None
     track = effective_track(robot)
     half_base = fit.moving.half_base
-    estimate = Estimate(
+    estimate = SetUpEstimate(
         fit.turning.left,
         fit.turning.right,
         2.0 * abs(half_base),

@@ -28,20 +28,26 @@ from werrimbi_odom.inference.rules import (
     WINDOW_FLOOR,
 )
 from werrimbi_odom.inference.set_up.explanation import (
-    Estimate,
     Setting,
+    SetUpEstimate,
     setting_of,
     wirings,
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
-from werrimbi_odom.inference.set_up.records import Complexes, Cuts, Record, cut, effective_track
+from werrimbi_odom.inference.set_up.records import (
+    Complexes,
+    Cuts,
+    SetUpRecord,
+    cut,
+    effective_track,
+)
 from werrimbi_odom.inference.set_up.regression import swept
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
-class Windows:
+class CutWindows:
     """Windows of consecutive cuts, as displacements from each window's start; w windows."""
 
     cuts: Cuts
@@ -116,7 +122,7 @@ def _scale(gone: Complexes, move: Complexes) -> float:
     return float(np.median(match[moved] / size[moved])) if moved.any() else 0.0
 
 
-def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> Windows | None:
+def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> CutWindows | None:
     """Windows spread over all drives; None where there is none."""
     starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
     starts = starts[cuts.stretch[starts] == cuts.stretch[starts + WINDOW - 1]]
@@ -131,7 +137,7 @@ def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> Windows | None:
     floor = WINDOW_FLOOR * float(np.median(np.abs(cuts.move))) + 1e-12
     nothing = np.full(end.size, np.nan)
     stretches = Cuts(cuts.left, cuts.right, begin, end, nothing, nothing, move, end * 0)
-    return Windows(_compact(stretches), floor)
+    return CutWindows(_compact(stretches), floor)
 
 
 def _compact(cuts: Cuts) -> Cuts:
@@ -158,7 +164,7 @@ def _compact(cuts: Cuts) -> Cuts:
 
 
 def search_positions(
-    records: Sequence[Record], robot: Robot
+    records: Sequence[SetUpRecord], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """Findings, and the measured sizes."""
     cuts = cut(records, robot, "position", fewest=POSITION_CUTS)
@@ -184,7 +190,7 @@ def search_positions(
         half_base, arm = windows.half_base(left, right), 0j
     if half_base <= 0.0:
         return [], None
-    estimate = Estimate(left, right, 2.0 * half_base, None, arm)
+    estimate = SetUpEstimate(left, right, 2.0 * half_base, None, arm)
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)
 
@@ -200,7 +206,7 @@ def search_positions(
 
 
 def _with_arm(
-    windows: Windows, left: float, right: float
+    windows: CutWindows, left: float, right: float
 ) -> tuple[float, float, float, float, complex]:
     """Error, turn per travel of both wheels, half base and lever arm of the best fit."""
     arm, error = 0j, math.inf
@@ -224,7 +230,7 @@ def _grid() -> list[tuple[float, float]]:
 
 
 def _refined(
-    windows: Windows, left: float, right: float, arm: complex = 0j, *, step: float = 0.15
+    windows: CutWindows, left: float, right: float, arm: complex = 0j, *, step: float = 0.15
 ) -> tuple[float, float, float]:
     """Pattern search in log size and log ratio, with shrinking steps."""
     size, ratio = 0.0, 0.0

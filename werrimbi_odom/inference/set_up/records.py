@@ -38,7 +38,7 @@ Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class SetUpRecord:
     """One run: wheel travel by the robot file, and measurements; n steps, m rows."""
 
     time: Floats
@@ -55,11 +55,11 @@ class Record:
     not_driven: tuple[tuple[float, float], ...] = ()
     """Stretches in which the robot was held or carried: begin and end [s]."""
 
-    def delayed(self, delay: float) -> Record:
+    def delayed(self, delay: float) -> SetUpRecord:
         """Shift the reference, which is later by `delay` [s] than assumed."""
         return replace(self, seen=self.seen - delay)
 
-    def in_degrees(self) -> Record:
+    def in_degrees(self) -> SetUpRecord:
         """Convert the recorded yaw from degrees."""
         return replace(self, yaw=np.radians(self.yaw))
 
@@ -98,7 +98,7 @@ class Cuts:
         return np.asarray(total[self.end] - total[self.begin])
 
 
-def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | None:
+def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpRecord | None:
     """Usable part of a run; None where there is no reference or no travel."""
     reference, ticks = run.reference, run.ticks
     if reference is None:
@@ -139,7 +139,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
     stamps = np.asarray(reference.time, dtype=np.float64)
     latest = np.maximum.accumulate(np.where(known, stamps, -math.inf))
     known &= np.concatenate([[True], stamps[1:] > latest[:-1]])
-    return Record(
+    return SetUpRecord(
         time,
         summed(raw.left),
         summed(raw.right),
@@ -150,7 +150,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
     )
 
 
-def measured_by(records: Sequence[Record]) -> Measure | None:
+def measured_by(records: Sequence[SetUpRecord]) -> Measure | None:
     """What the reference measures: poses if enough rows have both."""
     place = sum(int(np.isfinite(each.place).sum()) for each in records)
     yaw = sum(int(np.isfinite(each.yaw).sum()) for each in records)
@@ -167,7 +167,9 @@ def effective_track(robot: Robot) -> float:
     return robot.wheel_separation * sizes_of(robot).base
 
 
-def cut(records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: int = CUTS) -> Cuts:
+def cut(
+    records: Sequence[SetUpRecord], robot: Robot, measured: Measure, *, fewest: int = CUTS
+) -> Cuts:
     """Cut all runs at rows of the reference, every half turn of the faster wheel.
 
     Parameters
@@ -203,7 +205,7 @@ def cut(records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: i
     return Cuts(*(np.concatenate([getattr(each, name) for each in parts]) for name in names))
 
 
-def _usable(record: Record, measured: Measure) -> Record:
+def _usable(record: SetUpRecord, measured: Measure) -> SetUpRecord:
     """Rows with the needed values, within the ticks' time span."""
     known = np.ones(record.seen.shape, dtype=np.bool_)
     if measured != "heading":
@@ -215,18 +217,18 @@ def _usable(record: Record, measured: Measure) -> Record:
     return replace(record, seen=record.seen[keep], place=record.place[keep], yaw=yaw)
 
 
-def _progress(record: Record) -> Floats:
+def _progress(record: SetUpRecord) -> Floats:
     """Cumulative travel of the faster wheel at each reference row [m]."""
     gone = np.interp(record.seen, record.time, _way(record))
     return np.asarray(gone - gone[0])
 
 
-def _way(record: Record) -> Floats:
+def _way(record: SetUpRecord) -> Floats:
     """Cumulative travel of the faster wheel at each message [m]."""
     return summed(np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right))))
 
 
-def _gaps(record: Record, gone: Floats, length: float) -> NDArray[np.bool_]:
+def _gaps(record: SetUpRecord, gone: Floats, length: float) -> NDArray[np.bool_]:
     """Reference intervals without driving, or with silence of reference or ticks."""
     inside = (record.time >= record.seen[0]) & (record.time <= record.seen[-1])
     time = record.time[inside]
@@ -237,7 +239,7 @@ def _gaps(record: Record, gone: Floats, length: float) -> NDArray[np.bool_]:
 
 
 def _cut_run(
-    record: Record, length: float, point: complex, yaw: float, stretch: int, offset: int
+    record: SetUpRecord, length: float, point: complex, yaw: float, stretch: int, offset: int
 ) -> Cuts:
     gone = _progress(record)
     gap = _gaps(record, gone, length)

@@ -29,7 +29,7 @@ _LARGE = 4.685
 
 
 @dataclass(frozen=True, slots=True)
-class Turning:
+class HeadingRegression:
     """Regression of the measured turn on the wheels."""
 
     left: float
@@ -55,7 +55,9 @@ class Moving:
     """Robust residual dispersion of a cut [m]."""
 
 
-def turning(cuts: Cuts, *, with_bias: bool = False, squares: bool = False) -> Turning | None:
+def turning(
+    cuts: Cuts, *, with_bias: bool = False, squares: bool = False
+) -> HeadingRegression | None:
     """Regress measured turns on the travel of both wheels; None where not determined.
 
     Parameters
@@ -75,7 +77,7 @@ def turning(cuts: Cuts, *, with_bias: bool = False, squares: bool = False) -> Tu
     if fit is None:
         return None
     value, std, scatter = fit
-    return Turning(
+    return HeadingRegression(
         float(value[1].real), float(value[0].real), float(std[1]), float(std[0]), scatter
     )
 

@@ -18,28 +18,28 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.calibration_sizes import skidding
+from werrimbi_odom.inference.calibration_sizes import skids_in_turns
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import FEWEST_CUTS, MILLIMETRES_FROM, MOST_CREEP, SURE_SIZE
 from werrimbi_odom.inference.set_up.delay import lag_of
-from werrimbi_odom.inference.set_up.explanation import Estimate, Setting, setting_of, wirings
+from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import (
     IN_DEGREES,
     WIRING_WORDS,
     SetUpFinding,
-    as_skid,
+    as_skid_steer,
     findings_of,
 )
 from werrimbi_odom.inference.set_up.poses import degrees_gain, search_poses
 from werrimbi_odom.inference.set_up.positions import search_positions
 from werrimbi_odom.inference.set_up.records import (
-    Record,
+    SetUpRecord,
     cut,
     effective_track,
     measured_by,
     record_of,
 )
-from werrimbi_odom.inference.set_up.regression import Turning, swept, turning
+from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, turning
 from werrimbi_odom.inference.set_up.robot import with_findings
 from werrimbi_odom.inference.set_up.sparse import is_sparse, search_sparse
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -131,8 +131,8 @@ def look_for_mistakes(
         (each for each in found if each not in mount),
         key=lambda each: (each.effect not in WIRING_WORDS, -each.gain),
     )
-    if skidding(robot):
-        wheels = [as_skid(each) for each in wheels]
+    if skids_in_turns(robot):
+        wheels = [as_skid_steer(each) for each in wheels]
     degrees = [each for each in extra if each.effect == IN_DEGREES]
     late = [each for each in extra if each.effect != IN_DEGREES]
     try:
@@ -146,7 +146,7 @@ def look_for_mistakes(
 
 
 def _search_headings(
-    records: Sequence[Record], robot: Robot
+    records: Sequence[SetUpRecord], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """Signs, and radii over base, where only yaw was measured, perhaps by a gyro.
 
@@ -163,7 +163,7 @@ def _search_headings(
     if fit is None or not _is_sure(fit):
         return [], None
     track = effective_track(robot)
-    estimate = Estimate(fit.left, fit.right, None, None)
+    estimate = SetUpEstimate(fit.left, fit.right, None, None)
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)
 
@@ -194,7 +194,7 @@ def _creep(off: Floats, duration: Floats) -> float:
     return float(np.clip(middle, -MOST_CREEP, MOST_CREEP))
 
 
-def _is_sure(fit: Turning | None) -> bool:
+def _is_sure(fit: HeadingRegression | None) -> bool:
     """Whether the sign of each wheel's turn is significant."""
     if fit is None:
         return False

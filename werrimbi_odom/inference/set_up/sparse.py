@@ -27,14 +27,14 @@ from werrimbi_odom.inference.rules import (
 )
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
-    Estimate,
     Setting,
+    SetUpEstimate,
     setting_of,
     wirings,
 )
 from werrimbi_odom.inference.set_up.factors import FACTORS
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
-from werrimbi_odom.inference.set_up.records import Cuts, Record, cut, effective_track
+from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, effective_track
 from werrimbi_odom.inference.set_up.regression import errors
 from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats
@@ -44,14 +44,14 @@ STEPS = 4000
 """Steps in all drives together, some tenths of a second each."""
 
 
-def is_sparse(records: Sequence[Record], robot: Robot, measured: Measure) -> bool:
+def is_sparse(records: Sequence[SetUpRecord], robot: Robot, measured: Measure) -> bool:
     """Whether the reference is too rare to follow the robot through its turns."""
     cuts = cut(records, robot, measured)
     return cuts.count < SPARSE_CUTS * len(records) + SPARSE_CUTS_MORE
 
 
 def search_sparse(
-    records: Sequence[Record], robot: Robot, measured: Measure
+    records: Sequence[SetUpRecord], robot: Robot, measured: Measure
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """Findings; sizes are not measured, so the second value is always None."""
     cuts = _thinned(cut(records, robot, measured))
@@ -67,10 +67,10 @@ def search_sparse(
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
-    ways = wirings(Estimate(left, right, 2.0 * abs(half_base), yaw))
+    ways = wirings(SetUpEstimate(left, right, 2.0 * abs(half_base), yaw))
     # With a mirrored reference the same signs predict something else.
     upright = [way for way in ways if not way.mirrored]
-    estimate = Estimate(left, right, 2.0 * abs(half_base), yaw)
+    estimate = SetUpEstimate(left, right, 2.0 * abs(half_base), yaw)
     same = [setting_of(estimate, way, track) for way in upright]
     for value, _, other in tried[1:]:
         if value < best - SPARSE_APART:

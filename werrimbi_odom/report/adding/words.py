@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from werrimbi_odom.inference.adding.added import Added, Side
+from werrimbi_odom.inference.adding.added import Added, JudgedSide
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
@@ -251,7 +251,7 @@ def json_of(added: Added) -> dict[str, Any]:
     }
 
 
-def _side(added: Added, side: Side) -> dict[str, Any]:
+def _side(added: Added, side: JudgedSide) -> dict[str, Any]:
     before, after = side.figures("before"), side.figures("after")
     return {
         **picked(before, "before:rmse_position_m median_before:median_position_m"),

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit, pivot_scatter
+from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, NoiseInterval, pivot_scatter
 from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
 from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.numbers import picked, scaled_with_std
@@ -40,7 +40,7 @@ def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: 
     return [*verdict, Table(title, heads, rows), *paragraphs(sentences, apart=True)]
 
 
-def _wheel(side: str, estimate: NoiseEstimate, matched: float) -> list[str]:
+def _wheel(side: str, estimate: NoiseInterval, matched: float) -> list[str]:
     interval = f"{_k(estimate.low)} to {_k(estimate.high)}"
     return [side, scaled_with_std(estimate.value, estimate.std), interval, _k(matched)]
 

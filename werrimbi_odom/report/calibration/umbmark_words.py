@@ -14,7 +14,7 @@ from werrimbi_odom.inference.calibration.squares import (
     e_max_of_scatter,
     e_max_syst,
 )
-from werrimbi_odom.inference.calibration.umbmark import Estimate, Umbmark
+from werrimbi_odom.inference.calibration.umbmark import Umbmark, ValueAndStd
 from werrimbi_odom.inference.chances import NORMAL_95
 from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
@@ -81,7 +81,7 @@ def _angles(result: Umbmark) -> Table:
     return Table("Angles", ("", "[degrees]", "[mrad]", "by x alone", "by y"), rows)
 
 
-def _angle(says: str, estimate: Estimate, by_x: float, by_y: float) -> list[str]:
+def _angle(says: str, estimate: ValueAndStd, by_x: float, by_y: float) -> list[str]:
     degrees, std = math.degrees(estimate.value), math.degrees(estimate.std)
     return [
         says,
@@ -166,11 +166,11 @@ def gained_in_words(
     return [Paragraph(" ".join(parts), apart=True), others]
 
 
-def _significant(estimate: Estimate, null: float) -> bool:
+def _significant(estimate: ValueAndStd, null: float) -> bool:
     return abs(estimate.value - null) > NORMAL_95 * estimate.std
 
 
-def _share(factor: Estimate) -> str:
+def _share(factor: ValueAndStd) -> str:
     """How far a factor is from 1."""
     return f"{scaled_with_std(100.0 * abs(factor.value - 1.0), 100.0 * factor.std)} %"
 

@@ -58,7 +58,7 @@ def legs_json(figures: LegFigures) -> dict[str, Any]:
         **picked(figures.figures, "count rmse_position_m median_position_m"),
         **picked(figures.figures, "rmse_yaw_rad nees coverage_95"),
         **picked(figures, "outliers rmse_all_position_m"),
-        "nees_without_systematic": figures.scatter_nees,
+        "nees_without_systematic": figures.dispersion_nees,
         "noise_factor": list(figures.noise),
     }
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.calibration_sizes import skidding
+from werrimbi_odom.inference.calibration_sizes import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
@@ -81,7 +81,7 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
             f"The model explains these drives: {over} its errors are what its covariance "
             "promises, and nothing systematic is left in them."
         )
-    if verdict.gross and skidding(comparison.model.robot):
+    if verdict.gross and skids_in_turns(comparison.model.robot):
         return (
             "The model is grossly wrong: that is not calibration. This robot's driven wheels skid "
             "in turns, and how much is to be found first; or something is set up wrongly."
@@ -130,7 +130,7 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
         if said:
             lines.append(f"- {name}: {listed(said)}. Errors of a leg: {errors}.")
         elif kind in verdict.off:
-            times = math.sqrt(figures.scatter_nees)
+            times = math.sqrt(figures.dispersion_nees)
             lines.append(
                 f"- {name}: errors of a leg {errors}, {times:.1f} times what is promised{common}."
             )

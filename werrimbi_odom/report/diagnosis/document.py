@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence import label_of
 from werrimbi_odom.report.diagnosis.evidence_figures import (
@@ -213,7 +213,7 @@ def _events(diagnosis: Diagnosis) -> list[Shown]:
     ]
 
 
-def _next(diagnosis: Diagnosis, manoeuvre: Manoeuvre | None) -> list[Shown]:
+def _next(diagnosis: Diagnosis, manoeuvre: ProposedManoeuvre | None) -> list[Shown]:
     if manoeuvre is None:
         return []
     ideal = ideal_of(manoeuvre.name)

@@ -11,8 +11,8 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
+from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, DrivingLimits, Ideal, ideal_run
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -182,7 +182,7 @@ def _legs(diagnosis: Diagnosis, robot: Robot) -> tuple[Floats, Floats]:
     moved = (finish[:, 0] - start[:, 0]) + 1j * (finish[:, 1] - start[:, 1])
     moved = moved * np.exp(-1j * start[:, 2])
     turn = wrap_all(finish[:, 2] - start[:, 2])
-    predicted = legs_shown(Model(robot, tuple({} for _ in runs.runs)), runs)
+    predicted = predicted_legs(Model(robot, tuple({} for _ in runs.runs)), runs)
     return np.stack([moved.real, moved.imag, turn], axis=-1), predicted
 
 
@@ -195,7 +195,7 @@ def ideal_of(name: str) -> Ideal | None:
     return next((item for item in MANOEUVRES if item.name == name), None)
 
 
-def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: Pace) -> Figure:
+def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: DrivingLimits) -> Figure:
     """Where the wheels roll, for a robot of this size that drives as this one did.
 
     Parameters

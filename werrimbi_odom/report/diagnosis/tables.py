@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
@@ -114,7 +114,7 @@ def _sights(sights: Sequence[DetectionLimit]) -> list[Part]:
 
 def json_of(
     diagnosis: Diagnosis,
-    manoeuvre: Manoeuvre | None,
+    manoeuvre: ProposedManoeuvre | None,
     sights: Sequence[DetectionLimit] = (),
     changes: Sequence[Moved] = (),
 ) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 )
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
-from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre
 from werrimbi_odom.inference.rules import POWER
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
@@ -199,7 +199,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     return [*lines, *law(told), *scatter(told), *at_bounds_told(diagnosis)]
 
 
-def how_long(move: Manoeuvre, diagnose: str) -> Iterator[str]:
+def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     """Of a drive that tells rivals apart: for how long, how surely, and what then."""
     if not move.minutes:
         return

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..chassis import Chassis
-from ..engine import Pose
+from ..engine import AxlePose
 from ..recording import Recording
 from ..robot import TrueRobot
 from ..sensors import ReferenceSensor, wrap
@@ -44,7 +44,9 @@ class ReferenceMount(Peculiarity):
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
         """Move the marker."""
         mount = sensor.mount
-        return replace(sensor, mount=Pose(mount.x + self.x, mount.y + self.y, mount.yaw + self.yaw))
+        return replace(
+            sensor, mount=AxlePose(mount.x + self.x, mount.y + self.y, mount.yaw + self.yaw)
+        )
 
 
 @dataclass(frozen=True)
