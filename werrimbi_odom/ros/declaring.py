@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
-from rclpy.parameter import NodeParameter as Given
+from rclpy.parameter import Parameter as Given
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as robot_file
