@@ -42,7 +42,7 @@ class Driver:
 
     Parameters
     ----------
-    plan : Plan
+    plan : ManoeuvrePlan
     limits : Limits
     area : Area
         About the pose of the first start.

@@ -32,7 +32,7 @@ class PathFollower:
 
     Parameters
     ----------
-    plan : Plan
+    plan : ManoeuvrePlan
     limits : Limits
     """
 
