@@ -81,3 +81,17 @@ def test_headings_that_scatter_about_the_truth_have_none() -> None:
     assert seen is not None
     assert absolute.reference is not None
     np.testing.assert_array_equal(seen.yaw, absolute.reference.yaw)
+
+
+def test_coming_to_rest_in_short_pauses_is_no_bias() -> None:
+    """What turns on in each pause of a second tells of the robot, and nothing of its gyro."""
+    pause, turn = np.zeros(20), 0.5 * np.ones(40)
+    turning = np.concatenate([pause, *(part for _ in range(5) for part in (turn, pause))])
+    run = by_gyro(np.zeros(turning.size), turning, 1.0, 0.0, 1)
+    assert run.reference is not None
+    moving = np.concatenate([[0.0], turning])[: run.reference.time.size] != 0.0
+    coasting = np.cumsum(np.where(moving, 0.0, 0.004))
+    coasts = replace(run, reference=replace(run.reference, yaw=run.reference.yaw + coasting))
+    seen = looked_at(coasts, ROBOT).reference
+    assert seen is not None
+    np.testing.assert_array_equal(seen.yaw, coasts.reference.yaw)

@@ -35,9 +35,11 @@ def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
     for span in spans:
         if span.what == "stood":
             inside = (time >= span.begin + BIAS_EDGE) & (time <= span.end - BIAS_EDGE)
-            rest |= inside[:-1] & inside[1:]
+            within = inside[:-1] & inside[1:]
+            if duration[within].sum() >= BIAS_REST:  # in a pause it may still come to rest
+                rest |= within
     seconds = float(duration[rest].sum())
-    if seconds < BIAS_REST:
+    if not rest.any():
         return reference
     bias = float(turned[rest].sum()) / seconds
     scatter = turned[rest] - bias * duration[rest]
