@@ -16,12 +16,13 @@ help:  ## this list
 
 setup: $(READY)  ## the environment .venv with everything in it
 
+# pip would compile all 260 packages; Python compiles the modules in use when it first imports them.
 $(READY): setup.py setup.cfg constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
 	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI, once:"
 	@echo "some 260 packages, about 1.4 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
 	@$(PYTHON) -m venv $(VENV)
-	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off \
+	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off --no-compile \
 	    --constraint constraints.txt --editable '.[all]' 2>&1; echo "pip ended with $$?"; } \
 	  | tee $(VENV)/setup.log | $(PYTHON) -u -c "$$PROGRESS" \
 	  || { tail -n 20 $(VENV)/setup.log; exit 1; }
