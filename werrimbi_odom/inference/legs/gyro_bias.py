@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A gyro's bias, as it is seen while the wheels stand."""
+"""Bias of a gyro, estimated while the wheels stand."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from werrimbi_odom.model.pose import wrap_all
 
 
 def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
-    """Headings alone without the rate that they have at rest; as they are where none is sure.
+    """Remove the bias estimated at rest from the headings of a gyro, if it is significant.
 
-    No model of the robot takes part in that, so it is the same for all parts of a drive. What a
-    bias changes by as the robot drives is left to the fits, which have a drift of every run free.
+    The robot model takes no part, so all parts of a drive get the same bias. Its change while the
+    robot drives is left to the fits, where the drift of each run is free.
 
     Parameters
     ----------
-    spans
-        What the robot did when, in its order.
+    reference : Reference
+        Headings alone.
+    spans : sequence of TimeSpan
+        What the robot did when, in order.
     """
-    if reference.has_position.any() or not reference.has_yaw.any():
-        return reference
     seen = reference.has_yaw
     time, turned = reference.time[seen], wrap_all(np.diff(reference.yaw[seen]))
     duration = np.diff(time)

@@ -103,7 +103,8 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
     except InputError:
         return run  # cutting into legs raises the error
     found = no_driving(counters, seen, robot)
-    seen = without_bias(seen, driven(counters, robot, found).spans)
+    if not seen.has_position.any():  # a gyro
+        seen = without_bias(seen, driven(counters, robot, found).spans)
     return replace(run, reference=seen, no_driving=found)
 
 
