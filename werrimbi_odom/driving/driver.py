@@ -66,7 +66,7 @@ class Driver:
         self._least_age = math.inf
         self._ends_by = math.inf
 
-    # ------------------------------------------------------------------------- asked for
+    # ------------------------------------------------------------------------- requests
 
     def refusal(self, now: float) -> str:
         """Why a drive cannot begin; "" if it can."""
@@ -131,7 +131,7 @@ class Driver:
             self.state, self.words = "stopped", why
         self.command = STILL
 
-    # ------------------------------------------------------------------------- what comes in
+    # ------------------------------------------------------------------------- messages
 
     def odometry(self, reading: OdometryReading, now: float) -> Command | None:
         """Process an odometry message; return the command to send, if one is due."""
@@ -187,7 +187,7 @@ class Driver:
             wrong = f"the odometry is silent for {now - self._heard:.2f} s"
         return self._stopped(wrong) if wrong else None
 
-    # ------------------------------------------------------------------------- judging
+    # ------------------------------------------------------------------------- checks
 
     def _stopped(self, why: str) -> Command:
         self.stop(why)
@@ -241,7 +241,7 @@ class Driver:
             and abs(moved.yaw) < AT_REST_TURN * duration
         )
 
-    # ------------------------------------------------------------------------- told
+    # ------------------------------------------------------------------------- output
 
     def shown(self) -> list[Pose]:
         """The planned path in the odometry frame, from the start or the present pose."""

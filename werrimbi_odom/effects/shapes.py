@@ -160,8 +160,8 @@ def standing(drive: Drive[Number], left: float) -> tuple[Span[Number], Span[Numb
 def _inside(x: Span[Floats], y: Span[Floats], at_x: float, at_y: float, radius: float) -> Floats:
     way_x, way_y = x.change, y.change
     from_x, from_y = x.start - at_x, y.start - at_y
-    # Points of the path are (from + u * way), u from 0 to 1; inside the circle way² u² + 2 (from ·
-    # way) u + from² - radius² < 0.
+    # Points of the path are (from + u * way), u from 0 to 1. They are inside the circle where
+    # way² u² + 2 (from · way) u + from² - radius² < 0.
     square = way_x * way_x + way_y * way_y
     along = from_x * way_x + from_y * way_y
     apart = from_x * from_x + from_y * from_y - radius * radius
