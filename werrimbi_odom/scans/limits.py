@@ -41,10 +41,9 @@ only a corridor's heading with 681 beams comes below it (docs/scans.md). Further
 lidar are estimated from each drive (`path.common_noise`)."""
 
 COMMON = 1.5
-"""Least ratio between the scatter of the poses about a smooth course and the variance that the
-matches state, from which on a noise common to all echoes of a scan is assumed. Without such noise
-the ratio is 0.9 to 1.4 in simulated rooms; with a real LD08, whose turns begin at any angle, 5 to
-15."""
+"""Ratio of the variance of the poses about a smooth course to that stated by the matches, above
+which a noise common to all echoes of a scan is assumed. Without such noise the ratio is 0.9 to 1.4
+in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15."""
 
 CALM = 0.25
 """Share of a drive, with the smallest changes of speed, in which that scatter is measured. In short

@@ -123,11 +123,11 @@ class Chassis:
     def giving(self) -> WheelPlan | None:
         """The wheel with lateral compliance: one that is not round, if any.
 
-        The contact of such a wheel moves ahead of and behind its axle. Two rigid wheels whose
-        contacts are not on the axle's line cannot both roll while the robot turns: one of them
-        slides, and then loses its longitudinal grip too. Real tyres deflect laterally by a little
-        in each turn. Here this wheel moves laterally without resistance (the engine resets it after
-        every period), and the other one holds the robot laterally.
+        The contact of such a wheel moves ahead of and behind its axle. Two rigid wheels with
+        contacts off the axle's line cannot both roll while the robot turns: one of them slides, and
+        then loses its longitudinal grip too. Real tyres deflect laterally by a little in each turn.
+        Here this wheel moves laterally without resistance (the engine resets it after every
+        period), and the other one holds the robot laterally.
         """
         return next((wheel for wheel in self.wheels if wheel.offset or wheel.ovality), None)
 

@@ -57,7 +57,7 @@ def scatter(told: Told) -> list[str]:
 
 
 def _or_a_held_law(told: Told) -> str:
-    """Laws in the model, whose form may differ slightly from the true one."""
+    """Laws in the model; their form may differ slightly from the true one."""
     applied = told.diagnosis.robot.effects
     laws = [each.name for each in applied if not each.effect.is_mistake]
     return f", or the law of {listed(laws, 'or')} does not quite fit there" if laws else ""

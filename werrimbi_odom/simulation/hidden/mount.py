@@ -75,7 +75,7 @@ class ReferenceDelay(Peculiarity):
 
 @dataclass(frozen=True)
 class WarmingGyro(Peculiarity):
-    """The reference's heading is from a gyro whose temperature changes in each drive.
+    """The reference's heading is from a gyro, and its temperature changes in each drive.
 
     Its bias follows the temperature, which approaches the ambient one exponentially. The bias is
     zero at the start of a drive, as after a calibration.

@@ -104,8 +104,8 @@ class TreadBump(Peculiarity):
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
         """Move the robot by the additional travel while the hub is higher.
 
-        A rigid wheel of the engine whose radius changes within a revolution loses contact, and with
-        it a quarter to a half of the effect; a soft one keeps contact.
+        If its radius changes within a revolution, a rigid wheel of the engine loses contact, and
+        with it a quarter to a half of the effect; a soft one keeps contact.
         """
         wheel: WheelPlan = getattr(chassis, self.side)
         base = chassis.left.y - chassis.right.y
