@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Second act: the round on a robot in the physics engine, all by nodes that talk over DDS.
+"""Second act: the whole procedure on a robot in the physics engine, all by nodes over DDS.
 
-The robot drives, its covariance turns out not to be honest, compare_node says what is missing and
-writes the new robot file, and with that the robot drives again. All that is printed comes from the
-nodes' messages.
+The robot drives and its covariance is inconsistent. compare_node reports what is missing and writes
+the new robot file, with which the robot drives again. All printed results are from messages of the
+nodes.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from werrimbi_odom.report.path_figure import CHI2_95_OF_2
 from werrimbi_odom.report.style import BLUE, ORANGE, Figure, blank, plain
 
 SEED = 149
-"""Of what is hidden: chosen as one that a minute's driving tells from all others."""
+"""Seed of the hidden effect, chosen such that one minute of driving identifies the effect."""
 PACES = (2.0, 1.0, 0.5)
-"""Simulated seconds in a second: the first, and where the nodes cannot keep up, the others."""
+"""Real time factors: the first, and the others in case the nodes cannot keep up."""
 NODES = ("odom_node", "compare_node", "drive_node")
 NAMES = ("as its file said", "with what was found")
-"""Of the drives."""
+"""Names of the drives."""
 DRIVE: dict[str, object] = {
     "manoeuvre": "figure_eight",
     "size": 0.5,
@@ -40,7 +40,7 @@ DRIVE: dict[str, object] = {
     "odom_timeout": 2.0,
     "max_deviation": 0.5,
 }
-"""A minute of it, to both sides, slow and fast; patient with a busy machine."""
+"""One minute to both sides, slow and fast, with timeouts for a busy machine."""
 LOOK: dict[str, object] = {
     "diagnose_every": 0.9,
     "reference_sigma_xy": 0.001,
@@ -48,22 +48,22 @@ LOOK: dict[str, object] = {
 }
 HONEST = "compare_node: honesty of the covariance"
 STANDS = 5e-4
-"""Way [m] within which the robot has not yet begun."""
+"""Path length [m] below which the robot counts as not started."""
 CALL, TRIGGER = "ros2 service call ", "std_srvs/srv/Trigger"
 
 
 def second_act(out: Path) -> None:
-    """Drive, tell, add, drive again; print what the nodes say.
+    """Drive, diagnose, add, drive again; print the results of the nodes.
 
     Parameters
     ----------
-    out
+    out : Path
         Folder for the robot files and the picture.
 
     Raises
     ------
     InputError
-        When a node does not do its part; the message says which, and its own words are above.
+        If a node fails; the message names it, and its own output is above.
     """
     print("\nSecond act: why is the odometry wrong?\n")
     print("A robot in a physics engine, with an effect hidden in it. Which one is told at the end.")
@@ -83,7 +83,7 @@ def second_act(out: Path) -> None:
 
 
 def _round(pace: float, file: Path, better: Path) -> list[OdometryError]:
-    """Both drives, or none where the nodes could not keep up with the robot's time."""
+    """Both drives; an empty list if the nodes could not keep up."""
     for path in (file, better):
         path.unlink(missing_ok=True)
     with Stage() as stage:
@@ -107,14 +107,14 @@ def _round(pace: float, file: Path, better: Path) -> list[OdometryError]:
 
 
 def _driven(stage: Stage, file: Path, new: Path) -> OdometryError | None:
-    """A drive with a robot file, and what compare_node says of it; None where it was broken off."""
+    """A drive with a robot file, and the output of compare_node; None if it was stopped early."""
     print(f"\nIt drives with {file}, on its own odometry:")
     stage.forget()
     stage.start("odom_node", params_file=file)
     stage.start("compare_node", {"robot_file": file, "new_robot_file": new, **LOOK})
     stage.start("drive_node", DRIVE)
     stage.until(lambda: stage.ask("drive_node/check").success, "robot that could start")
-    # Drivers may hear the odometry before we do: the picture needs it from where the robot stands.
+    # drive_node may receive odometry before this node does; the figure needs it from the start.
     stage.until(lambda: bool(stage.odometry and stage.measured), "odometry and reference")
     print(f"$ {CALL}/drive_node/start {TRIGGER}")
     print(f"{stage.ask('drive_node/start').message}.")
@@ -132,18 +132,18 @@ def _driven(stage: Stage, file: Path, new: Path) -> OdometryError | None:
 
 
 class OdometryError(NamedTuple):
-    """Where odometry went against the truth; n instants of the reference."""
+    """Error of odometry along a drive; n times of the reference."""
 
     way: Floats
-    """Driven until then [m], (n,)."""
+    """Path length until then [m], shape (n,)."""
     error: Floats
-    """Distance between odometry and what was measured [m], (n,)."""
+    """Distance between odometry and measurement [m], shape (n,)."""
     promised: Floats
-    """Radius [m] that the covariance says holds 95 % of such distances, its longest axis; (n,)."""
+    """Half the longest axis of the 95 % ellipse of the covariance [m], shape (n,)."""
 
 
 def drive_of(odometry: Sequence[Any], measured: Sequence[Any]) -> OdometryError:
-    """Messages of a drive that began at rest (nav_msgs/Odometry, geometry_msgs/PoseStamped)."""
+    """Errors from the messages of a drive that began at rest (Odometry, PoseStamped)."""
     time, *path = np.array([_row(m.header.stamp, m.pose.pose) for m in odometry]).T
     seen = np.array([_row(m.header.stamp, m.pose) for m in measured])
     seen = seen[(seen[:, 0] >= time[0]) & (seen[:, 0] <= time[-1])]
@@ -165,7 +165,7 @@ def _row(stamp: Any, pose: Any) -> tuple[float, float, float, float]:
 
 
 def error_figure(drives: Mapping[str, OdometryError]) -> Figure:
-    """How far odometry was off along its way, and how far it said that it might be."""
+    """Error of odometry along the path, and its 95 % bound by the covariance."""
     figure = blank()
     for (name, drive), colour in zip(drives.items(), (ORANGE, BLUE), strict=True):
         for said, values, dash in (

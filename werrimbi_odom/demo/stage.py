@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a demo, each a process of its own in a ROS domain of ours; and pictures on files."""
+"""Node processes of a demo in a private ROS domain, and saving of figures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from werrimbi_odom.report.style import Figure
 
 
 def private_domain(stack: ExitStack) -> None:
-    """A ROS domain that no robot, nor another demo or test, hears, until the stack is left."""
+    """Use a ROS domain that no other robot, demo or test uses, until the stack is left."""
     from werrimbi_odom.ros.domain import free_domain
 
     domain, lock = free_domain()
@@ -33,7 +33,7 @@ def private_domain(stack: ExitStack) -> None:
 
 
 def end(node: subprocess.Popen[bytes]) -> None:
-    """As Ctrl-C does."""
+    """End a node as by Ctrl-C."""
     node.send_signal(signal.SIGINT)
     try:
         node.wait(timeout=10.0)
@@ -43,12 +43,12 @@ def end(node: subprocess.Popen[bytes]) -> None:
 
 
 UNDER_WAY = 0.5
-"""Seconds for which what a node said before its end may still come."""
+"""Time in which the last messages of an ended node may still arrive [s]."""
 NOTHING: Mapping[str, object] = {}
 
 
 class Stage:
-    """Where the nodes run; left, it ends those that still do."""
+    """Context manager that runs nodes and ends them on exit."""
 
     def __init__(self) -> None:
         import rclpy
@@ -68,7 +68,7 @@ class Stage:
         self._running: dict[str, subprocess.Popen[bytes]] = {}
         self._status: dict[str, str] = {}
         self.diagnoses: list[str] = []
-        """Of compare_node, in the words of the terminal."""
+        """Diagnoses of compare_node, as printed on the terminal."""
         self.odometry: list[Any] = []
         self.measured: list[Any] = []
         deep = QoSProfile(depth=1000)
@@ -98,7 +98,7 @@ class Stage:
     def start(
         self, name: str, values: Mapping[str, object] = NOTHING, *, params_file: Path | None = None
     ) -> None:
-        """Start a node on simulated time; only its errors are shown."""
+        """Start a node, on simulated time; only its errors are shown."""
         words = [sys.executable, "-m", f"werrimbi_odom.ros.{name}", "--ros-args", "--log-level"]
         words += ["error", *(["--params-file", str(params_file)] if params_file else [])]
         for key, value in {"use_sim_time": name != "simulated_robot", **values}.items():
@@ -111,7 +111,7 @@ class Stage:
         end(self._running.pop(name))
 
     def forget(self) -> None:
-        """What was said so far, and what is still under way."""
+        """Discard all messages so far, including those in transit."""
         until = clock.monotonic() + UNDER_WAY
         while clock.monotonic() < until:
             self._rclpy.spin_once(self._node, timeout_sec=0.0)
@@ -119,16 +119,16 @@ class Stage:
         self.diagnoses, self.odometry, self.measured = [], [], []
 
     def told(self, name: str) -> str:
-        """The last message of a status on /diagnostics; "" before the first."""
+        """Last message of a status on /diagnostics; "" before the first."""
         return self._status.get(name, "")
 
     def until(self, done: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
-        """Listen until something has come about.
+        """Process messages until a condition is true.
 
         Raises
         ------
         InputError
-            When a node ended, or it takes too long.
+            If a node ended, or it takes too long.
         """
         until = clock.monotonic() + seconds
         while not done():
@@ -151,7 +151,7 @@ class Stage:
 
 
 def save_and_tell(figure: Figure, path: Path) -> None:
-    """Write `path`.html and `path`.png, and say so."""
+    """Write `path`.html and `path`.png, and print their names."""
     page, picture = path.with_suffix(".html"), path.with_suffix(".png")
     save_page(figure, page)
     print(f"\npicture: {page} (interactive)")

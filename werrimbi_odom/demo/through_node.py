@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""First act: recorded ticks through the real `odom_node` over DDS, and how far off it ends.
+"""First act: recorded ticks through the real `odom_node` over DDS, and the error at the end.
 
-The recording that comes with us is of a robot in a physics engine; its reference is the truth.
+The included recording is of a robot in a physics engine; its reference is the ground truth.
 
-The node runs as a process of its own, just as on a robot; the ticks are sent as JointState messages
-faster than real time; everything printed comes from the messages that the node publishes.
+The node runs as its own process, as on a robot. The ticks are sent as JointState messages faster
+than real time. All printed results are from messages that the node publishes.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.ros.player import Answers
 
 EXPLAINED = 3.4
-"""Deviation [σ] that noise explains: 99 % of chi with three degrees of freedom."""
+"""Deviation [σ] that noise explains: 99 % quantile of chi with three degrees of freedom."""
 
 TOPICS = ("joint_states", "set_pose", "odom", "~/pieces")
 
@@ -49,22 +49,22 @@ RECORDING = Path(__file__).parents[1] / "recordings" / "square"
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """Where the drive ended: as the node says, and as was measured (if it was)."""
+    """End of the drive: pose by the node, and measured pose (if any)."""
 
     pose: Pose
     covariance: np.ndarray
-    """Of (x, y, yaw), odometry frame, shape (3, 3)."""
+    """Covariance of (x, y, yaw), odometry frame, shape (3, 3)."""
     measured: Pose | None
-    """NaN where a coordinate was not measured."""
+    """NaN for coordinates that were not measured."""
 
     @property
     def sigmas(self) -> np.ndarray:
-        """1σ of x, y [m] and heading [rad]."""
+        """Standard deviations of x, y [m] and heading [rad]."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
     @property
     def error(self) -> np.ndarray:
-        """Odometry minus measured: x, y [m] and heading [rad]; NaN where not measured."""
+        """Odometry minus measured: x, y [m] and heading [rad]; NaN if not measured."""
         if self.measured is None:
             return np.full(3, np.nan)
         difference: np.ndarray = np.subtract(self.pose, self.measured)
@@ -73,7 +73,7 @@ class Ending:
 
     @property
     def deviation(self) -> float | None:
-        """Mahalanobis distance of the error over what was measured, in σ."""
+        """Mahalanobis distance of the error in the measured coordinates."""
         difference = self.error
         known = np.flatnonzero(np.isfinite(difference))
         if known.size == 0:
@@ -84,7 +84,7 @@ class Ending:
 
 
 def first_act(robot_path: Path, run_path: Path, out: Path) -> None:
-    """Play a run to a node of its own, print what came back, draw it."""
+    """Play a run to a new node, print the results, draw the path."""
     robot_file = read_robot_file(robot_path)
     run = read_run(run_path, robot_file)
     start = start_pose(run, robot_file)
@@ -106,7 +106,7 @@ def first_act(robot_path: Path, run_path: Path, out: Path) -> None:
 
 
 def measured_at(reference: Reference, time: float) -> Pose:
-    """The reference's pose at a time, between its rows; its last one after its end."""
+    """Pose of the reference, interpolated at a time; the last one after its end."""
 
     def at(values: np.ndarray) -> float:
         known = np.isfinite(values)

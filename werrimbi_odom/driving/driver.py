@@ -1,10 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""When the robot moves, and when it stops.
+"""State machine of a drive: when the robot moves, and when it stops.
 
-A `Driver` stands still until `start`, drives its plan once, and stands still again; whatever is
-wrong stops it, and nothing but another `start` moves it on. Time comes from outside: `now` is any
-clock that goes on steadily.
+A `Driver` waits for `start`, drives its plan once, and stands still again. Any fault stops it, and
+only another `start` moves it again. The caller passes the time: `now` is any monotonic clock [s].
 """
 
 from __future__ import annotations
@@ -24,28 +23,28 @@ from werrimbi_odom.model.turns import Turns
 State = Literal["waiting", "driving", "done", "stopped"]
 
 MIN_PERIOD = 0.012
-"""Shortest time between two commands [s]: faster odometry is watched, but commands need no more."""
+"""Shortest time between two commands [s]; faster odometry is checked, but not answered."""
 PAUSE, SHORT_PAUSE = 0.2, 0.1
-"""After a longer pause of the odometry [s] the plan has waited for it, as a base does whose
-commands stopped; and the command changes by no more than in so long."""
+"""Longest step of the odometry [s] by which the plan advances: after a longer pause it has waited,
+as a base does without commands. The second is the longest step for the limits on acceleration."""
 OLDEST = 0.5
-"""By which the odometry's stamps may differ from the node's clock when a drive begins [s]."""
+"""Largest difference between odometry stamps and the node's clock at the start of a drive [s]."""
 AT_REST, AT_REST_TURN = 0.02, 0.05
-"""Fastest that still counts as standing [m/s, rad/s], over the last AT_REST_FOR seconds."""
+"""Largest mean speeds that count as rest [m/s, rad/s], over the last AT_REST_FOR seconds."""
 AT_REST_FOR = 0.3
 LATER = 60.0
-"""How much longer than planned a drive may take before it is given up [s]; with half as long."""
+"""Time limit of a drive beyond 1.5 times its planned duration [s]."""
 
 
 class Driver:
-    """A robot that is driven through a plan.
+    """Drives a robot through a plan.
 
     Parameters
     ----------
     plan : ManoeuvrePlan
     limits : Limits
     area : Area
-        About the pose of the first start.
+        Allowed area, in the frame of the first start pose.
     watch : Watch
     """
 
@@ -54,7 +53,7 @@ class Driver:
         self.state: State = "waiting"
         self.words = "waiting to be asked to start"
         self.command = STILL
-        """The last one."""
+        """The last command."""
         self.last: OdometryReading | None = None
         self._heard = self._scanned = self._turned = -math.inf
         self._nearest = math.inf
@@ -67,7 +66,7 @@ class Driver:
         self._least_age = math.inf
         self._ends_by = math.inf
 
-    # ------------------------------------------------------------------------- asked for
+    # ------------------------------------------------------------------------- requests
 
     def refusal(self, now: float) -> str:
         """Why a drive cannot begin; "" if it can."""
@@ -98,18 +97,18 @@ class Driver:
         return ""
 
     def start(self, now: float, busy: float = 0.0) -> None:
-        """Begin to drive.
+        """Start the drive.
 
         Parameters
         ----------
         busy : float
-            For so long before now nobody listened [s], as while a recording is begun: what came
-            then is still to be handed over, and is neither silence nor delay.
+            Time before `now` without processing of messages [s], as at the start of a recording. It
+            counts neither as silence nor as delay, because its messages are still to come.
 
         Raises
         ------
         InputError
-            When it cannot be; the message says why.
+            If it cannot start; the message says why.
         """
         wrong = self.refusal(now - busy)
         if wrong:
@@ -127,20 +126,20 @@ class Driver:
         self.state, self.words = "driving", f"driving {self.plan.name}"
 
     def stop(self, why: str) -> None:
-        """Stand still at once; of a robot that is not driven nothing changes."""
+        """Stop at once; no effect on a robot that is not driven."""
         if self.state == "driving":
             self.state, self.words = "stopped", why
         self.command = STILL
 
-    # ------------------------------------------------------------------------- what comes in
+    # ------------------------------------------------------------------------- messages
 
     def odometry(self, reading: OdometryReading, now: float) -> Command | None:
-        """Take an odometry message; the command to send, if one is due."""
+        """Process an odometry message; return the command to send, if one is due."""
         before, self.last = self.last, reading
         self._heard = now
         self._slip.wheels(reading.stamp, reading.pose.yaw)
         wrong = fault_between(before, reading, self.limits) if before else ""
-        if wrong:  # and where the area was is not known any more
+        if wrong:  # also, the place of the area is unknown now
             self._since.clear()
             self._anchor = None
         self._since.append(reading)
@@ -169,18 +168,18 @@ class Driver:
         return self.command
 
     def scan(self, nearest: float, now: float) -> Command | None:
-        """Take the nearest distance of a scan [m]; a command if it stops the robot."""
+        """Process the nearest distance of a scan [m]; return a command if it stops the robot."""
         self._scanned, self._nearest = now, nearest
         return self.tick(now)
 
     def gyro(self, stamp: float, rate: float, now: float) -> Command | None:
-        """Take a yaw rate of the gyro [rad/s]; a command if it stops the robot."""
+        """Process a yaw rate of the gyro [rad/s]; return a command if it stops the robot."""
         self._turned = now
         self._slip.gyro(stamp, rate)
         return self.tick(now)
 
     def tick(self, now: float) -> Command | None:
-        """Look at the time; a command if that stops the robot."""
+        """Check for timeouts; return a command if one stops the robot."""
         if self.state != "driving":
             return None
         wrong = self._of_surroundings(now)
@@ -188,7 +187,7 @@ class Driver:
             wrong = f"the odometry is silent for {now - self._heard:.2f} s"
         return self._stopped(wrong) if wrong else None
 
-    # ------------------------------------------------------------------------- judging
+    # ------------------------------------------------------------------------- checks
 
     def _stopped(self, why: str) -> Command:
         self.stop(why)
@@ -231,7 +230,7 @@ class Driver:
         return ""
 
     def _at_rest(self) -> bool:
-        """Whether the last part of a second was heard of, and nothing moved in it."""
+        """Whether odometry came for the last AT_REST_FOR seconds at least, without motion."""
         first, last = self._since[0], self._since[-1]
         duration = last.stamp - first.stamp
         if duration < AT_REST_FOR:
@@ -242,10 +241,10 @@ class Driver:
             and abs(moved.yaw) < AT_REST_TURN * duration
         )
 
-    # ------------------------------------------------------------------------- told
+    # ------------------------------------------------------------------------- output
 
     def shown(self) -> list[Pose]:
-        """The path in the frame of the odometry, from where the drive began or would begin."""
+        """The planned path in the odometry frame, from the start or the present pose."""
         start = self._origin
         if self.state != "driving" and self.last is not None:
             start = self.last.pose
@@ -253,5 +252,5 @@ class Driver:
 
     @property
     def progress(self) -> str:
-        """How far it is."""
+        """Number of finished moves, in words."""
         return f"{self._tracker.index} of {len(self.plan.moves)} moves"

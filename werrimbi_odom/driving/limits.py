@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the user allows: how fast, how briskly, and where."""
+"""Limits set by the user: speeds, accelerations, and the allowed area."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class Command(NamedTuple):
-    """Speed [m/s] and yaw rate [rad/s], as of `cmd_vel`."""
+    """Speed [m/s] and yaw rate [rad/s] of a `cmd_vel` message."""
 
     speed: float
     yaw_rate: float
@@ -21,7 +21,7 @@ STILL = Command(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Of the commands, in size; all positive.
+    """Largest absolute values of commands and their rates of change; all positive.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Limits:
     yaw_acceleration: float
 
     def kept(self, wanted: Command, before: Command, duration: float) -> Command:
-        """What may be commanded, `duration` [s] after `before`, where `wanted` is wished for."""
+        """The command nearest to `wanted` within the limits, `duration` [s] after `before`."""
         return Command(
             _kept(wanted.speed, before.speed, self.speed, self.acceleration * duration),
             _kept(
@@ -53,16 +53,16 @@ def _kept(wanted: float, before: float, most: float, step: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """Where the whole robot must stay, in the frame of its first start (x ahead, y to the left).
+    """Area that the whole robot must stay in, in the frame of its first start (x ahead, y left).
 
     Parameters
     ----------
     ahead, behind, left, right : float
-        Distances of a rectangle's sides from the start [m]; infinite where there is none.
+        Distances of the sides of a rectangle from the start [m]; infinite for no side.
     radius : float
-        Of a circle about the start [m]; infinite where there is none.
+        Radius of a circle about the start [m]; infinite for no circle.
     robot_radius : float
-        Of the circle about the middle of the axle that holds all of the robot [m].
+        Radius of the circle about the middle of the axle that encloses the robot [m].
     """
 
     ahead: float = math.inf

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The manoeuvres that can be driven: those that `diagnose` proposes, UMBmark's, the paper's."""
+"""Manoeuvres that can be driven: those that `diagnose` proposes, UMBmark's, the paper's."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 
 SIDE = 4.0
-"""Of UMBmark's square [m], as its authors drove it."""
+"""Side of UMBmark's square [m], as in its publication."""
 WAY = 10.0
-"""Of the paper's out-and-back [m] (Chong and Kleeman 1997, section 5.2)."""
+"""Length of the paper's out-and-back [m] (Chong and Kleeman 1997, section 5.2)."""
 PACE = 0.6
-"""Of both, as a share of the full speed: calmly, so that what is measured is no slip."""
+"""Speed of both, as a share of the full speed: slow enough that slip does not matter."""
 
 
 def _sides(side: float, sense: float) -> list[Move]:
@@ -28,7 +28,7 @@ def _sides(side: float, sense: float) -> list[Move]:
 
 
 BEFORE = Move(0.0, 0.0, rest=1.0)
-"""A second's standstill before the first move: for who stands by, and for what is recorded."""
+"""A rest of one second before the first move, as a warning and for the recording."""
 
 OWN: dict[str, tuple[str, float, Callable[[float], list[Move]]]] = {
     "umbmark_ccw": ("UMBmark's square to the left", SIDE, lambda side: _sides(side, 1.0)),
@@ -44,7 +44,7 @@ OWN: dict[str, tuple[str, float, Callable[[float], list[Move]]]] = {
         lambda way: [Move(way, 0.0, PACE), Move(-way, 0.0, PACE)],
     ),
 }
-"""Words, usual length [m], and the moves for a length."""
+"""Description, default length [m], and moves for a length."""
 
 NAMES = (*(each.name for each in MANOEUVRES), *OWN)
 
@@ -52,20 +52,21 @@ NAMES = (*(each.name for each in MANOEUVRES), *OWN)
 def plan_of(
     name: str, *, size: float = 1.0, length: float = 0.0, repetitions: int = 1
 ) -> ManoeuvrePlan:
-    """The manoeuvre of a name.
+    """Plan for the manoeuvre of this name.
 
     Parameters
     ----------
     size : float
-        Unit of the library's manoeuvres [m].
+        Unit of length of the library's manoeuvres [m].
     length : float
-        Side or way of the others [m]; 0: the usual one.
+        Side or length of the other manoeuvres [m]; 0 for the default.
     repetitions : int
+        Number of times the moves are driven.
 
     Raises
     ------
     InputError
-        When there is none of that name.
+        If there is no manoeuvre of this name.
     """
     if name in OWN:
         words, usual, moves = OWN[name]
@@ -78,7 +79,7 @@ def plan_of(
 
 
 def _moves(ideal: Ideal, size: float) -> list[Move]:
-    """A rest of the library's is (0, 0, seconds)."""
+    """Moves of an ideal manoeuvre; its rests are given as (0, 0, seconds)."""
     moves = []
     for length, turn, pace in ideal.moves(size):
         if length == 0.0 and turn == 0.0:
@@ -89,12 +90,12 @@ def _moves(ideal: Ideal, size: float) -> list[Move]:
 
 
 def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> ManoeuvrePlan:
-    """What `werrimbi diagnose --json FILE` proposes to drive next, for as long as it says.
+    """Plan for the manoeuvre that `werrimbi diagnose --json FILE` proposes, for its stated time.
 
     Raises
     ------
     InputError
-        When the file is none of diagnose's, or it proposes nothing that can be driven.
+        If the file is not from diagnose, or proposes nothing that can be driven.
     """
     try:
         told: Any = json.loads(path.read_text(encoding="utf-8"))

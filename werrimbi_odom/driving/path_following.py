@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Following a plan by what the odometry says: commands out of poses."""
+"""Feedback control along a plan: commands from poses of the odometry."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Pose
 
 ALONG = 1.5
-"""Share of the error along the path that is made up for in a second [1/s]."""
+"""Gain of the error along the path [1/s]."""
 ACROSS, TURN = 6.0, 4.0
-"""Curvature for an error across [1/m^2] and of the heading [1/m]: errors die out within half a
-metre, hardly swinging (a damping of 0.8)."""
+"""Gains from the cross-track error [1/m^2] and the heading error [1/m] to curvature: errors decay
+within half a metre, with a damping ratio of 0.8."""
 SPIN = 2.5
-"""Share of the heading's error that is made up for in a second on the spot [1/s]."""
+"""Gain of the heading error in turns on the spot [1/s]."""
 CLOSE, CLOSE_TURN = 0.003, 0.005
-"""A move has ended when this near to its end [m, rad] ..."""
+"""A move has ended this near to its end [m, rad] ..."""
 PATIENCE = 1.5
-"""... or this long after it should have [s]: motors that do not move for so little."""
+"""... or this long after its planned end [s]: motors do not move for very small commands."""
 
 
 class PathFollower:
-    """A plan that is being driven.
+    """Follows a plan, move by move.
 
-    The moves are those of the plan, laid out from its start: what one move misses, the next makes
-    up for. At its end a move creeps on, and never back: a reversal would be a manoeuvre of its own.
+    Moves are laid out from the start of the plan, so an error of one move is corrected in the next.
+    At its end a move creeps on but never back: a reversal would excite effects of its own.
 
     Parameters
     ----------
@@ -38,11 +38,11 @@ class PathFollower:
 
     def __init__(self, plan: ManoeuvrePlan, limits: Limits) -> None:
         self.index = 0
-        """Of the present move; the count of moves when all are driven."""
+        """Index of the present move; the number of moves when all are driven."""
         self.deviation = 0.0
-        """Of the robot from where it should be now [m]."""
+        """Distance of the robot from its desired position [m]."""
         self.turned_off = 0.0
-        """Of its heading from what it should be now [rad]."""
+        """Desired minus actual heading [rad]."""
         self._moves, self._starts, self._limits = plan.moves, plan.starts(), limits
         self._time = 0.0
         self._rested = -1.0  # not yet at rest
@@ -50,16 +50,16 @@ class PathFollower:
 
     @property
     def done(self) -> bool:
-        """Whether all is driven."""
+        """Whether all moves are driven."""
         return self.index == len(self._moves)
 
     def follow(self, pose: Pose, duration: float) -> Command:
-        """What to command, before limits, at a pose seen from the plan's start.
+        """Command before limits, at a pose in the frame of the plan's start.
 
         Parameters
         ----------
         duration : float
-            Since the last call [s].
+            Time since the last call [s].
         """
         if self.done:
             return STILL
@@ -105,5 +105,5 @@ class PathFollower:
 
 
 def _onwards(value: float, direction: float) -> float:
-    """The value where it has the sign of the direction, else zero."""
+    """The value if it has the sign of `direction`, else zero."""
     return value if value * direction > 0.0 else 0.0

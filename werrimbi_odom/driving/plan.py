@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is to be driven: moves from rest to rest, and where they lead."""
+"""Motion plan: moves from rest to rest, and the path that they make."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Pose, between, compose
 
 HEADROOM = 0.85
-"""Share of speeds and accelerations that a plan uses; the rest is for the control."""
+"""Share of speeds and accelerations that a plan uses; the rest is reserved for control."""
 
 GENTLE = 0.4
-"""Share of the acceleration where a manoeuvre does not ask for hard starts and stops."""
+"""Share of the acceleration for manoeuvres without hard starts and stops."""
 
 SPACING, SPACING_TURN = 0.05, 0.1
-"""Between the points of the path that are checked and shown [m, rad]."""
+"""Spacing of the points of a path [m, rad]."""
 
 SLACK = 0.05
-"""Room that a planned path leaves to the border [m], for the control and for the way of a stop."""
+"""Margin of a planned path to the border [m], for control errors and braking distance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A line, an arc or a turn on the spot, from rest to rest; or a rest.
+    """A line, an arc or a turn on the spot, from rest to rest; or a rest only.
 
     Parameters
     ----------
     length, turn : float
-        Signed [m, rad]; both at once make an arc.
+        Signed [m, rad]; both together make an arc.
     pace : float
-        Share of the full speed, to 1.
+        Share of the full speed, at most 1.
     hard : bool
-        With all the acceleration there is.
+        Whether to use the full acceleration.
     rest : float
-        Standstill afterwards [s].
+        Rest after the move [s].
     """
 
     length: float
@@ -48,7 +48,7 @@ class Move:
     rest: float = 0.3
 
     def end(self, start: Pose, share: float = 1.0) -> Pose:
-        """The pose after a share of it."""
+        """The pose after a share of the move."""
         motion = BodyMotion(self.length * share, 0.0, self.turn * share)
         x, y = displacement(motion, start.yaw)
         return Pose(start.x + x, start.y + y, start.yaw + motion.turn)
@@ -56,12 +56,13 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class ManoeuvrePlan:
-    """A manoeuvre.
+    """A manoeuvre as a sequence of moves.
 
     Parameters
     ----------
     name, words : str
-        What it is called, and what it is.
+        Name and description.
+    moves : tuple of Move
     """
 
     name: str
@@ -69,14 +70,14 @@ class ManoeuvrePlan:
     moves: tuple[Move, ...]
 
     def starts(self) -> list[Pose]:
-        """Where each move begins, and where the last one ends; from (0, 0, 0) on."""
+        """Start pose of each move, and the end of the last one; the first is (0, 0, 0)."""
         poses = [Pose(0.0, 0.0, 0.0)]
         for move in self.moves:
             poses.append(move.end(poses[-1]))
         return poses
 
     def path(self) -> list[Pose]:
-        """Points along the whole way."""
+        """Points along the whole path."""
         points = []
         for start, move in zip(self.starts(), self.moves, strict=False):
             parts = abs(move.length) / SPACING + abs(move.turn) / SPACING_TURN
@@ -85,26 +86,26 @@ class ManoeuvrePlan:
         return [*points, self.starts()[-1]]
 
     def duration(self, limits: Limits) -> float:
-        """How long it takes [s], if the robot follows."""
+        """Planned duration [s]."""
         return sum(Profile.of(move, limits).duration + move.rest for move in self.moves)
 
 
 NOTHING = 1e-6
-"""Of a move [m, rad]: what is smaller is none, and ramps that divide by it are no numbers."""
+"""Smallest length or turn of a move [m, rad]; avoids division by almost zero in its ramps."""
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """A move's progress from 0 to 1: faster, steadily on, slower.
+    """Trapezoidal speed profile: a move's progress from 0 to 1.
 
     Parameters
     ----------
     rate : float
-        Of the steady part [1/s].
+        Rate of the steady part [1/s].
     ramp : float
-        Of its rise and fall [1/s^2].
+        Acceleration and deceleration [1/s^2].
     duration : float
-        [s]
+        Duration of the move [s].
     """
 
     rate: float
@@ -113,7 +114,7 @@ class Profile:
 
     @classmethod
     def of(cls, move: Move, limits: Limits) -> Profile:
-        """The quickest within the limits, at the move's pace."""
+        """The fastest profile within the limits at the move's pace."""
         if max(abs(move.length), abs(move.turn)) < NOTHING:
             return cls(0.0, 0.0, 0.0)
         brisk = HEADROOM * (1.0 if move.hard else GENTLE)
@@ -125,11 +126,11 @@ class Profile:
             _ratio(brisk * limits.acceleration, move.length),
             _ratio(brisk * limits.yaw_acceleration, move.turn),
         )
-        rate = min(rate, math.sqrt(ramp))  # a short move never reaches full speed
+        rate = min(rate, math.sqrt(ramp))  # a short move does not reach full speed
         return cls(rate, ramp, 1.0 / rate + rate / ramp)
 
     def at(self, time: float) -> tuple[float, float]:
-        """Progress, and its rate [1/s], a time [s] after the begin."""
+        """Progress, and its rate [1/s], at a time since the start [s]."""
         left = self.duration - time
         if left <= 0.0:
             return 1.0, 0.0
@@ -146,11 +147,11 @@ def _ratio(limit: float, amount: float) -> float:
 
 
 def room_of(path: Sequence[Pose], area: Area, start: Pose) -> float:
-    """The least room along a path that begins at `start`, a pose in the frame of the area [m]."""
+    """Least distance to the border along a path from `start`, a pose in the area's frame [m]."""
     return min(area.room(*compose(start, point)[:2]) for point in path)
 
 
 def seen_from(start: Pose, pose: Pose) -> Pose:
-    """A pose as seen from `start`, both in one frame; the heading within half a turn."""
+    """A pose in the frame of `start`, both given in one frame; yaw within half a turn."""
     seen = between(start, pose)
     return seen._replace(yaw=math.remainder(seen.yaw, 2.0 * math.pi))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the odometry, the scan and the gyro must not show while the robot is driven."""
+"""Checks of odometry, scan and gyro that stop a drive."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from werrimbi_odom.driving.limits import Limits
 from werrimbi_odom.model.pose import Pose
 
 JUMP, JUMP_TURN = 0.05, 0.15
-"""By which a pose may go beyond what the fastest allowed motion explains [m, rad]: slack for
-stamps that scatter, and for a robot that is faster than it was told."""
+"""Tolerance of a pose step beyond the fastest allowed motion [m, rad]: stamps have jitter, and the
+robot may be faster than its limits say."""
 JUMP_FACTOR = 2.0
-"""Times the fastest allowed motion that is believed."""
+"""Factor on the fastest allowed motion in this check."""
 SLIP_WINDOW = 0.2
-"""Over which turns by the wheels and by the gyro are compared [s]."""
+"""Window in which turns by the wheels and by the gyro are compared [s]."""
 
 
 class OdometryReading(NamedTuple):
-    """One odometry message: its stamp [s], how old it was when it came [s], the pose."""
+    """One odometry message: its stamp [s], its age on arrival [s], the pose."""
 
     stamp: float
     age: float
@@ -30,20 +30,21 @@ class OdometryReading(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """When to stop.
+    """Limits at which a drive is stopped.
 
     Parameters
     ----------
     odom_timeout : float
-        Longest silence of the odometry, and delay beyond the least one seen [s].
+        Longest silence of the odometry, and longest delay beyond the least one seen [s].
     deviation, turned_off : float
-        Farthest from where the robot should be now [m], [rad].
+        Largest position error [m] and heading error [rad] against the plan.
     scan_min_distance : float
-        Nearest that a scan may see anything [m]; 0: there is no scan.
+        Least distance that a scan may measure [m]; 0 if there is no scan.
     scan_timeout : float
         Longest silence of the scan [s].
     slip : float
-        By how much wheels and gyro may differ in a turn of SLIP_WINDOW [rad]; 0: there is no gyro.
+        Largest difference of wheels and gyro in a turn over SLIP_WINDOW [rad]; 0 if there is no
+        gyro.
     """
 
     odom_timeout: float = 0.2
@@ -55,7 +56,7 @@ class Watch:
 
 
 def fault_between(before: OdometryReading, now: OdometryReading, limits: Limits) -> str:
-    """What is wrong with an odometry message after the one before it; "" if nothing."""
+    """Fault of an odometry message relative to the one before it; "" if none."""
     step = now.stamp - before.stamp
     if step <= 0.0:
         return f"the odometry's stamps go back or stand, by {-step:.3f} s"

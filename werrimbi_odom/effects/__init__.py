@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The library of physical effects.
 
-Each file holds one effect, or a pair like left and right: a law of a few lines, its parameters, and
-a page in words. Begin with `lateral_slip`. `library` lists all effects, `collection` finds them and
-those of other packages, and `contract` has the laws that every effect must keep.
+Each file has one effect, or a pair for left and right: a model of a few lines, its parameters, and
+a page of text. Begin with `lateral_slip`. `library` lists all effects, `collection` finds them and
+those of other packages, and `contract` has the properties ("laws") that every effect must have.
 """
 
 from werrimbi_odom.effects.collection import Collection, all_effects, find, load_file

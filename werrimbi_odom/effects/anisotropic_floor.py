@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A floor on which a wheel's turn is worth more along one direction than across it."""
+"""A floor on which the distance per wheel turn depends on the direction."""
 
 from __future__ import annotations
 

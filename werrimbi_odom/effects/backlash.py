@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Free play between an encoder and its wheel."""
+"""Backlash between an encoder and its wheel."""
 
 from __future__ import annotations
 
@@ -77,6 +77,6 @@ def right_backlash(
 
 
 def _taken_up(since: Span[Number], reversals: Number, travel: float) -> Number:
-    """What of the play is taken up in the step."""
+    """Part of the play that is taken up in the step [m]."""
     play = travel * limited(0.5 + 0.5 * reversals, 0.5, 1.0)
     return saturated(since.end, play) - saturated(since.start, play)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A castor that swings round after each reversal."""
+"""A castor that swings round after each reversal and changes the heading."""
 
 from __future__ import annotations
 

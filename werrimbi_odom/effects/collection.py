@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects found by name: the library's, those of installed packages, those of a file.
+"""Find effects by name: in the library, in installed packages, in files.
 
-A robot file names effects; it never names code. So what it can name is what is installed, or what
-the user put on the command line with his own hands.
+A robot file has names of effects, never code. So it can only refer to effects that are installed or
+that the user gave on the command line.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.model.effect import Effect
 
 GROUP = "werrimbi_odom.effects"
-"""Entry point group in which a package offers its effects."""
+"""Entry point group for the effects of a package."""
 
 
 class Collection(NamedTuple):
-    """Effects that can be used now, and what could not be."""
+    """Available effects, and warnings about unusable ones."""
 
     effects: tuple[Effect, ...]
     warnings: tuple[str, ...] = ()
-    """A line for each installed effect that is left out, saying why."""
+    """A line for each installed effect that is left out, with the reason."""
 
     def find(self, name: str) -> Effect:
-        """The effect of a name.
+        """The effect of this name.
 
         Raises
         ------
         InputError
-            For an unknown name; the message offers the known one that is near.
+            If the name is unknown; the message suggests the nearest known one.
         """
         for effect in self.effects:
             if effect.name == name:
@@ -54,16 +54,16 @@ class Collection(NamedTuple):
 
 
 def all_effects(files: Sequence[Path] = ()) -> Collection:
-    """The library, the effects of installed packages, and those of the user's own files.
+    """The library, the effects of installed packages, and those of the given files.
 
-    A broken package is reported among the warnings and left out: it must not stop the tool. A
-    broken file is an error: the user named it. A file's effect goes before an installed one of the
-    same name, for whoever works on a package that is installed.
+    A broken package only gives a warning, so that it does not disable the tool. A broken file is an
+    error, because the user named it. An effect of a file replaces an installed one of the same
+    name, which helps the authors of packages.
 
     Raises
     ------
     InputError
-        When a file cannot be used, or holds an effect of a name that the library has.
+        If a file cannot be used, or has an effect with a name of the library.
     """
     effects = {effect.name: effect for effect in LIBRARY}
     ours = set(effects)
@@ -97,12 +97,12 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
 
 
 def find(name: str) -> Effect:
-    """The effect of a name, from the library or an installed package.
+    """The effect of this name, from the library or an installed package.
 
     Raises
     ------
     InputError
-        For an unknown name; the message offers the known one that is near.
+        If the name is unknown; the message suggests the nearest known one.
     """
     for effect in LIBRARY:
         if effect.name == name:
@@ -111,12 +111,12 @@ def find(name: str) -> Effect:
 
 
 def load_file(path: Path) -> tuple[Effect, ...]:
-    """Effects that a user's Python file defines. It is executed: the user named it.
+    """Execute a user's Python file and return the effects that it defines.
 
     Raises
     ------
     InputError
-        When the file cannot be read or run, or defines no effect; the message names the line.
+        If the file cannot be read or run, or defines no effect; the message names the line.
     """
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
@@ -124,7 +124,7 @@ def load_file(path: Path) -> tuple[Effect, ...]:
     found: dict[str, Effect] = {}
     for value in _effects_in(vars(_executed(path))):
         if id(value) in before:
-            continue  # imported from the library, to be compared with or built upon
+            continue  # imported from the library
         if found.setdefault(value.name, value) is not value:
             raise InputError(f"{path}: two effects are called {value.name}")
     if not found:
@@ -146,7 +146,7 @@ def _executed(path: Path) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     module.__file__ = str(path)
     known = sys.modules.get(name)
-    sys.modules[name] = module  # dataclasses and typing look their module up there
+    sys.modules[name] = module  # dataclasses and typing look up their module there
     try:
         exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
     except KeyboardInterrupt:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres that hold up to a force, and slip above it."""
+"""Tyres that grip up to a certain force and slip above it."""
 
 from __future__ import annotations
 
@@ -60,5 +60,5 @@ def coulomb_slip(
 
 
 def _lost(acceleration: Number, speed: Span[Number], above: float) -> Number:
-    """Acceleration beyond the threshold times speed; both as late as one another."""
+    """Acceleration beyond the threshold times speed, both with the same delay."""
     return sign(acceleration) * limited(abs(acceleration) - above, 0.0, math.inf) * abs(speed.mean)

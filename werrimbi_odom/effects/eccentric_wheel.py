@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An axle off its wheel's centre: an error once a turn of that wheel."""
+"""An axle off its wheel's centre: an error with the period of the wheel's rotation."""
 
 from __future__ import annotations
 
@@ -79,5 +79,5 @@ def eccentric_right_wheel(
 
 
 def _lead(angle: Span[Number], amplitude: float, phase: float) -> Number:
-    """What the hub is ahead of its wheel's rolling: by the ends, so exact at any logging rate."""
+    """Lead of the hub over rolling, from the ends of the step: exact at any message rate [m]."""
     return amplitude * (cos(angle.start + phase) - cos(angle.end + phase))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Two counters that are not read at the same instant."""
+"""Two counters that are read at different times."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A floor that carries the robot off in one direction."""
+"""A floor that displaces the robot in one direction."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def floor_slope(
     path = drive.distance.change
     drift_x = x * path + x_rate * drive.duration
     drift_y = y * path + y_rate * drive.duration
-    # The step's twist is later turned into an arc's chord, which is shorter by sinc and points half
-    # way round the turn: undone here, so that the drift itself stays straight.
+    # The twist of a step is later turned into the chord of an arc, which is shorter by sinc and
+    # rotated by half the turn. Both are compensated here, so that the drift itself is straight.
     half = 0.5 * motion.turn
     facing = drive.heading.start + half
     shrink = limited(sinc(half), 0.1, 1.0)

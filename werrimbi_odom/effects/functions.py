@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Functions for laws: of a float (the node, a step at a time) or an array (a whole run) alike.
+"""Functions for effects that accept a float (one step in the node) or an array (a whole run).
 
-Floats go through `math`: numpy on single numbers would cost the node ten times as much.
+Floats are computed with `math`: numpy is ten times slower on single numbers.
 """
 
 from __future__ import annotations
@@ -44,27 +44,27 @@ def exp(x: Number) -> Number:
 
 
 def log(x: Number) -> Number:
-    """Natural logarithm, of what is positive."""
+    """Natural logarithm of a positive number."""
     return np.log(x) if isinstance(x, np.ndarray) else math.log(x)
 
 
 def sign(x: Number) -> Number:
-    """+1, -1, and 0 of nothing."""
+    """Sign: +1, -1, or 0 for zero."""
     return np.sign(x) if isinstance(x, np.ndarray) else float((x > 0.0) - (x < 0.0))
 
 
 def limited(x: Number, low: Number | float, high: Number | float) -> Number:
-    """The nearest to x between low and high."""
+    """The value clipped to [low, high]."""
     if isinstance(x, np.ndarray):
         return np.minimum(np.maximum(x, low), high)
     return min(max(x, low), high)
 
 
 def saturated(travel: Number, limit: Number) -> Number:
-    """What of a travel has happened when no more than `limit` can: min(travel, limit), if positive.
+    """Travel limited to `limit`: min(travel, limit) if positive.
 
-    A negative limit gives the same with the other sign: physics has no such thing, but a derivative
-    at a limit of zero, taken over both sides, needs it.
+    A negative limit gives the opposite sign. It is unphysical, but needed for a two-sided
+    derivative at a limit of zero.
     """
     size = abs(limit)
     taken = limited(travel, -size, size)
@@ -74,12 +74,12 @@ def saturated(travel: Number, limit: Number) -> Number:
 
 
 def share(part: Number, whole: Number) -> Number:
-    """Part / whole, and 0 where the whole is 0 (a robot at rest has no sharpness of turning)."""
+    """Part / whole, or 0 if the whole is 0 (such as the sharpness of turning at rest)."""
     if isinstance(part, np.ndarray):
         return np.divide(part, whole, out=np.zeros_like(part), where=whole != 0.0)
     return part / whole if whole != 0.0 else 0.0
 
 
 def within_half_a_turn(angle: Number) -> Number:
-    """The same direction between -pi and pi [rad]."""
+    """An angle wrapped to (-pi, pi] [rad]."""
     return wrap_all(angle) if isinstance(angle, np.ndarray) else wrap(angle)

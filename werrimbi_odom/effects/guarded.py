@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects that are not ours: whatever goes wrong in one is an error of its author, told in a line.
+"""Guards for effects of users: any error in one is reported in one line as its author's.
 
-Not only what `Exception` covers: a law that calls `sys.exit` would end the tool without a word.
+This includes errors beyond `Exception`: an effect that calls `sys.exit` would end the tool
+silently.
 """
 
 from __future__ import annotations
@@ -18,19 +19,20 @@ from werrimbi_odom.model.effect import Apply, Effect
 
 
 def guarded(effect: Effect, place: str) -> Effect:
-    """The same effect, whose law raises nothing but `InputError`.
+    """The same effect with errors converted to `InputError`.
 
     Parameters
     ----------
-    place
-        Where it comes from: a file, or a package.
+    effect : Effect
+    place : str
+        Its origin: a file, or a package.
     """
     return replace(effect, apply=_Guarded(effect.apply, effect.name, place))
 
 
 @dataclass(frozen=True)
 class _Guarded:
-    """A law, and what is said where it goes wrong; equal for equal laws."""
+    """The function of an effect with its error message; equal for equal functions."""
 
     law: Apply
     name: str
@@ -40,7 +42,7 @@ class _Guarded:
         try:
             after = self.law(before, *rest, **values)
         except (KeyboardInterrupt, MemoryError):
-            raise  # of the user, and of the machine
+            raise  # by the user, and by the machine
         except BaseException as error:
             raise self._wrong(words_of(error), line_of(error, self._file), values) from error
         complaint = _complaint(before, after)
@@ -58,7 +60,7 @@ class _Guarded:
 
 
 def _complaint(before: Any, after: Any) -> str:
-    """What is wrong with a result; "" when nothing is."""
+    """Fault of a result; "" for none."""
     kind = type(before)
     if not isinstance(after, kind):
         return f"it gives a {type(after).__name__}, and must give a {kind.__name__}"
@@ -73,21 +75,21 @@ def _complaint(before: Any, after: Any) -> str:
 
 
 def line_of(error: BaseException, file: str) -> str:
-    """Where in a file it went wrong, as ":12"; "" where that is not known."""
+    """Line of an error in a file, as ":12"; "" if unknown."""
     line, trace = 0, error.__traceback__
     while trace is not None:
         if trace.tb_frame.f_code.co_filename == file:
             line = trace.tb_lineno
         trace = trace.tb_next
-    if not line and isinstance(error, SyntaxError):  # it has not run yet
+    if not line and isinstance(error, SyntaxError):  # before execution
         line = error.lineno or 0
     return f":{line}" if line else ""
 
 
 def words_of(error: BaseException) -> str:
-    """Its kind and its message, whatever that is."""
+    """Type and message of an error."""
     try:
         message = error.msg if isinstance(error, SyntaxError) else str(error)
-    except Exception:  # an exception of a user's own may fail even at this
+    except Exception:  # `str` of a user's exception may fail too
         message = ""
     return f"{type(error).__name__}: {message}" if message else type(error).__name__

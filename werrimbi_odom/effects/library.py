@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""All effects that come with this package: one file each, or one for a pair like left and right."""
+"""All effects of this package: one file for each, or for a pair of left and right."""
 
 from __future__ import annotations
 

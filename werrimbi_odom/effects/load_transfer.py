@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres that give way as the load moves between them."""
+"""Tyres that deflect as the load moves between them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres that creep along under the force of acceleration."""
+"""Tyres that creep longitudinally under the force of acceleration."""
 
 from __future__ import annotations
 
@@ -47,5 +47,5 @@ def longitudinal_slip(
 
 
 def _gained(speed: Span[Number]) -> Number:
-    """The integral of acceleration over the path rolled, by its ends."""
+    """Integral of the acceleration over the rolled path, from both ends of the step."""
     return 0.5 * (speed.end * abs(speed.end) - speed.start * abs(speed.start))

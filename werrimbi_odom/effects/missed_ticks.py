@@ -10,8 +10,8 @@ from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 RAMP = 0.05
-"""Share of the threshold over which the loss sets in: a fit needs a slope to find a threshold, and
-speeds just below it, as counted, may be true ones or diminished ones."""
+"""Width of the onset as a share of the threshold: a fit needs a slope to estimate the threshold,
+and counted speeds just below it may be true or reduced ones."""
 
 FRACTION = Parameter(
     "", null=0.0, typical=0.02, bounds=(0.0, 0.5), says="share of the counts that are lost"
@@ -86,6 +86,6 @@ def right_missed_ticks(
 
 
 def _lost(counted: Number, fraction: float, above: float) -> Number:
-    """Share that is lost at a speed as counted: from none well below the threshold to all of it."""
-    threshold = above * (1.0 - 0.5 * fraction)  # a lossy counter crosses it late, on average so
+    """Lost share at a counted speed: from zero well below the threshold to `fraction`."""
+    threshold = above * (1.0 - 0.5 * fraction)  # as counted, with half the loss
     return fraction * limited(0.5 + (abs(counted) / threshold - 1.0) / RAMP, 0.0, 1.0)

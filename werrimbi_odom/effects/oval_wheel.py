@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A wheel that is not round: an error twice a turn of that wheel."""
+"""A wheel that is not round: an error with half the period of the wheel's rotation."""
 
 from __future__ import annotations
 
@@ -94,10 +94,10 @@ def oval_right_wheel(
 
 
 def _more(travel: Number, angle: Span[Number], amplitude: float, phase: float) -> Number:
-    """The integral of (lever - mean radius) over the angle, by its ends: exact at any rate.
+    """Integral of (lever - mean radius) over the angle, from its ends: exact at any message rate.
 
-    Half a turn of an ellipse with half axes r (1 + e) and r (1 - e) is pi r (1 + e^2 / 4) long,
-    but for e^4 / 64 (Ivory 1798); 1 / r is the step's angle over its travel.
+    Half the circumference of an ellipse with half axes r (1 + e) and r (1 - e) is pi r (1 + e^2 /
+    4), up to e^4 / 64 (Ivory 1798); 1 / r is the step's angle over its travel.
     """
     turned = angle.end - angle.start
     lead = sin(2.0 * angle.end + phase) - sin(2.0 * angle.start + phase)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An effect's page: its docstring, taken apart, for the command line, the docs, the workbench."""
+"""The page of an effect: its parsed docstring, for command line, docs and workbench."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 from werrimbi_odom.model.effect import Effect, Parameter, Stage, Twin
 
 SECTIONS = ("Formula", "Signature", "Ruler", "Twins", "Alike")
-"""Words that begin a section of the docstring, at the start of a line."""
+"""Keywords that begin a section of the docstring, at the start of a line."""
 
 MEANING: Mapping[str, str] = {
     "Formula": "the law",
@@ -32,14 +32,14 @@ STAGES: Mapping[Stage, str] = {
 
 @dataclass(frozen=True)
 class Page:
-    """What is to be read of an effect.
+    """Parsed documentation of an effect.
 
     Parameters
     ----------
     physics : tuple of str
-        Paragraphs, a line each; the first is the summary.
+        Paragraphs, each as one line; the first is the summary.
     sections : mapping of str to str
-        Text of each section that is there; lines as they were written.
+        Text of each section in the docstring, with its line breaks.
     """
 
     physics: tuple[str, ...]
@@ -47,7 +47,7 @@ class Page:
 
 
 def page_of(effect: Effect) -> Page:
-    """Take the docstring of an effect apart; its declared twins are said with those in it."""
+    """Parse the docstring of an effect; its declared twins are added to those in it."""
     physics: list[str] = []
     sections: dict[str, list[str]] = {}
     current: list[str] | None = None
@@ -72,7 +72,7 @@ def page_of(effect: Effect) -> Page:
 
 
 def _of_twin(twin: Twin) -> str:
-    """What there is to know of a twin, in lines as those of a docstring."""
+    """Text on a twin, with line breaks as in a docstring."""
     over = "1 / " if twin.inverse else ""
     same = [f"{name} = {over}{_times(factor)}{own}" for name, (own, factor) in twin.values.items()]
     who = f"{twin.name} ({', '.join(same)})" if same else twin.name
@@ -84,7 +84,7 @@ def _times(factor: float) -> str:
 
 
 def as_text(effect: Effect) -> str:
-    """The page in plain text."""
+    """The page as plain text."""
     page = page_of(effect)
     lines = [f"{effect.name}: acts {STAGES[effect.stage]}", ""]
     for paragraph in page.physics:
@@ -99,7 +99,7 @@ def as_text(effect: Effect) -> str:
 
 
 def numbers(effect: Effect, name: str) -> str:
-    """A parameter's values, in words."""
+    """Null, typical value and bounds of a parameter, in words."""
     item = effect.parameters[name]
     low, high = item.bounds
     absent = absent_at(effect, name)
@@ -108,14 +108,14 @@ def numbers(effect: Effect, name: str) -> str:
 
 
 def absent_at(effect: Effect, name: str) -> str:
-    """The value of a parameter at which its effect is absent; "any" where it depends on others."""
+    """Value of a parameter without the effect; "any" if that depends on other parameters."""
     item = effect.parameters[name]
     is_phase = effect.quadrature is not None and name == effect.quadrature[1]
     return "any" if item.tries or is_phase else f"{item.null:g}"
 
 
 def as_json(effect: Effect) -> dict[str, Any]:
-    """The page for programs."""
+    """The page as JSON."""
     page = page_of(effect)
     return {
         "effect": effect.name,
@@ -142,7 +142,7 @@ def as_json(effect: Effect) -> dict[str, Any]:
 
 
 def anew(item: Parameter) -> str:
-    """That a parameter is another one in each run, where it is."""
+    """Remark on a per-run parameter; "" for others."""
     kept = " unless counters keep their zero" if item.unit == "rad" else ""
     return f", anew in each run{kept}" if item.per_run else ""
 
@@ -152,5 +152,5 @@ def _in_unit(unit: str) -> str:
 
 
 def _flush(lines: list[str]) -> str:
-    """Lines without the indentation that the section's word asked for."""
+    """Lines without the indentation of the section."""
     return "\n".join([lines[0], *(textwrap.dedent("\n".join(lines[1:])).splitlines())]).strip()

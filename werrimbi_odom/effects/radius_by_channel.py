@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Radii that follow something that is measured along with the counters."""
+"""Radii that depend on a measured channel."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 AS_ENTERED = 20.0
-"""Temperature at which the radii are those of the robot file [degrees Celsius]: at it lengths are
-stated (ISO 1)."""
+"""Temperature at which the radii are those of the robot file [degrees Celsius]; the standard
+reference temperature for lengths (ISO 1)."""
 
 TEMPERATURE, PAYLOAD = "temperature", "payload"
-"""Words by which a column is known for what it measures."""
+"""Words in the name of a column that identify its quantity."""
 
 
 @wheel_effect(
@@ -63,6 +63,6 @@ def radius_by_channel(
 
 
 def _measured(drive: Drive[Number], word: str, above: float = 0.0) -> Number | float:
-    """What the columns with a word in their names say, above a value; 0 where there is none."""
+    """Mean of the columns with a word in their names, minus `above`; 0 if there is none."""
     found = [drive.channels[name].mean for name in drive.channels if word in name.lower()]
     return sum(found[1:], found[0]) / len(found) - above if found else 0.0

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Radii that change while the robot drives."""
+"""Radii that change during a drive."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference whose stamps are late."""
+"""A reference with late stamps."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference whose heading is a gyro's, and whose bias does not stay."""
+"""A reference with the heading of a gyro, the bias of which drifts."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference whose own measure is off: a gyro's radian, a scan matcher's metre."""
+"""A reference with a scale error: of a gyro, or of a scan matcher."""
 
 from __future__ import annotations
 

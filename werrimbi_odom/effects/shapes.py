@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes of a dependence, as means over a step: a square, a step, a curve, a wave, a spot.
+"""Means of functions over a step: a square, a step, a curve, a wave, a spot.
 
-A quantity runs straight from a step's start to its end; the mean of a shape over it is exact, so it
-does not matter how often the counters are read.
+A quantity is linear in time between a step's start and its end. The mean of a function over it is
+exact, so that it does not depend on the message rate.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ __all__ = [
 
 
 def steady(value: Number) -> Span[Number]:
-    """A quantity that keeps its value through the step."""
+    """A quantity that is constant during the step."""
     return Span(value, value)
 
 
@@ -48,10 +48,10 @@ def mean_product(one: Span[Number], other: Span[Number]) -> Number:
 
 
 def mean_ratio(one: Span[Number], other: Span[Number]) -> Number:
-    """Mean of one quantity over another; over one that comes near zero, the ratio of their means.
+    """Mean of the ratio of two quantities; the ratio of their means if the second comes near zero.
 
-    The other is middle * (1 + swing * s), s from -1 to 1; the mean of 1 / (1 + swing * s) is
-    artanh(swing) / swing, and that of s / (1 + swing * s) what that leaves of 1, over swing.
+    The second is middle * (1 + swing * s), with s from -1 to 1. With m = artanh(swing) / swing, the
+    mean of 1 / (1 + swing * s) is m, and that of s / (1 + swing * s) is (1 - m) / swing.
     """
     middle = other.mean
     swing = share(0.5 * other.change, middle)
@@ -77,15 +77,15 @@ def _over_a_line(swing: Number) -> tuple[Number, Number]:
 
 
 def _series(swing: Number) -> tuple[Number, Number]:
-    """The same of a small swing."""
+    """Series expansion of `_over_a_line` for a small swing."""
     square = swing * swing
     rest = 1.0 / 3.0 + square * (1.0 / 5.0 + square / 7.0)
     return 1.0 + square * rest, -swing * rest
 
 
 _NEAR_ZERO, _GENTLE = 0.9, 0.01
-"""Swings of a denominator in a step: from the first on it is as good as none, up to the second the
-first terms of the series are exact to rounding."""
+"""Half the relative change of a denominator in a step: above the first it is too close to zero;
+below the second the first terms of the series are exact to rounding."""
 
 
 def mean_cos(span: Span[Number]) -> Number:
@@ -99,12 +99,12 @@ def mean_sin(span: Span[Number]) -> Number:
 
 
 def mean_step(span: Span[Number], edge: float, width: float) -> Number:
-    """Mean of a step from 0 to 1 that rises straight over `width` around `edge`."""
+    """Mean of a step from 0 to 1 with a linear rise over `width` around `edge`."""
     return mean_curve(span, (edge - 0.5 * width, edge + 0.5 * width), (0.0, 1.0))
 
 
 def mean_curve(span: Span[Number], knots: Sequence[float], heights: Sequence[float]) -> Number:
-    """Mean of a curve with `heights` at `knots`, straight in between, level beyond both ends."""
+    """Mean of a piecewise linear curve with `heights` at `knots`, constant beyond both ends."""
     change = span.change
     area = _area(span.end, knots, heights) - _area(span.start, knots, heights)
     here = _height(span.mean, knots, heights)
@@ -115,7 +115,7 @@ def mean_curve(span: Span[Number], knots: Sequence[float], heights: Sequence[flo
 
 
 _STILL = 1e-7
-"""A change of a quantity (in its unit) below which its mean value is all that matters."""
+"""Change of a quantity (in its unit) below which its mean value is used."""
 
 
 def _height(value: Number, knots: Sequence[float], heights: Sequence[float]) -> Number:
@@ -127,7 +127,7 @@ def _height(value: Number, knots: Sequence[float], heights: Sequence[float]) -> 
 
 
 def _area(value: Number, knots: Sequence[float], heights: Sequence[float]) -> Number:
-    """Under the curve, from the first knot to a value."""
+    """Area under the curve, from the first knot to a value."""
     found = heights[0] * (value - knots[0])
     for i in range(len(knots) - 1):
         slope = (heights[i + 1] - heights[i]) / (knots[i + 1] - knots[i])
@@ -141,7 +141,7 @@ def _area(value: Number, knots: Sequence[float], heights: Sequence[float]) -> Nu
 def share_inside(
     x: Span[Number], y: Span[Number], centre_x: float, centre_y: float, radius: float
 ) -> Number:
-    """Share of the straight way from (x, y) at a step's start to its end inside a circle."""
+    """Share of the straight path from (x, y) at a step's start to its end inside a circle."""
     if isinstance(x.start, np.ndarray):
         return _inside(x, y, centre_x, centre_y, radius)
     one_x, one_y = (Span(np.array([s.start]), np.array([s.end])) for s in (x, y))
@@ -149,7 +149,7 @@ def share_inside(
 
 
 def standing(drive: Drive[Number], left: float) -> tuple[Span[Number], Span[Number]]:
-    """Where a point `left` of the axle's midpoint [m] (a wheel) stands: spans of x and y [m]."""
+    """Spans of x and y [m] of a point (a wheel) `left` [m] of the axle's midpoint."""
     start, end = drive.heading
     return (
         Span(drive.x.start - left * sin(start), drive.x.end - left * sin(end)),
@@ -160,7 +160,7 @@ def standing(drive: Drive[Number], left: float) -> tuple[Span[Number], Span[Numb
 def _inside(x: Span[Floats], y: Span[Floats], at_x: float, at_y: float, radius: float) -> Floats:
     way_x, way_y = x.change, y.change
     from_x, from_y = x.start - at_x, y.start - at_y
-    # Points of the way are (from + u * way), u from 0 to 1; the circle is where
+    # Points of the path are (from + u * way), u from 0 to 1. They are inside the circle where
     # way² u² + 2 (from · way) u + from² - radius² < 0.
     square = way_x * way_x + way_y * way_y
     along = from_x * way_x + from_y * way_y

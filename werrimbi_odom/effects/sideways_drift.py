@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A robot that drives like a crab."""
+"""A robot that drives at an angle to its forward axis."""
 
 from __future__ import annotations
 

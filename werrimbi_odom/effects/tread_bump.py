@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bump or a flat in one place of the tread: an error while the wheel stands on it."""
+"""A bump or a flat at one place of the tread: an error while the wheel stands on it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 WIDTH = math.pi / 3.0
-"""Of the bump, round the wheel [rad]. Drives hold its height times its width, and its place; of the
-width alone next to nothing (between a twelfth and a quarter of a turn, what is left when it is
-taken for a sixth is a ninth at the most of what the bump does)."""
+"""Angle of the wheel covered by the bump [rad]. Drives determine its height times its width, and
+its place, but hardly its width. For true widths between a twelfth and a quarter of a turn, a width
+of a sixth leaves at most a ninth of the effect unexplained."""
 
 HEIGHT = Parameter(
     "m",
@@ -105,12 +105,12 @@ def right_tread_bump(
 
 
 def _gained(angle: Span[Number], place: float) -> Number:
-    """Angle that is turned on the bump in a step, by its ends: exact at any rate [rad]."""
+    """Angle turned on the bump in a step, from its ends: exact at any message rate [rad]."""
     return _turned_on_it(angle.end + place) - _turned_on_it(angle.start + place)
 
 
 def _turned_on_it(angle: Number) -> Number:
-    """The same from the bump's middle to some angle, whole turns counted [rad]."""
+    """Angle turned on the bump since its middle, including whole turns [rad]."""
     within = within_half_a_turn(angle)
     whole = WIDTH / (2.0 * math.pi) * (angle - within)
     return whole + limited(within, -0.5 * WIDTH, 0.5 * WIDTH)

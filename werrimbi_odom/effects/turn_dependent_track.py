@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A wheel base that depends on how the robot turns."""
+"""A wheel base that depends on the kind of turn."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 STRAIGHT = 0.05
-"""Sharpness below which the sense of turning counts the less, the straighter the way: on a line the
-counters' jitter turns the robot to and fro, and must not count as turns."""
+"""Sharpness below which the sense of turning has a reduced weight: on a line, jitter of the
+counters turns the robot to and fro, which must not count as turns."""
 
 
 @body_effect(

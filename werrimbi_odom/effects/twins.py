@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pairs of effects that no drive can tell apart, and what can: said once for both of a pair."""
+"""Pairs of effects that are indistinguishable on any drive, and what separates them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from werrimbi_odom.model.declared import Twin
 
 
 def askew(name: str) -> Twin:
-    """An axle askew under the body, or a marker askew on it: `name` is the other of the two."""
+    """An oblique axle under the body, or an oblique marker on it; `name` is the other one."""
     return Twin(
         name,
         told_apart_by="no drive can tell a robot that crabs from a marker mounted askew by the "
@@ -33,7 +33,7 @@ def turning_the_wrong_way(name: str) -> Twin:
 
 
 def radii_over_base(name: str) -> Twin:
-    """The base, or both radii, where headings alone are measured."""
+    """The wheel base, or both radii, if only headings are measured."""
     return Twin(
         name,
         told_apart_by="where headings alone are measured only radii over base shows; a taped "
@@ -49,7 +49,7 @@ def radii_over_base(name: str) -> Twin:
 
 
 def own_scale(name: str, inverse: bool = False) -> Twin:
-    """The base, or both radii, or what a gyro takes for a turn."""
+    """The wheel base, or both radii, or the scale of a gyro."""
     return Twin(
         name,
         told_apart_by="where headings alone are measured a base that is wider and a gyro that "
@@ -64,7 +64,7 @@ def own_scale(name: str, inverse: bool = False) -> Twin:
 
 
 def turning_about_another_point(name: str) -> Twin:
-    """A robot that turns about another point than its middle, or a marker that is not there."""
+    """A centre of rotation that is not the middle of the wheels, or a displaced marker."""
     return Twin(
         name,
         told_apart_by="where the reference is mounted is known by a tape, and about which point of "
@@ -75,7 +75,7 @@ def turning_about_another_point(name: str) -> Twin:
 
 
 def as_a_wider_base(name: str) -> Twin:
-    """Wheels that skid, or a base that is wider than entered, where headings alone are measured."""
+    """Wheels that skid, or a wider wheel base than entered, if only headings are measured."""
     return Twin(
         name,
         told_apart_by="where headings alone are measured both are one number; the wheels tell "

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres whose rolling radius is another one at speed."""
+"""Tyres with a rolling radius that depends on speed."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Both radii off by one factor."""
+"""A common scale error of both radii."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Many robots at once: each is diagnosed by itself, here or on a cluster, into one table.
+"""Diagnosis of many robots, each on its own, on this machine or a cluster, in one table.
 
-Reading order: `robot_task` (the diagnosis of one robot, which always ends), `members` (the robots
+Reading order: `robot_task` (the diagnosis of one robot, which never raises), `members` (the robots
 of a folder), `process_pool` (on this machine), `parcel` and `cluster` (on a Dask cluster).
 """

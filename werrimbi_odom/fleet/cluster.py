@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet on a Dask cluster: the files go with the task, so no disk needs to be shared."""
+"""A fleet on a Dask cluster: files are sent with the task, so no shared disk is needed."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ DIED = (
     "workers' own logs say more"
 )
 PATIENCE = 30.0
-"""Seconds for a scheduler to answer, and for a worker to be there."""
+"""Timeout for a scheduler to answer, and for a worker to be available [s]."""
 
 AHEAD = 2
-"""Robots at a worker, one under way among them: no worker waits, and no memory fills."""
+"""Robots per worker, including the running one: no worker waits, and memory is bounded."""
 
 _NOISY = ("distributed", "tornado", "asyncio")
-"""Loggers that tell with tracebacks of connections that are lost."""
+"""Loggers that print tracebacks on lost connections."""
 
 _LOOK = 2.0
-"""Seconds after which it is looked whether the cluster is still there."""
+"""Period of checks that the cluster is still available [s]."""
 
 
 def on_cluster(
@@ -43,22 +43,24 @@ def on_cluster(
     warn: Callable[[str], None] = lambda words: None,
     patience: float = PATIENCE,
 ) -> Iterator[Row]:
-    """Rows as they come.
+    """Rows in the order of completion.
 
     Parameters
     ----------
-    address
-        Of the scheduler, tcp://HOST:PORT or tls://HOST:PORT.
-    warn
-        Told what may change the last digits of the results.
+    tasks : sequence of Task
+        Robots to diagnose.
+    address : str
+        Address of the scheduler, tcp://HOST:PORT or tls://HOST:PORT.
+    warn : callable
+        Called with warnings about versions that may change the last digits of results.
     patience : float
-        For a scheduler to answer, and for a worker to be there [s].
+        Timeout for a scheduler to answer, and for a worker to be available [s].
 
     Raises
     ------
     InputError
-        When there is no scheduler or no worker, they are lost on the way, or a worker runs other
-        code than this machine.
+        If there is no scheduler or no worker, they are lost, or a worker runs other code than this
+        machine.
     """
     with _connected(address, patience) as client:
         _check_code(client, address, warn, patience)
@@ -93,9 +95,9 @@ def _rows(client: Client, tasks: Sequence[Task], address: str, patience: float) 
 
 
 def _done(client: Client, under_way: Mapping[Future, Task], address: str) -> list[Future]:
-    """Futures that have ended, after a short wait for one."""
+    """Completed futures, after a short wait for one."""
     from distributed import CancelledError, wait
-    from distributed import TimeoutError as LateError  # until Python 3.10 one of its own
+    from distributed import TimeoutError as LateError  # until Python 3.10 not the built-in one
 
     if not under_way:
         return []
@@ -118,7 +120,7 @@ def _row(future: Future, task: Task, address: str) -> Row:
         return failed(task, DIED)
     except CancelledError:
         raise _lost(address) from None
-    except Exception as error:  # what comes back cannot be read
+    except Exception as error:  # the result cannot be unpickled
         return failed(task, bug(error))
     finally:
         future.release()
@@ -129,9 +131,9 @@ def _row(future: Future, task: Task, address: str) -> Row:
 
 
 def _work() -> Callable[[bytes, dict[str, str]], tuple[Any, str]]:
-    """What a worker does; a closure, because those are sent as code, not by a name of ours.
+    """Function for a worker; a closure, because these are sent as code, not by their module name.
 
-    So a worker without this package, which may also join later, can say what it lacks.
+    So a worker without this package, which may join later, can report that it is missing.
     """
 
     def work(data: bytes, wanted: dict[str, str]) -> tuple[Any, str]:
@@ -146,7 +148,7 @@ def _work() -> Callable[[bytes, dict[str, str]], tuple[Any, str]]:
 
 
 def _probe() -> Callable[[], dict[str, str]]:
-    """What tells a worker's code; sent as code, too."""
+    """Function that reports a worker's code; also sent as code."""
 
     def probe() -> dict[str, str]:
         try:
@@ -160,7 +162,7 @@ def _probe() -> Callable[[], dict[str, str]]:
 
 
 def _check_code(client: Client, address: str, warn: Callable[[str], None], patience: float) -> None:
-    """Every worker must run what runs here."""
+    """Check that every worker runs the same code as this machine."""
     from distributed import TimeoutError as LateError
 
     try:
@@ -206,7 +208,7 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
             f"--scheduler needs the Python package {missing.name}: "
             f"pip install '{PACKAGE}[cluster]', here and on the workers"
         ) from missing
-    # A robot's drives are what is sent, once: there is nothing better to advise.
+    # Each robot's drives are sent once, so Dask's advice on large graphs does not apply.
     large = {"distributed.admin.large-graph-warning-threshold": "16 GiB"}
     with _unheard(), dask.config.set(large):
         try:
@@ -225,7 +227,7 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
 
 @contextmanager
 def _unheard() -> Iterator[None]:
-    """Keep off the terminal what Dask logs of a cluster that goes away: we say it, in one line."""
+    """Silence Dask's logs on a lost cluster, which is reported in one line instead."""
     names = [name for name in logging.root.manager.loggerDict if name.startswith(_NOISY)]
     loggers = [logging.getLogger(name) for name in names]
     levels = [each.level for each in loggers]
@@ -239,10 +241,10 @@ def _unheard() -> Iterator[None]:
 
 
 def _client(address: str, patience: float) -> Client:
-    """A client that closes itself when it does not get through.
+    """A client that closes itself if it cannot connect.
 
-    Dask leaves that to the garbage collector, which may come while another client starts its loop:
-    both want the same lock, of one thread, and nothing moves any more.
+    Dask leaves this to the garbage collector, which may run while another client starts its loop:
+    both then wait for the same lock in one thread, a deadlock.
     """
     from distributed import Client as DaskClient
 
@@ -265,7 +267,7 @@ def _submitted(
 
 
 def _workers(client: Client, address: str) -> int:
-    """How many there are now."""
+    """Current number of workers."""
     from distributed import TimeoutError as LateError
 
     try:

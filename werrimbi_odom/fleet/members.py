@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The robots of a fleet, found in its folder: a sub-folder each, with robot.yaml and drives."""
+"""The robots of a fleet from its folder: one sub-folder each, with robot.yaml and drives."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ _LAYOUT = f"each robot is a sub-folder with {ROBOT} and its runs (in {TRAIN}/ an
 
 @dataclass(frozen=True)
 class Member:
-    """A robot of the fleet; paths are not read yet."""
+    """A robot of the fleet; its files are not read yet."""
 
     name: str
     robot: Path
     runs: tuple[Path, ...]
-    """In the order in which a shell lists them."""
+    """In the order of a shell's listing."""
     holdout: tuple[Path, ...] = ()
     problem: str = ""
-    """Why it cannot be diagnosed; empty if it can be tried."""
+    """Why it cannot be diagnosed; "" if it can be tried."""
 
 
 def members_of(fleet: Path) -> tuple[Member, ...]:
-    """The robots in a folder, robot_2 before robot_10.
+    """The robots in a folder in natural order, robot_2 before robot_10.
 
-    Folders that hold neither a robot file nor runs are none of them; one that has only the one or
-    the other is a robot with a problem.
+    Folders with neither a robot file nor runs are ignored; one with only one of them is a robot
+    with a problem.
 
     Raises
     ------
     InputError
-        When it is no folder, holds no robot, or no robot in it has a run.
+        If it is no folder, has no robot, or no robot in it has a run.
     """
     try:
         if not fleet.is_dir():
@@ -71,8 +71,8 @@ def members_of(fleet: Path) -> tuple[Member, ...]:
 
 
 def natural(name: str) -> tuple[Any, ...]:
-    """What names are sorted by, so that numbers in them count as numbers."""
-    parts = re.split(r"(\d+)", name)  # text and digits by turns, text first
+    """Sort key for natural order, in which digits compare as numbers."""
+    parts = re.split(r"(\d+)", name)  # text and digits alternate, text first
     return tuple(int(part) if number % 2 else part for number, part in enumerate(parts))
 
 
@@ -115,7 +115,7 @@ def is_run(path: Path) -> bool:
 
 
 def _drives(folder: Path) -> list[Path]:
-    """All that should be runs: one that lost its ticks.csv must be told, not be left out."""
+    """All entries that should be runs, so that one without its ticks.csv is reported."""
     if not folder.is_dir():
         return []
     return [path for path in _seen(folder) if path.is_dir() or path.suffix in SUFFIXES]

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a worker that shares no disk with us gets: a robot's files, and which code must run there.
+"""Data for a worker without a shared disk: a robot's files, and the required code version.
 
-Paths are put back in what comes of it.
+In the results, temporary paths are replaced by those of the user.
 """
 
 from __future__ import annotations
@@ -27,37 +27,37 @@ from werrimbi_odom.fleet.robot_task import Task, row_of
 from werrimbi_odom.report.fleet import Row
 
 MOST = 2**30
-"""Bytes of a robot that are sent; a bag of camera pictures is better diagnosed where it lies."""
+"""Size limit of a robot's files [bytes]; for larger bags, run the diagnosis where they are."""
 
 
 @dataclass(frozen=True)
 class Item:
-    """A file, or a folder with the files that its reader looks at."""
+    """A file, or a folder with the files that its reader uses."""
 
     path: str
-    """As the user wrote it."""
+    """As given by the user."""
     name: str
     files: Mapping[str, bytes] | bytes | None
-    """None where there is nothing: the worker says so in the words of this machine."""
+    """None if it does not exist: the worker then reports the same error as this machine."""
 
 
 @dataclass(frozen=True)
 class Parcel:
-    """A task with all it needs."""
+    """A task with all its files."""
 
     name: str
     asked: Asked
     items: tuple[Item, ...]
-    """Robot file, files with effects, references of their own, runs, held-out runs."""
+    """Robot file, effect files, separate references, runs, held-out runs."""
 
 
 def packed(task: Task) -> bytes:
-    """A task and its files.
+    """Serialise a task and its files.
 
     Raises
     ------
     InputError
-        When a file cannot be read, or they are too large.
+        If a file cannot be read, or they are too large.
     """
     asked = task.asked
     how = asked.how
@@ -82,7 +82,7 @@ def packed(task: Task) -> bytes:
 
 
 def row_of_parcel(data: bytes) -> Row:
-    """Unpack, diagnose, and tell it with the paths that the user knows."""
+    """Unpack and diagnose; the row has the paths of the user."""
     parcel: Parcel = pickle.loads(zlib.decompress(data))
     with tempfile.TemporaryDirectory(prefix="werrimbi-") as made:
         folder = Path(os.path.realpath(made))
@@ -93,10 +93,10 @@ def row_of_parcel(data: bytes) -> Row:
 
 
 def _item(path: Path) -> Item:
-    name = path.resolve().name  # a run is called so, also where a link leads to it
+    name = path.resolve().name  # a run has the name of its target, also behind a symbolic link
     if path.is_dir():
         return Item(str(path), name, {file.name: file.read_bytes() for file in files_of(path)})
-    if not name.endswith(path.suffix):  # readers go by the ending that was given
+    if not name.endswith(path.suffix):  # readers decide by the given suffix
         name = path.name
     return Item(str(path), name, path.read_bytes() if path.is_file() else None)
 
@@ -114,7 +114,7 @@ def _unpacked(item: Item, folder: Path) -> Path:
 
 
 def _moved(parcel: Parcel, places: list[Path]) -> Task:
-    """The task with the places where its files are now."""
+    """The task with the present paths of its files."""
     asked = parcel.asked
     rest = iter(places)
 
@@ -129,7 +129,7 @@ def _moved(parcel: Parcel, places: list[Path]) -> Task:
 
 
 def _with_paths(row: Row, given: Mapping[str, str]) -> Row:
-    """A row whose texts name the user's own paths."""
+    """The row with the user's paths in its texts."""
     error, figures = row.error, row.figures
     text = json.dumps(figures)
     for place, path in given.items():
@@ -141,12 +141,12 @@ def _with_paths(row: Row, given: Mapping[str, str]) -> Row:
 PACKAGE = "werrimbi_odom"
 EFFECTS = "installed effects"
 _DECIDES = (PACKAGE, EFFECTS)
-"""What must be the same; of the rest the last digits may depend."""
+"""Entries that must be equal; the others may change the last digits."""
 
 
 @cache
 def code_here() -> Mapping[str, str]:
-    """Names and versions: of this package with a digest of its code, of all that it counts with."""
+    """Names and versions of this package (with a digest of its code) and of its dependencies."""
     offered = (
         f"{point.name} ({point.dist.name} {point.dist.version})" if point.dist else point.name
         for point in entry_points(group=GROUP)
@@ -161,7 +161,7 @@ def code_here() -> Mapping[str, str]:
 
 
 def refusal(here: Mapping[str, str], there: Mapping[str, str]) -> str:
-    """Why results from there would be other ones; empty if they are not."""
+    """Differences for which results would not be comparable; "" for none."""
     return "; ".join(
         f"{name} {there.get(name, 'none')}, here {here[name]}"
         for name in _DECIDES
@@ -170,7 +170,7 @@ def refusal(here: Mapping[str, str], there: Mapping[str, str]) -> str:
 
 
 def doubts(here: Mapping[str, str], there: Mapping[str, str]) -> str:
-    """What last digits may depend on; empty where it is the same."""
+    """Differences that may change the last digits; "" for none."""
     return "; ".join(
         f"{name} {there.get(name, 'none')}, here {value}"
         for name, value in here.items()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet on the processors of this machine, a process each; a robot that kills one is a row."""
+"""A fleet on this machine, one process per robot; a crash of one is reported in its row."""
 
 from __future__ import annotations
 
@@ -31,31 +31,33 @@ DIED = (
 
 
 def processors() -> int:
-    """How many this process may use."""
+    """Number of processors available to this process."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def here(tasks: Sequence[Task], jobs: int) -> Iterator[Row]:
-    """Rows of robots as they come, from `jobs` processes at the most."""
+    """Rows of robots in the order of completion, from at most `jobs` processes."""
     return spread(tasks, jobs, row_of, failed)
 
 
 def spread(
     tasks: Sequence[Asked], jobs: int, work: Work[Asked, Found], lost: Lost[Asked, Found]
 ) -> Iterator[Found]:
-    """What becomes of tasks as it comes, from `jobs` processes at the most.
+    """Results of tasks in the order of completion, from at most `jobs` processes.
 
-    A process that dies takes others with it, and nobody knows which robot killed it. So those that
-    were under way are tried again one by one, and only who kills again is given up.
+    If a process dies, the pool loses all running tasks, and the cause is unknown. So these are
+    tried again one by one, and only a task that kills its process again is given up.
 
     Parameters
     ----------
-    work
-        Done in another process: a function of a module.
-    lost
-        What becomes of a task that ended its process, or whose result cannot be read.
+    tasks : sequence
+    jobs : int
+    work : callable
+        Function of a module, called in another process.
+    lost : callable
+        Makes the result of a task that ended its process, or with an unreadable result.
     """
     left = deque(tasks)
     while left:
@@ -67,7 +69,7 @@ def spread(
 def _pooled(
     left: deque[Asked], jobs: int, work: Work[Asked, Found], lost: Lost[Asked, Found]
 ) -> Generator[Found, None, list[Asked]]:
-    """Results of tasks, taken from `left`; returns those under way when a process died."""
+    """Results of tasks, taken from `left`; returns those running when a process died."""
     others = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(
         min(jobs, len(left)), multiprocessing.get_context("spawn"), _end_with_parent
@@ -93,7 +95,7 @@ def _pooled(
                 except BrokenProcessPool:
                     died.append(task)
                     continue
-                except Exception as error:  # what comes back cannot be read
+                except Exception as error:  # the result cannot be unpickled
                     row = lost(task, bug(error))
                 yield row
     finally:
@@ -106,7 +108,7 @@ def _pooled(
 
 @contextmanager
 def _no_interrupt() -> Iterator[None]:
-    """Processes begun here never see Ctrl-C, which the terminal sends to all: it is for us."""
+    """Start processes that ignore Ctrl-C, which the terminal sends to all; this one handles it."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -115,7 +117,7 @@ def _no_interrupt() -> Iterator[None]:
 
 
 def _end_with_parent() -> None:
-    """A process whose parent was killed would wait for work for ever."""
+    """End this process with its parent, as it would otherwise wait for work for ever."""
     parent = multiprocessing.parent_process()
     assert parent is not None
 

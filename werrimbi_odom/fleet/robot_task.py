@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The diagnosis of one robot, and the same as a task for another process: it always has an end."""
+"""The diagnosis of one robot as a task for another process; it always returns a row."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from werrimbi_odom.files.recordings import Asked, read
 from werrimbi_odom.report.fleet import Row
 
 _ONE_AT_A_TIME = Lock()
-"""Effects of a file become modules of the whole process, and so is the limit on threads its."""
+"""Modules of effect files, and the limit on threads, are global to the process."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A robot to diagnose; it can be sent to another process."""
+    """A robot to diagnose; can be pickled."""
 
     name: str
     asked: Asked
 
 
 def row_of(task: Task) -> Row:
-    """The diagnosis of a robot; what goes wrong becomes its row, never an exception.
+    """Diagnose a robot; errors are returned in its row, never raised.
 
-    Sums are made by one thread: how a library shares them out would change their last digits.
+    BLAS is limited to one thread, because the order of its sums changes the last digits.
     """
     try:
         import scipy.linalg  # noqa: F401  its BLAS must be there to be limited
@@ -47,19 +47,19 @@ def row_of(task: Task) -> Row:
         return failed(task, "this needs more memory than there is; cut the runs into several")
     except (InputError, OSError) as error:
         return failed(task, str(error))
-    except (SystemExit, KeyboardInterrupt) as error:  # Ctrl-C does not get here, see `spread`
+    except (SystemExit, KeyboardInterrupt) as error:  # Ctrl-C does not arrive here, see `spread`
         return failed(task, f"code that it ran ended it ({type(error).__name__}: {error})")
     except Exception as error:  # one robot must not end the fleet
         return failed(task, bug(error))
 
 
 def failed(task: Task, why: str) -> Row:
-    """The row of a robot that could not be diagnosed."""
+    """Row of a robot that could not be diagnosed."""
     return Row(task.name, _drives(task), None, " ".join(why.split()))
 
 
 def bug(error: BaseException) -> str:
-    """An exception that no user can mend, said to be ours."""
+    """Message for an unexpected exception, which is a bug of this package."""
     message = " ".join(str(error).split())
     steps = traceback.extract_tb(error.__traceback__)
     where = f" ({Path(steps[-1].filename).name}, line {steps[-1].lineno})" if steps else ""

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a verb found, for people: words, tables, figures and pages. Nothing here computes physics.
+"""Presentation of results: words, tables, figures and pages. Nothing here computes physics.
 
-`document` defines what a verb tells; each verb has a folder that makes its document. `terminal`
+`document` defines the report of a verb; each verb has a folder that makes its document. `terminal`
 prints a document, `page` writes it as HTML, `save` as PDF or PNG. `style` has the colours.
 """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What changed from drive to drive, in words and as JSON."""
+"""Changes between drives, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ WHAT = {
     "wheel_base": "the wheel base",
     "mount": "how the reference is mounted",
 }
-"""What a change is of, in words."""
+"""Names of the changed parts."""
 
 
 def changes_words(moves: Sequence[Moved], robot: Robot) -> list[str]:
-    """A sentence for each change, in the order of the drives; `robot`: for sizes in mm."""
+    """A sentence for each change, in the order of the drives; `robot` gives sizes in mm."""
     found = []
     for _, each in groupby(moves, key=lambda move: (move.group, move.from_run, move.kind)):
         together = list(each)
@@ -35,12 +35,12 @@ def changes_words(moves: Sequence[Moved], robot: Robot) -> list[str]:
 
 
 def changes_json(moves: Sequence[Moved], robot: Robot) -> list[dict[str, Any]]:
-    """Field for field, each with its words."""
+    """Fields of each change, with its sentence."""
     return [{**asdict(move), "words": changes_words([move], robot)[0]} for move in moves]
 
 
 def in_small_unit(value: float, std: float, unit: str) -> tuple[str, str]:
-    """Value with standard deviation, and the unit: small angles in mrad, which mounts differ by."""
+    """Value with standard deviation, and its unit; small angles are in mrad."""
     if unit == "rad" and abs(value) < SMALL:
         return with_std(1e3 * value, 1e3 * std), "mrad"
     return in_unit(value, std, unit)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a verb tells: paragraphs, tables and figures, made once by the verb's report.
+"""Report of a verb: paragraphs, tables and figures, independent of the output.
 
-`terminal` prints a document, `page` makes a page to mail of it (and the view of a notebook), the
-workbench puts its parts among its buttons. None of them reads what another has printed.
+`terminal` prints a document, `page` writes it as an HTML page (and as the view of a notebook), the
+workbench arranges its parts. None of them parses printed text.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from werrimbi_odom.report.style import Figure
 
 @dataclass(frozen=True)
 class Paragraph:
-    """A paragraph of its own wherever it is shown."""
+    """A paragraph of its own in every output."""
 
     text: str
-    """`commands` in backquotes."""
+    """Text, with `commands` in backquotes."""
     kind: Literal["words", "point", "command", "code"] = "words"
     hanging: bool = False
-    """Whether printed lines after the first are indented: it begins with a word to find it by."""
+    """Whether printed lines after the first are indented, because it begins with a keyword."""
     apart: bool = False
-    """Whether an empty line stands before it where it is printed."""
+    """Whether an empty line is printed before it."""
 
 
 @dataclass(frozen=True)
 class Definition:
-    """A name or a value, and below it what it is."""
+    """A name or a value, with its description below."""
 
     term: str
     says: str
@@ -40,16 +40,16 @@ class Definition:
 
 @dataclass(frozen=True)
 class Table:
-    """Cells; the first of each row names it."""
+    """A table; the first cell of each row is its name."""
 
     title: str
     heads: Sequence[str]
-    """Empty: names and what belongs to them, in words."""
+    """Column headings; empty for a list of names with descriptions."""
     rows: Sequence[Sequence[str]]
     words: Collection[int] = ()
-    """Columns that hold words, beside the first; others hold numbers."""
+    """Columns with words, in addition to the first; the others have numbers."""
     rest: str = ""
-    """What was left out."""
+    """Remark on omitted rows."""
 
 
 Part = Paragraph | Definition | Table
@@ -57,50 +57,50 @@ Part = Paragraph | Definition | Table
 
 @dataclass(frozen=True)
 class Shown:
-    """One place on the page: a figure, or several to choose from, or a drawing."""
+    """One section of the page: a figure, or several to choose from, or HTML."""
 
     key: str
-    """Short name, in file names and links."""
+    """Short name for file names and links."""
     title: str
     see: str
-    """One sentence: what to see."""
+    """One sentence on what to see."""
     figures: Mapping[str, Figure] = field(default_factory=dict)
-    """By the words to choose them by; the first is shown."""
+    """Figures by the labels of their selection; the first one is shown at first."""
     choose: str = ""
-    """What is chosen, where there are several."""
+    """Label of the selection, if there are several."""
     html: str = ""
-    """Below the figure: a drawing, a list, a table; trusted."""
+    """Trusted HTML below the figure: a drawing, a list, a table."""
     main: bool = True
-    """Whether it is one for a paper."""
+    """Whether it is saved as a figure for a paper."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Document:
-    """Everything that a verb tells."""
+    """Complete report of a verb."""
 
     title: str
     words: Sequence[Part]
-    """The verdict; its first paragraph is the headline."""
+    """Summary; its first paragraph is the headline."""
     tables: Sequence[Part] = ()
-    """Below the words, and on a page below the figures."""
+    """Tables below the words, and on a page below the figures."""
     draw: Callable[[], Sequence[Shown]] = tuple
-    """The figures; drawn when somebody looks."""
+    """Makes the figures when they are needed."""
     made: Mapping[str, str] = field(default_factory=dict)
-    """How it was made: command, files, options."""
+    """Provenance: command, files, options."""
 
 
 def paragraphs(
     texts: Iterable[str], *, hanging: Collection[str] = (), apart: bool = False
 ) -> tuple[Paragraph, ...]:
-    """A paragraph for each text, but for empty ones.
+    """A paragraph for each non-empty text.
 
     Parameters
     ----------
-    texts
-        What begins with "- " is a point of a list, with four blanks a command.
-    hanging
-        Words before a colon that a paragraph is found by: "How sure" for "How sure: ...".
-    apart
+    texts : iterable of str
+        "- " begins an item of a list, four spaces a command.
+    hanging : collection of str
+        Keywords before a colon: "How sure" for "How sure: ...".
+    apart : bool
         Whether an empty line is printed before each.
     """
     return tuple(

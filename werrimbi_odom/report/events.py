@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happened at an instant, in words and as JSON."""
+"""Abrupt events in words, as JSON and in figures."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.style import Figure
 
 _TOLD = 6
-"""Events that are told one by one, the largest against their noise."""
+"""Number of events reported one by one, in the order of their significance."""
 
 
 def events_words(happened: Events, track: float) -> list[str]:
-    """What happened, in the order of time; nothing where nothing did. `track`: of the robot [m]."""
+    """The events in the order of time; empty for none. `track` is the wheel base [m]."""
     events = happened.events
     if not events:
         return []
@@ -53,12 +53,14 @@ def events_words(happened: Events, track: float) -> list[str]:
 
 
 def event_words(event: Event, track: float, *, either: bool = False) -> str:
-    """What one was, as the end of a sentence.
+    """Description of one event, as the end of a sentence.
 
     Parameters
     ----------
-    either
-        Whether a step of the robot looks as one of the reference.
+    track : float
+        Wheel base of the robot [m].
+    either : bool
+        Whether steps of the robot and of the reference are indistinguishable.
     """
     size, unit = _size(event)
     if event.channel == "reference":
@@ -79,7 +81,7 @@ def event_words(event: Event, track: float, *, either: bool = False) -> str:
 
 
 def alike_words(common: Alike) -> str:
-    """What events have in common, and what that says."""
+    """Common cause of the events, and its meaning."""
     x, y = common.at
     near = f"{common.count} of {common.of}"
     if common.what == "reversal":
@@ -100,7 +102,7 @@ def alike_words(common: Alike) -> str:
 
 
 def events_json(happened: Events, track: float) -> list[dict[str, Any]]:
-    """Field for field; times in the run's own clock [s]."""
+    """Fields of each event; times in the run's own clock [s]."""
     return [
         {
             **picked(event, "run t_s:time channel size std unit"),
@@ -117,7 +119,7 @@ def events_json(happened: Events, track: float) -> list[dict[str, Any]]:
 
 
 def either(happened: Events) -> bool:
-    """Whether a step of the robot looks as one of the reference; a gyro loses no place."""
+    """Whether steps of the robot and of the reference look alike; not for a gyro."""
     seen = any(math.isfinite(event.place[0]) for event in happened.events)
     return happened.kind in _EITHER and seen
 
@@ -128,14 +130,14 @@ _EITHER = {
     "local_map": "A localiser that corrects itself, at once or within a second, looks as if the "
     "robot had been pushed.",
 }
-"""Why nobody can tell which of both it was, by the kind of the reference."""
+"""Reason why the two are indistinguishable, by the kind of reference."""
 
 
 _SIZES = ("along_m", "sideways_m", "heading_rad")
 
 
 def alike_json(happened: Events) -> dict[str, Any] | None:
-    """What they have in common; null where that is nothing."""
+    """Common cause of the events; null for none."""
     common = happened.alike
     if common is None:
         return None
@@ -145,7 +147,7 @@ def alike_json(happened: Events) -> dict[str, Any] | None:
 
 
 def when(event: Event) -> str:
-    """When it was, told from the run's first tick if its clock shows the time of day."""
+    """Time of an event, from the run's first tick if the clock shows the time of day."""
     return f"{from_start(event.started, event.time)[0]:.1f} s"
 
 
@@ -156,7 +158,7 @@ def _size(event: Event) -> tuple[str, str]:
 
 
 def _slipped(event: Event, track: float) -> str | None:
-    """Which wheel lost travel, where along and heading are those of one wheel alone."""
+    """The slipped wheel, if along and heading steps agree with those of one wheel; or None."""
     (along, sideways, turn), (s_along, s_sideways, s_turn) = event.sizes, event.stds
     lost = 0.5 * track * turn
     spread = math.hypot(s_along, 0.5 * track * s_turn)
@@ -165,14 +167,14 @@ def _slipped(event: Event, track: float) -> str | None:
         return None
     if abs(abs(along) - abs(lost)) > _SURELY * spread:
         return None
-    # Of a wheel that loses travel the robot lags behind its way, and turns to that wheel's side.
+    # If a wheel loses travel, the robot lags behind its path and turns to the side of that wheel.
     side = "left" if (turn > 0.0) == (along < 0.0) else "right"
     size, unit = in_unit(2.0 * abs(along), 2.0 * s_along, "m")
     return f"its {side} wheel slipped by {size} {unit}"
 
 
 _SURELY = 3.0
-"""Standard deviations."""
+"""Threshold in standard deviations."""
 
 
 _LOOKS = {
@@ -181,11 +183,11 @@ _LOOKS = {
     "heading": ("heading", style.GREEN, "circle"),
     "reference": ("the reference jumped", style.GREY, "x"),
 }
-_DRIVE = 30  # height of a drive's line [pixels]
+_DRIVE = 30  # height of the line of a drive [pixels]
 
 
 def on_the_path(happened: Events, track: float) -> Figure | None:
-    """Where events happened; None where the reference saw no place."""
+    """Events on the measured path; None if no positions were measured."""
     seen = [way for way in happened.ways if np.isfinite(way.x).any()]
     if not seen:
         return None
@@ -207,7 +209,7 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
 
 
 def over_time(happened: Events, track: float) -> Figure:
-    """When events happened, drive by drive."""
+    """Events over time, drive by drive."""
     figure = style.blank()
     starts = {}
     for way in happened.ways:

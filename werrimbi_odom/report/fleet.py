@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What became of each robot of a fleet, in words and as JSON."""
+"""Results of a fleet, robot by robot, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.numbers import listed, with_std
 
 ERROR = "error"
-"""In place of a verdict, where a robot could not be diagnosed."""
+"""Shown in place of a verdict if a robot could not be diagnosed."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One robot: its diagnosis as `report.diagnosis.as_json` tells it, or why there is none."""
+    """One robot: its diagnosis as JSON (`report.diagnosis.tables`), or the error."""
 
     robot: str
     runs: int
-    """Drives, those to judge on among them."""
+    """Number of drives, including held-out ones."""
     figures: Mapping[str, Any] | None = None
     error: str = ""
 
     @property
     def verdict(self) -> str:
-        """One of the four, or `ERROR`."""
+        """One of the four verdicts, or `ERROR`."""
         return ERROR if self.figures is None else str(self.figures["verdict"])
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Effects that were found and are told apart from others, the most important first."""
+        """Effects found without rivals, the most important first."""
         if self.figures is None:
             return ()
         rivals = self.rivals
@@ -43,12 +43,12 @@ class Row:
 
     @property
     def rivals(self) -> tuple[str, ...]:
-        """Effects that its drives cannot tell apart."""
+        """Effects that the drives cannot separate."""
         return () if self.figures is None else tuple(self.figures["rivals"])
 
     @property
     def errors(self) -> tuple[float, float]:
-        """Position error of held-out legs as given and with everything found [m]; NaN: unknown."""
+        """Position error of held-out legs, as given and with all found effects [m], or NaN."""
         if self.figures is None:
             return math.nan, math.nan
         sides = self.figures["holdout"]
@@ -67,16 +67,16 @@ class Row:
 
 @dataclass(frozen=True)
 class Fleet:
-    """All robots that are done, in their order, and those that were left undone."""
+    """All finished robots in order, and those not done."""
 
     rows: tuple[Row, ...]
     left: tuple[str, ...] = ()
     same_file: frozenset[str] = frozenset()
-    """Robots whose robot file is, byte for byte, that of another one."""
+    """Robots with a robot file identical to that of another one."""
 
     @property
     def by_effect(self) -> dict[str, list[Row]]:
-        """Robots that miss each effect; the effect that most of them miss first."""
+        """Robots by missing effect; the most frequent effect first."""
         found: dict[str, list[Row]] = {}
         for row in self.rows:
             for effect in row.missing:
@@ -85,7 +85,7 @@ class Fleet:
 
 
 def fleet_json(fleet: Fleet) -> dict[str, Any]:
-    """Everything, for programs."""
+    """Complete result as JSON."""
     verdicts: dict[str, int] = {}
     for row in fleet.rows:
         verdicts[row.verdict] = verdicts.get(row.verdict, 0) + 1
@@ -105,10 +105,10 @@ def fleet_json(fleet: Fleet) -> dict[str, Any]:
 
 
 def believed(parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
-    """Those of an effect's parameters that are worth a place in a table.
+    """Parameters of an effect that a table shows.
 
-    Without those that each drive has anew, and those that noise alone could have made; all, where
-    nothing would be left.
+    Without per-run parameters and those that are not significant; if none is significant, with all
+    shared ones.
     """
     shared = {name: item for name, item in parameters.items() if not item["per_run"]}
     sure = {
@@ -126,16 +126,16 @@ def ordered(rows: Sequence[Row], names: Sequence[str]) -> tuple[Row, ...]:
 
 
 def _number(value: float | None) -> float:
-    """JSON has null for what does not exist."""
+    """A number from JSON; NaN for null."""
     return math.nan if value is None else float(value)
 
 
 _GROUPS = 6
-"""Different things missing that are counted in the first sentence."""
+"""Number of combinations of missing effects that the headline counts."""
 _NAMED = 8
-"""Robots that a sentence names."""
+"""Most robots that a sentence names."""
 _TOLD = 10
-"""Robots whose error is told; the others' are in the JSON."""
+"""Most robots with a printed error message; all are in the JSON."""
 
 
 def words_of(fleet: Fleet) -> tuple[Paragraph, ...]:
@@ -145,7 +145,7 @@ def words_of(fleet: Fleet) -> tuple[Paragraph, ...]:
 
 
 def headline(fleet: Fleet) -> str:
-    """How many robots miss nothing, what, who knows what, and could not be read."""
+    """Number of robots by result."""
     parts = []
     verdicts = [row.verdict for row in fleet.rows]
     if count := verdicts.count("none"):
@@ -173,7 +173,7 @@ def _miss(count: int) -> str:
 
 
 def _shared(fleet: Fleet) -> list[str]:
-    """What most robots have in common is no matter of one of them."""
+    """Effects that most robots miss, which are therefore not specific to one of them."""
     judged = [row for row in fleet.rows if row.verdict != ERROR]
     lines = []
     for effect, rows in fleet.by_effect.items():
@@ -194,14 +194,14 @@ def _shared(fleet: Fleet) -> list[str]:
 
 
 def _agree(rows: Sequence[Row], effect: str) -> str:
-    """How far the robots' values of an effect lie apart, by its surest parameter."""
+    """Range of the robots' values of an effect, for its most significant parameter."""
     sure = believed(rows[0].values(effect))
     if not sure:
         return ""
     parameter = max(sure, key=lambda name: _certainty(sure[name]))
     values = [row.values(effect)[parameter]["value"] for row in rows]
     if not all(value is not None and math.isfinite(value) for value in values):
-        return ""  # of some robot it is another one in each drive
+        return ""  # a per-run value of some robot
     low, high = f"{min(values):.4g}", f"{max(values):.4g}"
     unit = sure[parameter]["unit"]
     size = low if low == high else f"{low} to {high}"
@@ -209,13 +209,13 @@ def _agree(rows: Sequence[Row], effect: str) -> str:
 
 
 def _certainty(parameter: Mapping[str, Any]) -> float:
-    """Size in standard deviations; 0 where one of them is not known."""
+    """Size in standard deviations; 0 if either is unknown."""
     value, std = (parameter[part] or math.nan for part in ("value", "std"))
     return abs(value / std) if math.isfinite(value) and std > 0.0 else 0.0
 
 
 def _alone(fleet: Fleet) -> list[str]:
-    """What one robot alone has is its own."""
+    """Effects that only one robot misses."""
     judged = sum(row.verdict != ERROR for row in fleet.rows)
     found = [(effect, rows[0]) for effect, rows in fleet.by_effect.items() if len(rows) == 1]
     if judged < 3 or not found:
@@ -245,7 +245,7 @@ def _left(fleet: Fleet) -> list[str]:
 
 
 def missing_words(row: Row) -> list[str]:
-    """What a robot is missing, an effect each with its fitted values."""
+    """Missing effects of a robot, each with its fitted values."""
     if row.verdict == "none":
         return ["nothing"]
     said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
@@ -265,7 +265,7 @@ def _with_values(row: Row, effect: str) -> str:
 
 
 def next_words(row: Row) -> str:
-    """What to do about it, in a few words; `add` and `draft` are verbs of this tool."""
+    """Next step in a few words; `add` and `draft` are verbs of this tool."""
     if row.verdict == "named":
         return f"add {row.missing[0]}"
     if row.verdict == "unknown":
@@ -280,7 +280,7 @@ def next_words(row: Row) -> str:
 
 
 def error_words(row: Row) -> str:
-    """Held-out error before and after in millimetres; empty where there is none."""
+    """Held-out error before and after in millimetres; "" if there is none."""
     before, after = row.errors
     return "" if math.isnan(before) else f"{_millimetres(before)} → {_millimetres(after)}"
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a fleet: words, the error of each robot falling in one figure, and the table."""
+"""Report of a fleet: words, a figure of each robot's error before and after, and a table."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ _OTHERS = {
     "nothing": (style.GREY, "pentagon"),
 }
 _LOGARITHMIC = 20.0
-"""From this ratio of the largest to the smallest error on the axis is logarithmic."""
+"""Ratio of the largest to the smallest error from which on the axis is logarithmic."""
 _CLOSE = 60
-"""Robots from which on rows move closer together."""
+"""Number of robots from which on rows are closer together."""
 
 
 def fleet_figure(fleet: Fleet) -> Figure | None:
-    """Rows of robots over held-out error [mm]; None where no robot has such an error."""
+    """Held-out error of each robot [mm] in rows; None if no robot has such an error."""
     shown = [row for row in fleet.rows if all(map(math.isfinite, row.errors))]
     if not shown:
         return None
@@ -114,7 +114,7 @@ def _axes(figure: Figure, shown: list[Row]) -> None:
         type="category",
         categoryorder="array",
         categoryarray=[style.escaped(row.robot) for row in shown],
-        range=[len(shown) - 0.4, -0.6],  # the first robot on top
+        range=[len(shown) - 0.4, -0.6],  # first robot on top
         tickmode="linear",
         dtick=1,
     )
@@ -127,7 +127,7 @@ def _looks(fleet: Fleet) -> Mapping[str, tuple[str, str]]:
 
 
 def _group(row: Row, looks: Mapping[str, tuple[str, str]]) -> str:
-    """The group that a robot is shown in: its most important effect's, or its verdict's."""
+    """Group of a robot in the figure: that of its most important effect, or of its verdict."""
     assert row.verdict != ERROR
     if row.verdict == "named":
         return row.missing[0] if row.missing[0] in looks else "something else"
@@ -135,19 +135,19 @@ def _group(row: Row, looks: Mapping[str, tuple[str, str]]) -> str:
 
 
 def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[Path]:
-    """Write the report; returns the files.
+    """Write the report; return the written files.
 
     Parameters
     ----------
-    path
+    path : Path
         .html for a page, .pdf or .png for the figure alone.
-    made
-        How it was made: command, files, options.
+    made : mapping of str to str
+        Provenance: command, files, options.
 
     Raises
     ------
     InputError
-        When it cannot be written, or a picture was asked for and there is nothing to draw.
+        If it cannot be written, or a picture is requested and there is nothing to draw.
     """
     document = replace(document_of(fleet), made=made)
     if path.suffix.lower() in (".pdf", ".png") and fleet_figure(fleet) is None:
@@ -156,7 +156,7 @@ def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[
 
 
 def document_of(fleet: Fleet) -> Document:
-    """Everything that is told."""
+    """The complete report."""
     return Document(title=_title(fleet), words=words_of(fleet), draw=lambda: _figures(fleet))
 
 
@@ -195,11 +195,11 @@ HEADS = ("robot", "runs", "verdict", "what is missing", "held-out error [mm]", "
 _ROBOT, _RUNS, _VERDICT, _MISSING, _ERROR, _NEXT = range(len(HEADS))
 _RIGHT = (_RUNS, _ERROR)
 _MOST = 20
-"""Columns for names on the terminal; longer ones go on in the next line."""
+"""Width of columns with names on the terminal; longer names are wrapped."""
 
 
 def fleet_table(fleet: Fleet, width: int = 100) -> str:
-    """The table as text that fits into `width` columns; without rich in long lines."""
+    """The table as text of at most `width` columns; without rich in long lines."""
     rows = [cells(row) for row in fleet.rows]
     try:
         from rich import box
@@ -228,18 +228,18 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
 
 
 def robots_table(fleet: Fleet) -> Table:
-    """The same for a page, whole."""
+    """The complete table for a page."""
     words = [at for at in range(1, len(HEADS)) if at not in _RIGHT]
     return Table("", HEADS, [cells(row, whole=True) for row in fleet.rows], words)
 
 
 def cells(row: Row, *, whole: bool = False) -> list[str]:
-    """The cells of a robot; line breaks part its effects.
+    """Cells of a robot; effects are separated by line breaks.
 
     Parameters
     ----------
-    whole
-        Errors in full, for a page; the terminal tells them above its table.
+    whole : bool
+        Whether to include error messages, as on a page; the terminal prints them above the table.
     """
     missing = "\n".join(missing_words(row))
     error, then = error_words(row), next_words(row)

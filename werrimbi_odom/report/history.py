@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The page of a history: words, and a panel for each number over the dates."""
+"""Report of a history: words, and a panel for each parameter over the dates."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.style import Figure
 
 _HEIGHT = 190
-"""Of a panel."""
+"""Height of a panel [pixels]."""
 _UNSURE = 5.0
-"""Times the usual standard deviation of a number beyond which a drive's own is not drawn."""
+"""A drive's own value with a standard deviation above this many medians is not drawn."""
 
 
 def document_of(history: History) -> Document:
-    """Everything that is told."""
+    """The complete report."""
     some = bool(history.course.numbers)
     return Document(
         title="What changed" if history.course.changes else "Nothing changed",
@@ -60,7 +60,7 @@ def _figures(history: History) -> list[Shown]:
 
 
 def history_figure(history: History) -> Figure:
-    """Panels above each other, with one axis of dates."""
+    """Panels above each other, with a common axis of dates."""
     from plotly.subplots import make_subplots
 
     numbers = history.course.numbers
@@ -153,13 +153,13 @@ def _panel(
 
 
 def _moves(what: str, name: str) -> bool:
-    """Whether a change of one number is one of another, too."""
+    """Whether a change of one parameter also changes the other."""
     of_radii = name in ("unequal_wheel_radii", "wheel_radius_scale")
     return what == name or ("radius_multiplier" in what and of_radii)
 
 
 def _scale(number: Number) -> tuple[float, float]:
-    """Factor and origin in which a number is drawn: multipliers in % off the robot file."""
+    """Factor and origin of the drawn values; multipliers in % from the robot file."""
     if "." not in number.name:
         return 100.0 / number.given, number.given
     return (1e3, 0.0) if number.unit in ("m", "rad", "s") else (1.0, 0.0)
@@ -182,7 +182,7 @@ def _dates(history: History) -> list[Any]:
 
 
 def json_of(history: History) -> dict[str, Any]:
-    """Everything that was found."""
+    """Complete result as JSON."""
     course = history.course
     paths = [str(drive.run) for drive in history.drives]
     return {

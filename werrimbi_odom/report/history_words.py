@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A history in plain words: over which drives, what changed and when, what to do now."""
+"""A history in words: its drives, what changed and when, what to do now."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TITLES = {
     "reference_lever_arm.x": "mount: ahead of the axle",
     "reference_lever_arm.y": "mount: left of the middle",
 }
-"""What a number is called."""
+"""Names of the parameters."""
 
 _LOOK = {
     "left_wheel": "look at the left wheel: tread, pressure, and whether it sits firmly",
@@ -41,23 +41,23 @@ _DATE_WORDS = {
     "file": "when their files were written, for their stamps are no dates",
     "order": "none: they are taken in the order given",
 }
-_SIGMAS = 3.0  # standard deviations from which a number is told to differ from another robot's
+_SIGMAS = 3.0  # threshold of a difference from the other robot file, in standard deviations
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """Something to do."""
+    """A recommended action."""
 
     what: str
-    """A group of numbers, or calibration."""
+    """A group of parameters, or calibration."""
     since: str
-    """A drive; "" where it is not since one."""
+    """Name of a drive; "" if it is not since a drive."""
     words: str
 
 
 @dataclass(frozen=True)
 class Against:
-    """A number beside that of another robot file."""
+    """A parameter compared with another robot file."""
 
     what: str
     now: float
@@ -84,11 +84,11 @@ def words_of(history: History) -> tuple[Paragraph, ...]:
     return paragraphs(lines, hanging=["Next", "Not used"])
 
 
-_MOST = 5  # drives that cannot be used, told one by one
+_MOST = 5  # unusable drives that are reported one by one
 
 
 def alarms(history: History) -> list[Alarm]:
-    """What to do about the latest change of each kind, and about an old robot file."""
+    """Actions for the latest change of each group, and for an outdated robot file."""
     names = dated_names(history)
     latest = {move.group: move for move in history.course.changes if move.kind != "alone"}
     found = []
@@ -116,7 +116,7 @@ def alarms(history: History) -> list[Alarm]:
 
 
 def against(history: History) -> list[Against]:
-    """Each number now, beside that of the other robot file; none without one."""
+    """Current values compared with those of the other robot file; empty without one."""
     if history.like is None:
         return []
     found = []
@@ -130,7 +130,7 @@ def against(history: History) -> list[Against]:
 
 
 def told_as(history: History, names: Sequence[str]) -> list[Moved]:
-    """The changes, with names of the drives for their numbers."""
+    """The changes, with names of the drives instead of indices."""
     return [
         replace(
             move,
@@ -143,7 +143,7 @@ def told_as(history: History, names: Sequence[str]) -> list[Moved]:
 
 
 def dated_names(history: History) -> list[str]:
-    """Of each drive, name and day."""
+    """Name and day of each drive."""
     return [
         f"{name} ({day_of(drive)})" if drive.date_from != "order" else name
         for name, drive in zip(history.names, history.drives, strict=True)
@@ -151,7 +151,7 @@ def dated_names(history: History) -> list[str]:
 
 
 def day_of(drive: Dated) -> str:
-    """The day of a drive, as it was in Greenwich."""
+    """Date of a drive in UTC."""
     return datetime.fromtimestamp(drive.date, timezone.utc).strftime("%Y-%m-%d")
 
 
@@ -192,7 +192,7 @@ def _against_words(history: History, differing: Sequence[Against]) -> str:
 
 
 def there(history: History, number: Number) -> float:
-    """A number of the other robot file, in the units of this one."""
+    """A parameter of the other robot file, in the units of this one."""
     robot = history.like
     assert robot is not None
     left, right = (float(getattr(robot, name)) for name in MULTIPLIERS[1:])
@@ -208,7 +208,7 @@ def there(history: History, number: Number) -> float:
     try:
         value = value_of(robot, number.name)
     except KeyError:
-        return 0.0  # an effect that it does not hold
+        return 0.0  # an effect that is not in the file
     if number.name in MULTIPLIERS:
         return value * (base if number.name == MULTIPLIERS[0] else radii)
     return value
@@ -224,7 +224,7 @@ def _share(share: float, std: float) -> str:
 
 
 def table_of(history: History) -> Table:
-    """The numbers of the robot now."""
+    """Current parameters of the robot."""
     heads = ["number", "now", "robot file", "drive to drive ±"]
     heads += ["the other file"] if history.like is not None else []
     rows = []

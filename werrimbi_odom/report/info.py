@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What recordings hold: as a document, for programs, and the command that comes next."""
+"""Contents of recordings: as a document, as JSON, and the command that comes next."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from werrimbi_odom.report.phrases import left_out_json
 
 
 def document_of(found: Info) -> Document:
-    """Everything that is told."""
+    """The complete report."""
     words = [part for each in found.held for part in words_of(each, found)]
     step, command = next_step(found)
     words += [Paragraph(step, apart=True), *([Paragraph(command, "command")] if command else [])]
@@ -24,7 +24,7 @@ def document_of(found: Info) -> Document:
 
 
 def info_json(found: Info) -> dict[str, Any]:
-    """For programs; times in each run's own clock [s]."""
+    """Complete result as JSON; times in each run's own clock [s]."""
     return {
         "runs": [_json_of(each, found) for each in found.held],
         "robot": found.given or found.written,
@@ -76,7 +76,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
 
 
 def next_step(found: Info) -> tuple[str, str]:
-    """The next step, and its command; "" where it has none."""
+    """The next step, and its command; "" if there is none."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     if not usable:
         return _otherwise(found)
@@ -96,7 +96,7 @@ def next_step(found: Info) -> tuple[str, str]:
 
 
 def _otherwise(found: Info) -> tuple[str, str]:
-    """Where nothing can be judged by what was taken: what lacks, or what else may do."""
+    """Next step if the chosen topics are not usable: what is missing, or another topic to try."""
     if all(held.contents is not None and held.wheels is None for held in found.held):
         return WITHOUT_WHEELS, ""
     for held in found.held:
@@ -112,7 +112,7 @@ def _otherwise(found: Info) -> tuple[str, str]:
 
 
 def command_of(found: Info) -> str:
-    """The command that comes next, as a shell takes it."""
+    """The next command, quoted for a shell."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     paths = [str(each.path) for each in usable]
     robot = found.given or found.written

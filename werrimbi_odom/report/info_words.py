@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording holds, in words: wheels, references, stamps, and how the robot was driven."""
+"""Contents of a recording in words: wheels, references, stamps, and how the robot was driven."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
 from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
-_WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
+_WANDERS = 0.1  # reported variation of the delay from stamp to receipt [s]
 
 
 def words_of(held: Held, found: Info) -> list[Paragraph]:
-    """Its path, and a point for each thing that is told of it."""
+    """The path of the recording, and a list of its contents."""
     head = Paragraph(str(held.path), apart=True)
     return [head, *paragraphs(f"- {each}" for each in _lines(held, found))]
 
@@ -196,7 +196,7 @@ WITHOUT_WHEELS = (
 
 
 def wheels_words(held: Held) -> str:
-    """The topic, what it gives, and the wheels on each side."""
+    """The topic of the wheels, its kind of data, and the wheels on each side."""
     wheels = held.wheels
     if wheels is None:
         return f"Wheels: nothing that is read in the bag tells how they turned.{_unread(held)}"
@@ -209,7 +209,7 @@ def wheels_words(held: Held) -> str:
 
 
 def _unread(held: Held) -> str:
-    """Topics that by their names may tell it, and that are read where asked for or not at all."""
+    """Topics with names that suggest wheel data, but that are not read by default."""
     assert held.contents is not None
     known = {each.name for each in held.contents.references}
     may = [
@@ -231,7 +231,7 @@ def _unread(held: Held) -> str:
 
 
 def other_wheels_words(held: Held) -> Iterator[str]:
-    """What else in the bag may tell of wheels: of another robot, or of this one once more."""
+    """Other topics with wheel data, perhaps of another robot."""
     assert held.contents is not None
     taken = held.wheels.name if held.wheels is not None else ""
     others = [each.name for each in held.contents.wheels if each.gives != "odometry"]
@@ -242,7 +242,7 @@ def other_wheels_words(held: Held) -> Iterator[str]:
 
 
 def no_wheels_words(joints: WheelJoints) -> Iterator[str]:
-    """Joints that are taken for no wheels, and why."""
+    """Joints that are not taken for wheels, and why."""
     named = [name for name in joints.others if is_no_wheel(name)]
     rolled = [name for name in joints.rolled if name not in named]
     stayed = [name for name in joints.others if name not in (*named, *rolled)]
@@ -259,6 +259,6 @@ def no_wheels_words(joints: WheelJoints) -> Iterator[str]:
 
 
 def rate_words(held: Held, name: str) -> str:
-    """How often a topic's messages come, after its name."""
+    """Message rate of a topic, as a suffix of its name."""
     stamps = held.stamps.get(name.split(",")[0].partition(":")[0])
     return "" if stamps is None or name.startswith("/tf") else f" at {stamps.rate:.3g} Hz"

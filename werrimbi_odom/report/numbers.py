@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers in words, in tables, and as JSON has them."""
+"""Formatting of numbers in sentences, tables and JSON."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 
 TIME_OF_DAY = 1e7
-"""Seconds that no clock shows that began with a drive, or with its robot."""
+"""Smallest time of a clock that shows the time of day [s]; clocks since a start are below it."""
 
 
 def from_start(started: float, *times: float) -> tuple[float, ...]:
-    """Times as they are told [s]: since a run's first tick, if its clock shows the time of day."""
+    """Times as reported [s]: since a run's first tick, if its clock shows the time of day."""
     return tuple(time - started for time in times) if started > TIME_OF_DAY else times
 
 
 def length(value: float) -> str:
-    """Metres, in the unit that reads best."""
+    """A length [m] in m or mm."""
     if not math.isfinite(value):
         return "-"
     millimetres = 1e3 * value
@@ -32,19 +32,19 @@ def length(value: float) -> str:
 
 
 def two_digits(value: float) -> str:
-    """A number of any size to two digits, without a power of ten below a million."""
+    """A number rounded to two digits, without an exponent below a million."""
     return f"{float(f'{value:.2g}'):g}"
 
 
 def error_words(value: float, unit: str) -> str:
-    """An error of legs, in the unit that reads best: of position [m], or of heading [rad]."""
+    """A leg error: of position [m] in m or mm, or of heading [rad] in degrees."""
     if unit != "rad":
         return length(value)
     return f"{math.degrees(value):.2f}°" if math.isfinite(value) else "-"
 
 
 def with_std(value: float, std: float) -> str:
-    """Value and standard deviation, to the two digits that this leaves."""
+    """Value and standard deviation, with two digits of the latter."""
     if not math.isfinite(value):
         return "-"
     if not (math.isfinite(std) and std > 0.0):
@@ -57,9 +57,9 @@ def with_std(value: float, std: float) -> str:
 
 
 def scaled_with_std(value: float, std: float, unit: str = "") -> str:
-    """Value, standard deviation and unit, with a power of ten where the value is small or large.
+    """Value, standard deviation and unit, with an exponent if the value is small or large.
 
-    The value alone where there is no standard deviation: zero, infinite, or not a number.
+    Only the value, if the standard deviation is zero, infinite, or NaN.
     """
     behind = f" {unit}" if unit else ""
     if not 0.0 < std < math.inf:
@@ -75,14 +75,14 @@ def scaled_with_std(value: float, std: float, unit: str = "") -> str:
 
 
 _SMALLER = {"m": ("mm", 1e3), "s": ("ms", 1e3), "m/m": ("mm/m", 1e3), "m/s": ("mm/s", 1e3)}
-"""Units that read better small, and how many of them there are in one."""
+"""Smaller units, and the factors to them."""
 
 SMALL = 0.1
-"""Below it a value reads better in the smaller unit."""
+"""Values below it are shown in the smaller unit."""
 
 
 def in_unit(value: float, std: float, unit: str) -> tuple[str, str]:
-    """Value and standard deviation, and the unit in which they read best."""
+    """Value with standard deviation, and the more readable unit."""
     small, factor = _SMALLER.get(unit, (unit, 1.0))
     if not abs(value) < SMALL:
         small, factor = unit, 1.0
@@ -90,14 +90,14 @@ def in_unit(value: float, std: float, unit: str) -> tuple[str, str]:
 
 
 def quantity(value: float, std: float, unit: str) -> str:
-    """Value, standard deviation and unit; an angle in degrees as well."""
+    """Value, standard deviation and unit; an angle also in degrees."""
     text, small = in_unit(value, std, unit)
     angle = f", {math.degrees(value):.3g}°" if unit == "rad" and math.isfinite(value) else ""
     return f"{text} {small}".rstrip() + angle
 
 
 def chance_words(p_value: float | None) -> str:
-    """How often chance would do the same; None: nobody asked."""
+    """A p-value in words; None if it was not tested."""
     if p_value is None:
         return "not tested: so large that it is seen without a test"
     if p_value < 1e-12:
@@ -110,7 +110,7 @@ def chance_words(p_value: float | None) -> str:
 
 
 def p_words(p_value: float | None) -> str:
-    """For a table."""
+    """A p-value for a table."""
     if p_value is None:
         return "not tested"
     if p_value >= 0.995:
@@ -121,12 +121,12 @@ def p_words(p_value: float | None) -> str:
 
 
 def listed(words: Sequence[str], last: str = "and") -> str:
-    """a, b and c."""
+    """Enumeration: a, b and c."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
 def plain(value: Any) -> Any:
-    """Values that JSON has; null for what is not finite, text for a path."""
+    """Values as in JSON; null for non-finite numbers, text for a path."""
     if isinstance(value, Mapping):
         return {key: plain(part) for key, part in value.items()}
     if isinstance(value, (list, tuple)):
@@ -139,12 +139,12 @@ def plain(value: Any) -> Any:
 
 
 def picked(item: object, names: str) -> dict[str, Any]:
-    """Some of its attributes for JSON by name, KEY:ATTRIBUTE under another one; paths are text."""
+    """Selected attributes for JSON; KEY:ATTRIBUTE renames one; paths become text."""
     pairs = (name.partition(":") for name in names.split())
     values = {key: attrgetter(attribute or key)(item) for key, _, attribute in pairs}
     return {key: str(each) if isinstance(each, Path) else each for key, each in values.items()}
 
 
 def counted(number: int, word: str) -> str:
-    """1 leg, 2 legs."""
+    """A count with its noun: 1 leg, 2 legs."""
     return f"{number} {word}{'' if number == 1 else 's'}"

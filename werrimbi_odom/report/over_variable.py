@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An error over one variable, as measured: of legs, over a wheel's turn, before and after."""
+"""Figures of an error over one variable: leg errors, wheel errors over a turn, before and after."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from werrimbi_odom.report.style import Figure
 WHEEL_ANGLES = ("left wheel's angle [°]", "right wheel's angle [°]")
 
 _MOST_RUNS = 6
-"""Of which a wheel's angle is drawn."""
+"""Most runs in the figure of a wheel's angle."""
 
-_FEWEST = 6  # parts of a turn, that a wave is laid through
+_FEWEST = 6  # least number of bins of a turn for the fit of a sine
 
 _LOOKS = (
     (style.BLUE, "solid", "circle"),
@@ -46,7 +46,7 @@ def _bars(std: Floats, colour: str, thickness: float = 2, width: float = 5) -> d
 
 
 def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) -> Figure:
-    """Zero is a line; `turn`: over one turn, in degrees."""
+    """Axes with a line at zero; with `turn`, an axis of one turn in degrees."""
     figure.add_hline(y=0.0, line={"color": style.GREY, "width": 1})
     figure.update_xaxes(title=variable, **({"dtick": 45, "range": [0, 360]} if turn else {}))
     figure.update_yaxes(title=error)
@@ -54,7 +54,7 @@ def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) 
 
 
 def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
-    """Error of a wheel's travel, in mm for each metre rolled, over its turn; a wave a run."""
+    """Error of a wheel's travel in mm per metre over its angle, with a sine for each run."""
     side = -1 if variable == WHEEL_ANGLES[0] else 1
     word = "left" if side < 0 else "right"
     figure = style.blank()
@@ -103,7 +103,7 @@ def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
 
 
 def variables_of(comparison: Comparison) -> list[str]:
-    """What errors can be drawn against, those that they go with most surely first."""
+    """Variables for the figures, the most significant first."""
     varied = [item.name for item in comparison.variables]
     sure = {item.name: min(item.p_values.values()) for item in comparison.variables}
     ordered = sorted(varied, key=lambda name: sure[name] if sure[name] < 1e-4 else 1.0)
@@ -111,7 +111,7 @@ def variables_of(comparison: Comparison) -> list[str]:
 
 
 def error_against_figure(comparison: Comparison, variable: str) -> Figure:
-    """Errors of the legs over one variable: each leg a dot, means of equal parts with error bars.
+    """Leg errors over one variable: a dot for each leg, and bin means with error bars.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
 
 
 def _range(figure: Figure, values: Floats, place: int) -> None:
-    """Most of the points; the few far out may be zoomed to."""
+    """Axis range with most of the points; outliers are outside."""
     if values.size == 0:
         return
     low, high = np.quantile(values, [0.005, 0.995]).tolist()
@@ -187,7 +187,7 @@ def _range(figure: Figure, values: Floats, place: int) -> None:
 
 
 def before_after_figure(found: BeforeAfter) -> Figure:
-    """Error along the variable with error bars, before (and after)."""
+    """Error over the variable with error bars, before (and after)."""
     unit, factor = unit_of(found.cell.amount)
     scale = float(np.degrees(1.0)) if found.turns else 1.0
     figure = style.blank()

@@ -10,8 +10,8 @@
   const chosen = {};
   let dark = wanted.matches;
 
-  // The figures name their colours as on white; here each is exchanged for its like on black, and
-  // scales are turned round, so that much is what stands out from the page.
+  // Figures have the colours of the light theme. In the dark theme each is replaced, and scales are
+  // reversed, so that high values contrast with the page.
   const themed = (figure, isDark) => {
     let text = JSON.stringify(figure);
     if (isDark) {
@@ -26,8 +26,8 @@
     return copy;
   };
 
-  // On a telephone: panels below one another, scales below and not beside, long names in two
-  // lines, and no more height than equal scales can fill.
+  // On a phone: panels and colour bars below one another, long names in two lines, and no more
+  // height than equal scales can fill.
   const NARROW = 620;
   const fitted = (figure, room) => {
     const { data, layout } = figure;
@@ -103,14 +103,14 @@
     });
   };
 
-  // A screen reader is told what the figure shows by its label and by the tables; the hundreds of
-  // marks inside it say nothing.
+  // For screen readers the label and the tables have the content of the figure; its hundreds of
+  // marks are hidden.
   const hide = (place) => {
     for (const part of place.children) part.setAttribute("aria-hidden", "true");
     for (const part of place.querySelectorAll("[tabindex], a, button")) part.tabIndex = -1;
   };
 
-  // What is wider than the page can be moved by keys too.
+  // Elements that are wider than the page can also be scrolled by keys.
   const reach = () => {
     for (const part of document.querySelectorAll(".wide, pre")) {
       const wider = part.scrollWidth > part.clientWidth;
@@ -130,8 +130,8 @@
     return latest;
   };
 
-  // What is looked at comes first, the rest between other things; a later turn (the theme, a
-  // printer) leaves the earlier one where it is.
+  // Figures nearest to the viewport are drawn first, with other events handled in between; a later
+  // pass (theme, printing) abandons the earlier one.
   let turn = 0;
   let latest = Promise.resolve();
   const drawAll = async (mine, left) => {
@@ -219,7 +219,7 @@
     Plotly.relayout(place, change);
   };
 
-  // Paper is white, and narrower than a screen.
+  // Printing uses the light theme, and a narrower page.
   let before = null;
   window.addEventListener("beforeprint", () => {
     if (before !== null) return;

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A report as one file: verdict in words, figures with a sentence each, tables, how it was made.
+"""A report as one HTML file: verdict in words, figures with a sentence each, tables, provenance.
 
-The file holds everything it needs, the drawing program once, and forbids itself the network.
+The file includes all its resources, plotly once, and its content security policy forbids network
+access.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def drawing_program() -> Traversable:
-    """Where it is; 1.5 MB of JavaScript."""
+    """Resource with the 1.5 MB of JavaScript of plotly."""
     return files("werrimbi_odom.report") / "plotly_js" / "plotly-cartesian.min.js"
 
 
@@ -42,14 +43,14 @@ def write_page(page: Document, path: Path) -> None:
     Raises
     ------
     InputError
-        When it cannot be written.
+        If it cannot be written.
     """
     with replacing(path) as file:
         file.write(readable(page_html(page)))
 
 
 def page_html(page: Document) -> str:
-    """The whole page."""
+    """The whole page as HTML."""
     assets = files("werrimbi_odom.report")
     style = (assets / "page.css").read_text(encoding="utf-8")
     script = (assets / "page.js").read_text(encoding="utf-8")
@@ -111,7 +112,7 @@ def page_html(page: Document) -> str:
 
 
 def _headed(parts: Sequence[Part]) -> str:
-    """The verdict, its first paragraph as the headline."""
+    """The verdict, with its first paragraph as the headline."""
     first = parts[0]
     if not isinstance(first, Paragraph) or first.kind != "words":
         return as_html(parts)
@@ -120,7 +121,7 @@ def _headed(parts: Sequence[Part]) -> str:
 
 
 def as_html(parts: Iterable[Part]) -> str:
-    """Parts of a document; points together in lists."""
+    """Parts of a document as HTML; consecutive points form a list."""
     return "\n".join(html_of(list(group)) for html_of, group in groupby(parts, key=_written_by))
 
 
@@ -155,7 +156,7 @@ def _tables(parts: Sequence[Table]) -> str:
 
 
 def table_html(table: Table) -> str:
-    """A table that may be wider than the page."""
+    """A table in a container that scrolls if it is wider than the page."""
     words = table.words if table.heads else (1,)
 
     def cell(tag: str, at: int, text: str, scope: str = "") -> str:
@@ -181,7 +182,7 @@ def table_html(table: Table) -> str:
 
 
 def _lines(cell: str) -> str:
-    """Escaped; an indented line stays so."""
+    """Escaped text of a cell with its line breaks and indentation."""
     kept = (line.replace("  ", "\N{NO-BREAK SPACE}" * 3) for line in cell.splitlines())
     return "<br>".join(map(html.escape, kept))
 
@@ -190,7 +191,7 @@ _WITH_SPREAD = re.compile(r"\(?[-\d.]+ ± [\d.]+\)?(?:e-?\d+)?")
 
 
 def _inline(text: str) -> str:
-    """Escaped, with `commands` in their own type, and values on one line with their spread."""
+    """Escaped text with `commands` as code; values are not separated from their deviations."""
     coded = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text))
     return _WITH_SPREAD.sub(r'<span class="value">\g<0></span>', coded)
 
@@ -234,7 +235,7 @@ def _made(made: Mapping[str, str]) -> str:
 
 
 def own_version() -> str:
-    """Of this package; "not installed" where it runs from a checkout."""
+    """Version of this package; "not installed" in a checkout."""
     try:
         return version("werrimbi_odom")
     except PackageNotFoundError:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The path on the floor with its growing 95 % ellipses, against what was measured."""
+"""The path on the floor with its 95 % ellipses, and the measured path."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, Figure, blank,
 Floats = NDArray[np.float64]
 
 CHI2_95_OF_2 = 5.991464547107979
-"""95 % quantile of chi-squared with two degrees of freedom: the ellipse's squared radius in σ."""
+"""95 % quantile of chi-squared with two degrees of freedom: the squared radius in σ."""
 
 
 @dataclass(frozen=True, slots=True)
 class PathDrawing:
-    """What to draw: positions [m], their covariances [m²] and, if measured, the reference."""
+    """Data to draw: positions [m], their covariances [m²] and, if measured, the reference."""
 
     x: Floats
     y: Floats
@@ -32,13 +32,13 @@ class PathDrawing:
     title: str = ""
     subtitle: str = ""
     magnified: float | None = None
-    """How many times larger than they are to draw the ellipses; None: so that they are seen."""
+    """Scale factor of the drawn ellipses; None to choose one that makes them visible."""
 
 
 def ellipse(
     x: float, y: float, covariance: Floats, *, magnified: float = 1.0, points: int = 73
 ) -> tuple[Floats, Floats]:
-    """Outline of the 95 % ellipse about a point, [m]."""
+    """Outline of the 95 % ellipse about a point [m]."""
     variances, axes = np.linalg.eigh(covariance)
     radii = magnified * np.sqrt(np.maximum(variances, 0.0) * CHI2_95_OF_2)
     angle = np.linspace(0.0, 2.0 * np.pi, points)
@@ -47,14 +47,14 @@ def ellipse(
 
 
 def spread_along_path(x: Floats, y: Floats, count: int) -> NDArray[np.intp]:
-    """Indices of `count` points at equal distances of path, the last one among them."""
+    """Indices of `count` points at equal distances along a path, including the last one."""
     travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     wanted = np.linspace(0.0, travelled[-1], count + 1)[1:]
     return np.unique(np.minimum(np.searchsorted(travelled, wanted), x.size - 1))
 
 
 def magnification(drawing: PathDrawing) -> float:
-    """How many times larger ellipses must be drawn to be seen: 1, 2, 5, 10, 20 or 50."""
+    """Scale factor that makes ellipses visible: 1, 2, 5, 10, 20 or 50."""
     extent = max(float(np.ptp(drawing.x)), float(np.ptp(drawing.y)))
     largest = np.sqrt(np.max(np.linalg.eigvalsh(drawing.covariance), initial=0.0) * CHI2_95_OF_2)
     if not largest > 0.0:
@@ -64,7 +64,7 @@ def magnification(drawing: PathDrawing) -> float:
 
 
 def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
-    """The figure, interactive; equal scales on both axes."""
+    """The interactive figure; equal scales on both axes."""
     figure = blank()
     magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
@@ -119,7 +119,7 @@ def add_path(
     said: str = "",
     **more: object,
 ) -> None:
-    """A way over the floor; under the pointer it says what it is and where."""
+    """Add a path on the floor, with its name and position as hover text."""
     figure.add_scatter(
         x=x, y=y, mode="lines", name=name, line=line, hovertemplate=(said or name) + _PLACE, **more
     )
@@ -128,7 +128,7 @@ def add_path(
 def add_mark(
     figure: Figure, at: complex, name: str, marker: Mapping[str, Any], **more: object
 ) -> None:
-    """One place (x + iy) on it: a start, an end."""
+    """Add a mark at one point (x + iy), such as a start or an end."""
     x, y = [float(at.real)], [float(at.imag)]
     figure.add_scatter(
         x=x, y=y, mode="markers", name=name, marker=marker, hovertemplate=name + _PLACE, **more

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences that several verbs say alike: what is left out or suspect, how large the sizes are."""
+"""Sentences shared by several verbs: what is left out or suspect, and sizes in mm."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import from_start, picked, with_std
 
-_MOST = 5  # stretches that are told one by one
-_TOLD = 3  # the same, of a reference that is suspect
+_MOST = 5  # stretches that are reported one by one
+_TOLD = 3  # the same, for a suspect reference
 
 
 def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
-    """A sentence for each of a few stretches, and one for what is beyond; none for nothing.
+    """A sentence for each of the first stretches, and one for the rest; empty for none.
 
-    Jumps of the reference are told by how many legs they spoil.
+    Jumps of the reference are not included; see `jumps_words`.
     """
     runs = {part.run for part in parts}
     silent = [part for part in parts if part.why != "reference"]
@@ -44,7 +44,7 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
 
 
 def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
-    """On how many legs the reference jumped; none where it did not."""
+    """Number of legs on which the reference jumped; empty for none."""
     count = sum(part.why == "reference" for part in parts)
     if not count:
         return []
@@ -53,7 +53,7 @@ def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
 
 
 def left_out_json(parts: Sequence[LeftOut]) -> list[dict[str, Any]]:
-    """Field for field; times in the run's own clock [s]."""
+    """Fields of each stretch; times in the run's own clock [s]."""
     return [picked(part, "run from_s:begin to_s:end why words") for part in parts]
 
 
@@ -61,12 +61,14 @@ _NAMES = dict(zip(MULTIPLIERS, ("wheel base", "left wheel", "right wheel"), stri
 
 
 def sizes_words(given: Robot, found: Mapping[str, tuple[float, float | None]]) -> str:
-    """All three in a sentence without its stop; "" where none differs from the given robot's.
+    """Changed sizes in a sentence without its full stop; "" if all are as in the given robot.
 
     Parameters
     ----------
-    found
-        Multipliers by name, with their standard deviations where they are known.
+    given : Robot
+        Robot to compare with.
+    found : mapping of str to (float, float or None)
+        Multipliers by name, with their standard deviations if known.
     """
     moved = {name for name in MULTIPLIERS if found[name][0] != getattr(given, name)}
     if not moved:
@@ -81,7 +83,7 @@ def sizes_words(given: Robot, found: Mapping[str, tuple[float, float | None]]) -
 
 
 def _moved(name: str, given: Robot, value: float, std: float | None) -> str:
-    """One size: by how much it is larger or smaller, and how long that is."""
+    """One size: its relative change, and its length."""
     ratio = value / float(getattr(given, name))
     nominal = given.wheel_separation if name == MULTIPLIERS[0] else given.wheel_radius
     what = "" if name == MULTIPLIERS[0] else "radius "
@@ -98,7 +100,7 @@ def _millimetres(metres: float) -> str:
 
 
 def remark_words(remark: ReferenceRemark) -> str:
-    """A sentence or two: what is odd, where, and what it may be."""
+    """A sentence or two on an anomaly of the reference: what, where, and possible causes."""
     if remark.what == "short":
         elsewhere = ""
         if abs(remark.usual) > 0.05:
@@ -138,7 +140,7 @@ def remark_words(remark: ReferenceRemark) -> str:
 
 
 def remarks_json(remarks: Sequence[ReferenceRemark]) -> list[dict[str, Any]]:
-    """Field for field; sizes are shares of the path, or angles [rad]."""
+    """Fields of each remark; sizes are shares of the path, or angles [rad]."""
     return [
         {
             **picked(remark, "what size"),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `werrimbi odom` tells of a run besides its rows: distance, pieces, last pose, its error."""
+"""Report of `werrimbi odom` on a run: distance, pieces, last pose, and its error."""
 
 from __future__ import annotations
 
@@ -25,61 +25,61 @@ from werrimbi_odom.report.path_figure import PathDrawing, path_figure, spread_al
 
 KINDS = ("line", "arc", "spin")
 _NO_MOTION = 1e-3
-"""Travel [m] or turn [rad] that is not worth a remark."""
+"""Travel [m] or turn [rad] below which motion is not reported."""
 
 
 @dataclass(frozen=True)
 class EndError:
-    """Odometry against the last pose that the reference measured; NaN where it did not."""
+    """Error of odometry at the last measured pose of the reference; NaN if not measured."""
 
     time: float
-    """Of that pose [s]."""
+    """Time of that pose [s]."""
     measured: Pose
     position: float
-    """[m]"""
+    """Position error [m]."""
     heading: float
-    """Measured minus odometry [rad]."""
+    """Heading error, measured minus odometry [rad]."""
     position_sigmas: float
-    """In standard deviations of the odometry, in the direction of the error."""
+    """Mahalanobis distance of the position error."""
     heading_sigmas: float
 
 
 @dataclass(frozen=True)
 class Reckoning:
-    """A run, dead reckoned, and everything that is told of it."""
+    """A dead-reckoned run, with its results."""
 
     run: Run
     start: StartPose
     driven: Trajectory
     shown: ShownPath
-    """What the reference is predicted to show of it."""
+    """Predicted output of the reference along the path."""
     end_error: EndError | None
     remarks: tuple[str, ...]
 
     @property
     def distance(self) -> float:
-        """Travel of the axle's midpoint, both directions counted [m]."""
+        """Travel of the axle's midpoint, forwards and backwards added [m]."""
         return math.fsum(length for kind in self._pieces.values() for length, _ in kind)
 
     @property
     def duration(self) -> float:
-        """From row to row that could be used, without the steps of a clock set back [s]."""
+        """Time between used rows, without steps of a clock that was set back [s]."""
         return float(np.sum(np.maximum(np.diff(self.driven.time), 0.0)))
 
     @property
     def final(self) -> Pose:
-        """The last pose; yaw within half a turn."""
+        """The last pose; yaw wrapped to half a turn."""
         driven = self.driven
         return Pose(float(driven.x[-1]), float(driven.y[-1]), wrap(float(driven.yaw[-1])))
 
     @property
     def covariance(self) -> PoseCovariance[float]:
-        """Of the last pose."""
+        """Covariance of the last pose."""
         return PoseCovariance(*(float(entry[-1]) for entry in self.driven.covariance))
 
     @property
     def sigmas(self) -> tuple[float, float, float]:
-        """1σ along the heading and across it [m], and of the heading [rad]."""
+        """Standard deviations along the heading and across it [m], and of the heading [rad]."""
         cos, sin = math.cos(self.final.yaw), math.sin(self.final.yaw)
         p = self.covariance
         along = cos * cos * p.xx + 2.0 * cos * sin * p.xy + sin * sin * p.yy
@@ -89,14 +89,14 @@ class Reckoning:
 
     @cached_property
     def _pieces(self) -> dict[str, list[tuple[float, float]]]:
-        """Length [m] and turn [rad] of every piece, without their signs, by kind."""
+        """Absolute length [m] and turn [rad] of every piece, by kind."""
         found: dict[str, list[tuple[float, float]]] = {kind: [] for kind in KINDS}
         for piece in self.driven.pieces:
             found[piece.kind].append((abs(piece.length), abs(piece.turn)))
         return found
 
     def as_json(self) -> dict[str, Any]:
-        """For --json."""
+        """Complete result for --json."""
         return {
             **picked(self, "run:run.path distance_m:distance duration_s:duration"),
             "pieces": {
@@ -120,7 +120,7 @@ class Reckoning:
         }
 
     def rows(self) -> Iterator[tuple[str, str]]:
-        """For the table on the terminal."""
+        """Rows of the table on the terminal."""
         yield "distance", f"{self.distance:.3f} m in {self.duration:.1f} s"
         counts = (counted(len(pieces), kind) for kind, pieces in self._pieces.items())
         yield "pieces", ", ".join(counts)
@@ -144,14 +144,14 @@ class Reckoning:
 def reckoning_of(
     run: Run, start: StartPose, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...] = ()
 ) -> Reckoning:
-    """Work out the figures of a run that was dead reckoned from `start`.
+    """Results of a run that was dead reckoned from `start`.
 
     Parameters
     ----------
     shown : ShownPath
-        What the reference is predicted to show.
+        Predicted output of the reference.
     learnt : tuple of str
-        Remarks on what was learnt from the reference.
+        Remarks on what was estimated from the reference.
     """
     reference, remarks, end = run.reference, [*learnt], None
     if reference is not None:
@@ -171,7 +171,7 @@ def reckoning_of(
 
 
 def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | None:
-    """The last measured row while there were ticks; where there is none, one after their end."""
+    """The last measured row during the ticks; if there is none, one after their end."""
     time = reference.time[known]
     if known.size < 2 or time[-1] < driven.time[0] or time[0] > driven.time[-1]:
         return None
@@ -182,7 +182,7 @@ def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | Non
 def _end_error(
     reference: Reference, start: Pose, driven: ShownPath, first: int, last: int
 ) -> EndError:
-    """Relative to the reference's first row, so that a late reference is judged fairly."""
+    """Error relative to the first row of the reference, which may start late."""
     measured = Pose(*(float(part[last]) for part in (reference.x, reference.y, reference.yaw)))
     moved = between(_pose_at(driven, reference.time[first]), _pose_at(driven, reference.time[last]))
     reckoned = compose(start, moved)
@@ -205,7 +205,7 @@ def _pose_at(path: Trajectory | ShownPath, time: float) -> Pose:
 
 
 def _sigmas(error: Floats, covariance: Floats) -> float:
-    """Mahalanobis distance; NaN where something was not measured or the odometry has no spread."""
+    """Mahalanobis distance; NaN for missing measurements or a singular covariance."""
     if not np.isfinite(error).all():
         return math.nan
     spread, axes = np.linalg.eigh(covariance)
@@ -215,7 +215,7 @@ def _sigmas(error: Floats, covariance: Floats) -> float:
 
 
 def _late_or_early(reference: Reference, known: Any, driven: Trajectory) -> Iterator[str]:
-    """Remarks where the first measured pose is not that of the first row of ticks."""
+    """Remarks if the first measured pose is not at the first row of ticks."""
     begin = float(reference.time[known[0]])
     before = between(_pose_at(driven, driven.time[0]), _pose_at(driven, begin))
     if max(math.hypot(before.x, before.y), abs(before.yaw)) > _NO_MOTION:
@@ -283,11 +283,11 @@ def _end_json(end: EndError | None) -> dict[str, Any]:
     }
 
 
-_POINTS = 2000  # of the path, that are drawn
+_POINTS = 2000  # points of the drawn path
 
 
 def document_of(found: Reckoning, robot: Path) -> Document:
-    """Everything that is told; `robot`: its file."""
+    """The complete report; `robot` is the path of the robot file."""
     title = f"{found.run.name}: wheel odometry"
     table = Table(f"{title} of {robot}", (), list(found.rows()))
     return Document(title=title, words=[table], draw=lambda: [_path(found)])

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reports and figures to files: pages always, pictures where a browser is there to draw them.
+"""Save reports and figures: pages always, pictures if a browser is installed to draw them.
 
-Where there is none, matplotlib draws lines, marks and bars of a figure; heat maps it leaves out.
+Without one, matplotlib draws lines, marks and bars of a figure, but no heat maps.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from werrimbi_odom.report.page import drawing_program, write_page
 from werrimbi_odom.report.style import KEPT_HERE, Figure
 
 PAGES, PICTURES = (".html", ".htm"), (".pdf", ".png")
-"""How reports end."""
+"""Suffixes of reports."""
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
@@ -36,7 +36,7 @@ def find_browser() -> str | None:
 
 
 def save_page(figure: Figure, path: Path) -> None:
-    """One self-contained interactive page; opens without a network."""
+    """Save one self-contained interactive page, which opens without a network."""
     path.parent.mkdir(parents=True, exist_ok=True)
     page = figure.to_html(include_plotlyjs=False, full_html=True, config=dict(KEPT_HERE))
     program = drawing_program().read_text(encoding="utf-8")
@@ -45,7 +45,7 @@ def save_page(figure: Figure, path: Path) -> None:
 
 
 def save_png(figure: Figure, path: Path, *, scale: float = 1.5) -> bool:
-    """A PNG; False, and nothing written, where no browser is installed (kaleido draws with one)."""
+    """Save a PNG; False without a browser, which kaleido needs, and then nothing is written."""
     if find_browser() is None:
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -56,14 +56,14 @@ def save_png(figure: Figure, path: Path, *, scale: float = 1.5) -> bool:
 
 
 def _draw(pictures: Iterable[tuple[Figure, Path, Mapping[str, object]]]) -> None:
-    """Figures to files by one browser, each with options of its own."""
+    """Draw figures to files with one browser, each with its own options."""
     import kaleido
 
     drawn = [
         {"fig": figure, "path": path, "opts": {"format": path.suffix[1:].lower(), **options}}
         for figure, path, options in pictures
     ]
-    # Its browser's first words may be cut short; it logs that with a traceback and goes on well.
+    # Kaleido logs a harmless traceback if the browser's first output is truncated.
     logging.disable(logging.CRITICAL)
     try:
         kaleido.write_fig_from_object_sync(drawn, kopts={"path": find_browser()})
@@ -72,12 +72,12 @@ def _draw(pictures: Iterable[tuple[Figure, Path, Mapping[str, object]]]) -> None
 
 
 def refuse_report(path: Path) -> None:
-    """What can be known before there is anything to report.
+    """Check the path of a report before any work is done.
 
     Raises
     ------
     InputError
-        When no report has such an ending, or no browser is there to draw its pictures.
+        If the suffix is not one of a report, or no browser is installed for pictures.
     """
     kind = path.suffix.lower()
     if kind not in (*PAGES, *PICTURES):
@@ -90,15 +90,15 @@ def refuse_report(path: Path) -> None:
 
 
 def save_report(document: Document, path: Path) -> list[Path]:
-    """A report as a page (.html), or its main figures as pictures for a paper (.pdf, .png).
+    """Save a report as a page (.html), or its main figures as pictures for a paper (.pdf, .png).
 
-    Pictures are a file for each figure: the first has the name that was asked for, the others have
-    the figure's name added to it.
+    Each figure is a file of its own: the first has the requested name, the others have the key of
+    the figure appended.
 
     Raises
     ------
     InputError
-        When a file cannot be written, its ending is another one, or no browser is installed.
+        If a file cannot be written, its suffix is another one, or no browser is installed.
     """
     refuse_report(path)
     if path.suffix.lower() in PAGES:
@@ -116,12 +116,12 @@ def save_report(document: Document, path: Path) -> list[Path]:
 
 
 def save_pictures(pictures: Sequence[tuple[Figure, Path]], *, scale: float = 2.0) -> None:
-    """Figures as they are on white paper, drawn by one browser; .pdf is made of lines, not dots.
+    """Save figures in their light colours, drawn by one browser; .pdf has vector graphics.
 
     Raises
     ------
     InputError
-        When a file cannot be written.
+        If a file cannot be written.
     """
     with tempfile.TemporaryDirectory(prefix="werrimbi-") as folder:
         drawn = [
@@ -144,11 +144,11 @@ def save_pictures(pictures: Sequence[tuple[Figure, Path]], *, scale: float = 2.0
 _DASHES = {"dash": "--", "dot": ":", "dashdot": "-."}
 _MARKS = {"circle": "o", "square": "s", "x": "x", "diamond": "D"}
 _INCH = 100.0
-"""Pixels of plotly's sizes."""
+"""Pixels per inch for plotly's sizes."""
 
 
 def save_simple_png(figure: Figure, path: Path) -> bool:
-    """A PNG; False, and nothing written, where matplotlib is not installed."""
+    """Save a PNG with matplotlib; False if it is not installed, and then nothing is written."""
     if find_spec("matplotlib") is None:
         return False
     from matplotlib.figure import Figure as Canvas
@@ -182,7 +182,7 @@ def save_simple_png(figure: Figure, path: Path) -> bool:
 
 
 def _bars(axes: Any, trace: Any, number: int, count: int) -> None:
-    """One of `count` bars at each name."""
+    """Draw one of `count` series of bars."""
     width = 0.65 / count
     places = np.arange(len(trace.x)) + (number - 0.5 * (count - 1)) * width
     drawn = axes.bar(places, trace.y, width, color=trace.marker.color, label=trace.name)
@@ -192,7 +192,7 @@ def _bars(axes: Any, trace: Any, number: int, count: int) -> None:
 
 
 def _scatter(axes: Any, trace: Any) -> None:
-    """A line, an area or marks; in the legend unless plotly leaves it out."""
+    """Draw a line, an area or marks; in the legend unless plotly excludes them."""
     label = trace.name if trace.showlegend is not False else None
     x, y = (
         np.array([np.nan if value is None else value for value in part], dtype=np.float64)
@@ -221,6 +221,6 @@ def _line(line: Any) -> dict[str, Any]:
 
 
 def _said(text: str | None) -> str:
-    """Text without plotly's marks."""
+    """Text without plotly's markup."""
     plain = re.sub(r"<[^>]*>", "", (text or "").replace("<br>", "\n"))
     return plain.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")

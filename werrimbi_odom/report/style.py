@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How all figures look: colours that the colour-blind tell apart, a legend, and how many points.
+"""Style of all figures: a palette for colour-blind readers, a legend, and limits on points.
 
-Fewer points are drawn, never fewer counted: what is left out is not seen at any usual size.
+Only the number of drawn points is reduced; statistics are of all data.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure as Figure
-else:  # plotly is imported when something is drawn: a robot may not have it
+else:  # plotly is imported when a figure is drawn, because a robot may not have it
     Figure = Any
 
-# Okabe and Ito's palette.
+# Palette of Okabe and Ito.
 BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#6B6B6B"
 INK, FAINT, PAPER = "#1B1F24", "#D9DCE0", "#FFFFFF"
-"""Text, grid lines, and what lies behind them, on white."""
+"""Text, grid lines, and background in the light theme."""
 
 IN_THE_DARK: Mapping[str, str] = {
     BLUE: "#56B4E9",
@@ -32,10 +32,10 @@ IN_THE_DARK: Mapping[str, str] = {
     FAINT: "#3A4048",
     PAPER: "#15181C",
 }
-"""What each colour becomes on a dark page; pages exchange them by name."""
+"""Replacements of colours in the dark theme; pages replace them by name."""
 
 KEPT_HERE: Mapping[str, object] = {"showSendToCloud": False, "plotlyServerURL": ""}
-"""Settings of plotly, which from version 4 on offers to upload a figure: it stays where it is."""
+"""Settings that disable the upload of figures, which plotly offers from version 4 on."""
 
 RISING = (
     (0.0, "#F3E9A6"),
@@ -45,12 +45,12 @@ RISING = (
     (0.8, "#5D3F63"),
     (1.0, "#1B1145"),
 )
-"""From little to much: even steps of lightness, so that it stays a scale in grey; yellow to violet
-is told apart with any kind of colour blindness. Pages turn it round in the dark."""
+"""Sequential colour scale with even steps of lightness, so that it is also legible in grey and with
+any kind of colour blindness. Pages reverse it in the dark theme."""
 
 
 def blank() -> Figure:
-    """A figure with nothing on it yet."""
+    """An empty figure."""
     from plotly.graph_objects import Figure as Blank
 
     return Blank()
@@ -59,14 +59,14 @@ def blank() -> Figure:
 def from_above(
     figure: Figure, height: int, x: str = "x [m]", y: str = "y [m]", **axes: object
 ) -> Figure:
-    """A figure of the floor, for a page: equal scales on both axes."""
+    """A figure of the floor for a page: equal scales on both axes."""
     figure.update_xaxes(title=x, **axes)
     figure.update_yaxes(title=y, scaleanchor="x", scaleratio=1, **axes)
     return plain(figure, height=height)
 
 
 def coloured(figure: Figure, most: float, title: str, **bar: object) -> Figure:
-    """Colours from nothing to most, with a bar beside the figure that says what they mean."""
+    """Set the colour scale from zero to `most`, with a colour bar."""
     bar = {"title": {"text": title}, "thickness": 14, **bar}
     scale = [list(stop) for stop in RISING]
     return figure.update_layout(
@@ -75,12 +75,12 @@ def coloured(figure: Figure, most: float, title: str, **bar: object) -> Figure:
 
 
 def paled(colour: str, share: float) -> str:
-    """A colour with an opacity from 0 to 1; the page still knows its name in the dark."""
+    """A colour with an opacity from 0 to 1; pages still recognise it in the dark theme."""
     return f"{colour}{round(255 * share):02X}"
 
 
 def styled(figure: Figure, title: str, subtitle: str, *, width: int, height: int) -> Figure:
-    """The figure with heading, legend and size; equal scales on both axes."""
+    """Figure with heading, legend and size; equal scales on both axes."""
     heading = f"<b>{title}</b>"
     if subtitle:
         heading += f"<br><span style='font-size:14px'>{subtitle}</span>"
@@ -98,7 +98,7 @@ def styled(figure: Figure, title: str, subtitle: str, *, width: int, height: int
 
 
 def plain(figure: Figure, *, height: int, legend: bool = True) -> Figure:
-    """A figure for a page: no heading (the page has it), as wide as its place, either theme."""
+    """Figure for a page: without heading, with the width of its container, for both themes."""
     figure.update_layout(
         template="none",
         font={"size": 14, "color": INK, "family": "system-ui, 'Segoe UI', sans-serif"},
@@ -121,24 +121,24 @@ def plain(figure: Figure, *, height: int, legend: bool = True) -> Figure:
 
 
 def escaped(text: str) -> str:
-    """A name from a record, safe in a figure's texts, which know some HTML."""
+    """A name from a record, escaped for a figure's texts, which interpret some HTML."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 MOST = 4000
-"""Points of a figure's lines, about."""
+"""Approximate limit of points in the lines of a figure."""
 
 MARKS = 1000
-"""Marks of a picture, at the most: each is an element of the page, dear where a point is cheap."""
+"""Limit of marks in a figure: each is an element of the page and costs more than a point."""
 
 FEWEST = 20
-"""Points of one line of very many, so that it still has a shape."""
+"""Least number of points of one of many lines, so that its shape remains."""
 
 
 def along_path(places: NDArray[np.complex128], most: int = MOST) -> NDArray[np.intp]:
-    """Indices of points of a path (x + iy) at about equal distances; ends and gaps are kept.
+    """Indices of points of a path (x + iy) at about equal distances, with all ends and gaps.
 
-    A robot that stands still fills a record with one point; equal times would waste them there.
+    Equal times would waste points while the robot stands still.
     """
     if places.size <= most:
         return np.arange(places.size)
@@ -152,7 +152,7 @@ def along_path(places: NDArray[np.complex128], most: int = MOST) -> NDArray[np.i
 
 
 def spread_and_extremes(values: NDArray[np.float64], most: int = MARKS) -> NDArray[np.intp]:
-    """Indices of rows to draw as points: the largest of them in size, and of the rest every few."""
+    """Indices of rows to draw: the largest absolute values, and an even selection of the rest."""
     if values.size <= most:
         return np.arange(values.size)
     size = np.nan_to_num(np.abs(values))
@@ -162,5 +162,5 @@ def spread_and_extremes(values: NDArray[np.float64], most: int = MARKS) -> NDArr
 
 
 def small(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """As it is drawn: seven digits are more than a screen has, in half the bytes."""
+    """Values for drawing in single precision, which halves the size of the file."""
     return np.asarray(values, dtype=np.float32)

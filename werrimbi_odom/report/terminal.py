@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A document as it is printed, in 80 columns. Without rich, which a robot may not have."""
+"""A document as text of 80 columns, without rich, which a robot may not have."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _COMMAND = "    "
 
 
 def printed(document: Document) -> str:
-    """Words and tables."""
+    """Words and tables as text."""
     return as_text([*document.words, *document.tables])
 
 
 def as_text(parts: Iterable[Part]) -> str:
-    """Paragraphs on lines of their own, tables between empty lines."""
+    """Parts as text, with empty lines around tables."""
     lines: list[str] = []
     after_table = False
     for part in parts:
@@ -56,7 +56,7 @@ def _filled(text: str, first: str, others: str, width: int = _WIDTH) -> str:
 
 
 def _columns(table: Table) -> list[str]:
-    """First column to the left, the others to the right, two blanks between."""
+    """Table with the first column left aligned, the others right aligned."""
     widths = [max(map(len, column)) for column in zip(table.heads, *table.rows, strict=True)]
     lines = []
     for row in (table.heads, *table.rows):
@@ -67,7 +67,7 @@ def _columns(table: Table) -> list[str]:
 
 
 def _pairs(table: Table) -> list[str]:
-    """Names to the left, what belongs to them to the right, filled."""
+    """Names on the left, their descriptions on the right, wrapped."""
     width = max(len(name) for name, _ in table.rows) + 4
     return [
         _filled(words, f"  {name}".ljust(width), " " * width, max(_WIDTH, width + 40))

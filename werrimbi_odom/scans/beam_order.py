@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""When in a turn each beam was seen: as the messages say, or otherwise, if the walls say so.
+"""Order in which the beams of a turn were measured: as stated, unless the scans contradict it.
 
-A lidar that turns clockwise fills its arrays from the end, and some of their drivers state the time
-between beams as if it did not (a TurtleBot3's LDS-02 among them). Others leave the time between
-beams at zero, as if the lidar saw all at once (some of a Neato's). Deskewed wrongly, a scan of a
-robot that turns is bent: its echoes lie farther from the walls. So all ways are matched side by
-side until the walls have told.
+A lidar that turns clockwise fills its arrays from the end, and some of their drivers state a
+positive time between beams nevertheless (a TurtleBot3's LDS-02 among them). Others state zero, as
+if all beams were simultaneous (some of a Neato's). A wrong order deskews the scan of a turning
+robot wrongly, and its echoes lie farther from the walls. So all orders are matched in parallel
+until a sign test decides.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from werrimbi_odom.scans.path import INTERVALS, USUAL, ScanMatcher, ScanPath
 from werrimbi_odom.scans.sweep import Sweep
 
 Order = Literal["stated", "first to last", "last to first"]
-"""The order in which the beams of a turn were seen."""
+"""Order in which the beams of a turn were measured."""
 
 
 class AnyOrder:
-    """Takes scans in the order of time, as a `ScanMatcher` does."""
+    """A `ScanMatcher` that estimates the order of the beams; takes scans in the order of time."""
 
     def __init__(self) -> None:
         self._matcher = ScanMatcher()
@@ -35,12 +35,12 @@ class AnyOrder:
         self._last = np.nan
         self._asked = 0
         self.order: Order = "stated"
-        """As it is known so far."""
+        """The order as decided so far."""
         self.at_once = False
-        """Whether the messages state all beams of a turn at one instant."""
+        """Whether the messages give all beams of a turn the same time."""
 
     def take(self, sweep: Sweep) -> None:
-        """Take a scan, as `sweep_of` reads its message."""
+        """Take a scan, as `sweep_of` reads it from its message."""
         if self._others is None:
             self.at_once = sweep.duration == 0.0
             ways: tuple[Order, ...] = ("first to last",) if self.at_once else ()
@@ -56,11 +56,11 @@ class AnyOrder:
             self._decide(self._others)
 
     def path(self) -> ScanPath:
-        """The path of all scans that were taken; the last call of all."""
+        """The path of all scans taken; call it last."""
         return self._matcher.path()
 
     def _decide(self, others: dict[Order, ScanMatcher]) -> None:
-        """By the sign test: in how many scans the echoes lie nearer to the walls."""
+        """Decide by a sign test: in how many scans the echoes lie nearer to the walls."""
         both = set.intersection(*({*each.scatter} for each in (self._matcher, *others.values())))
         if len(both) < max(ORDER_FEWEST, self._asked + 1):
             return
@@ -77,7 +77,7 @@ class AnyOrder:
 
 
 def _seen(sweep: Sweep, order: Order, turn: float) -> Sweep:
-    """A sweep in another order; over a turn of so many seconds where it states none."""
+    """A sweep with another order of its beams; `turn` is its duration [s] if it states none."""
     if order == "stated":
         return sweep
     sign = -1.0 if order == "last to first" else 1.0

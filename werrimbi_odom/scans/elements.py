@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Line elements: what a cloud of echoes says of walls, smoothed so that no echo's noise is left.
+"""Line elements: local line fits to a cloud of echoes, to average out their noise.
 
-The nearest neighbour in a raw cloud is the one whose noise agrees with the echo's, and a match with
-it seems twice as good as it is. A line through all echoes about has no such choice.
+The nearest neighbour in a raw cloud tends to be the point with similar noise, so point-to-point
+residuals underestimate the noise by about half. A line through all echoes nearby has no such bias.
 """
 
 from __future__ import annotations
@@ -17,42 +17,42 @@ from scipy.spatial import cKDTree
 from werrimbi_odom.model.pose import Floats
 
 CELL = 0.05
-"""One element a cell of this size [m]."""
+"""Grid cell with one element each [m]."""
 REACH = 0.12
-"""Echoes within this distance of a cell's make its element [m] ..."""
+"""Echoes within this distance of a cell's mean are fitted by its element [m] ..."""
 BEAMS = 3.0
-"""... or within so many distances between beams: three neighbours on a side make a line ..."""
+"""... or within this many distances between beams: three neighbours on each side make a line ..."""
 MOST_REACH = 0.6
-"""... but not beyond this: what is farther away is another thing [m]."""
+"""... but not beyond this, where another object begins [m]."""
 FEWEST = 4
-"""Echoes of an element."""
+"""Least number of echoes of an element."""
 FLAT = 0.25
-"""Standard deviation across an element over that along it, above which it is no line but a corner,
-a chair's leg, a person."""
+"""Largest ratio of the standard deviations across and along an element: above it, it is a corner, a
+chair's leg or a person."""
 
 
 class Elements(NamedTuple):
-    """Lines; m of them."""
+    """Line elements; m of them."""
 
     centres: Floats
     """Shape (m, 2) [m]."""
     normals: Floats
-    """Unit vectors across, shape (m, 2)."""
+    """Unit normals, shape (m, 2)."""
     reach: Floats
-    """How far from its centre an element goes on, shape (m,) [m]."""
+    """Distance from its centre up to which an element is valid, shape (m,) [m]."""
     tree: cKDTree
-    """Of the centres."""
+    """k-d tree of the centres."""
 
 
 def line_elements(points: Floats, spacing: Floats) -> Elements | None:
-    """Line elements of a cloud; None where it has none.
+    """Fit line elements to a cloud of echoes; None if there are none.
 
     Parameters
     ----------
     points : ndarray, shape (n, 2)
         Echoes [m].
     spacing : ndarray, shape (n,)
-        Distance between neighbouring beams at each [m].
+        Distance between neighbouring beams at each echo [m].
     """
     if len(points) < FEWEST:
         return None
@@ -78,7 +78,7 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
 
 
 def _about(middles: Floats, reach: Floats, sums: Floats) -> Floats:
-    """Sums (6, m) over all cells within reach of each."""
+    """Sums over all cells within reach of each cell, shape (6, m)."""
     pairs = cKDTree(middles).query_pairs(float(reach.max()), output_type="ndarray")
     one, other = pairs.T
     apart = np.hypot(*(middles[one] - middles[other]).T)

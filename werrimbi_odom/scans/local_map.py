@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The last metres: echoes of the last key scans, and the line elements that they make."""
+"""Local map: echoes of the last key scans, and their line elements."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.elements import Elements, line_elements
 
 KEYS = 24
-"""Key scans that are kept: with 12 the poses wander a little more, with 40 no less."""
+"""Number of key scans: with 12 the poses drift a little more, with 40 no less."""
 FARTHER, TURNED = 0.10, 0.15
-"""Way [m] and turning [rad] after which a scan becomes a key scan."""
+"""Distance [m] and rotation [rad] after which a scan becomes a key scan."""
 AT_REST = 3
-"""So many scans after the last key scan, one more is taken in while the map is not full: a robot
-that stands still makes a better map of where it starts."""
+"""While the map is not full, a scan also becomes a key scan this many scans after the last one: a
+robot at rest improves the map of its start."""
 
 
 class LocalMap:
-    """Key scans about the robot; memory and work do not grow with the drive."""
+    """Key scans around the robot; memory and time do not grow with the drive."""
 
     def __init__(self) -> None:
         self._keys: deque[tuple[Floats, Floats]] = deque(maxlen=KEYS)
@@ -30,7 +30,7 @@ class LocalMap:
         self.elements: Elements | None = None
 
     def take(self, pose: Floats, points: Floats, spacing: Floats) -> None:
-        """Take in a scan, if it shows something new: pose (3,), deskewed echoes (k, 2)."""
+        """Add a scan if it shows something new: pose (3,), deskewed echoes (k, 2), spacing (k,)."""
         self._since += 1
         moved = np.abs(pose - self._last)
         new = max(moved[0], moved[1]) > FARTHER or moved[2] > TURNED

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One scan laid upon line elements: point to line, robust, with its covariance."""
+"""Matching of one scan with line elements: robust point-to-line ICP, with its covariance."""
 
 from __future__ import annotations
 
@@ -13,50 +13,51 @@ from werrimbi_odom.scans.elements import Elements
 
 ROUNDS = 40
 PAIRED = 12
-"""Of these rounds: in so many the nearest lines are looked up; then they stay, for an echo between
-two of them would go to and fro for ever."""
+"""Rounds in which nearest lines are searched; then pairs are fixed, because an echo between two
+lines could alternate between them for ever."""
 CONVERGED = 1e-5
-"""Steps [m, rad] below which the search has ended."""
+"""Step size [m, rad] at which the iteration has converged."""
 GATES = (0.3, 0.08)
-"""How far from a line an echo may lie at first, and at the least [m]: the first holds what the last
-motion mispredicts, the least what a door's frame stands out."""
+"""Largest and smallest gate for the distance of an echo from its line [m]. The first covers the
+error of the predicted motion, the second the depth of a door's frame."""
 SIGMAS = 6.0
-"""The gate shrinks to so many standard deviations."""
+"""The gate shrinks to this many standard deviations."""
 LEAST_NOISE = 1e-3
-"""Of ranges [m]: no lidar is better."""
+"""Least noise of ranges [m]: no lidar is better."""
 MAD = 1.4826
 CAUCHY = 2.0
-"""Standard deviations at which an echo counts half."""
+"""Residual at which an echo has half weight, in standard deviations (Cauchy weights)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """Where a scan was seen from."""
+    """Pose of a scan relative to line elements."""
 
     pose: Floats
     """x, y [m] and yaw [rad] of the lidar, shape (3,)."""
     information: Floats
-    """Of the pose, for ranges of unit noise, shape (3, 3)."""
+    """Information matrix of the pose for unit noise of ranges, shape (3, 3)."""
     noise: float
     """Scatter of the echoes about the lines [m]."""
     covariance: Floats
-    """Of the pose, given the map; infinite where one of the three is not held, shape (3, 3)."""
+    """Covariance of the pose given the map, shape (3, 3); infinite if a direction is
+    undetermined."""
     points: int
-    """Echoes that lie on a line."""
+    """Number of echoes on a line."""
     share: float
-    """Mean weight of these: 1 where all agree."""
+    """Their mean weight: 1 if all agree."""
     converged: bool
 
 
 def match(points: Floats, elements: Elements, guess: Floats) -> Match:
-    """Lay echoes upon line elements.
+    """Match echoes with line elements.
 
     Parameters
     ----------
     points : ndarray, shape (k, 2)
-        Deskewed, in the lidar's frame, in the order of the beams [m].
+        Deskewed echoes in the lidar's frame, in the order of the beams [m].
     guess : ndarray, shape (3,)
-        A pose to begin with. Where it converges, nothing of it remains in the result.
+        Initial pose. After convergence the result does not depend on it.
     """
     x, y, yaw = guess.tolist()
     gate, noise, share, converged, used = GATES[0], LEAST_NOISE, 0.0, False, 0
@@ -86,7 +87,7 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
         information = weighted.T @ design
         share = float(weight.mean())
         if np.linalg.det(information) < 1e-9:
-            break  # nothing holds one of the three
+            break  # the pose is not determined
         step = np.linalg.solve(information, weighted.T @ -residual)
         x, y, yaw = x + step[0], y + step[1], yaw + step[2]
         gate = max(min(gate, SIGMAS * noise), GATES[1])
@@ -101,15 +102,15 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
 
 
 def _covariance(design: Floats, residual: Floats, weight: Floats) -> Floats:
-    """Of a robust fit to echoes of which each errs by itself, and some more than others, (3, 3).
+    """Sandwich covariance of a robust fit to independent, heteroscedastic echoes, shape (3, 3).
 
-    An M-estimator of score psi has A^-1 B A^-1, A the sum of psi' times the squared design and B
-    that of psi^2 (Huber 1967). With one noise for all echoes the cupboards far along a corridor
-    would hold it as well as its near walls do. What walls and their lines differ is alike in
-    neighbouring echoes, and there in the next scan again, so it moves no pose against the next:
-    differences of neighbours leave it out.
+    For an M-estimator with score psi it is A^-1 B A^-1, with A the sum of psi' times the squared
+    design and B that of psi^2 (Huber 1967). With equal noise of all echoes, cupboards far along a
+    corridor would seem to determine its direction as well as near walls do. Deviations of walls
+    from their lines are alike in neighbouring echoes and in the next scan, so they move no pose
+    relative to the next. Differences of neighbours remove them.
     """
-    slope = weight * (2.0 * weight - 1.0)  # of Cauchy's score
+    slope = weight * (2.0 * weight - 1.0)  # derivative of Cauchy's score
     curvature = (design * slope[:, None]).T @ design
     if np.linalg.det(curvature) < 1e-9:
         return np.full((3, 3), np.inf)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One pass over scans: each matched with the map of the last metres, and judged."""
+"""One pass over scans: each is matched with the local map, and accepted or rejected."""
 
 from __future__ import annotations
 
@@ -22,27 +22,26 @@ from werrimbi_odom.scans.local_map import LocalMap
 from werrimbi_odom.scans.matching import Match, match
 
 Flag = Literal["", "few", "disagree", "weak", "unsettled", "fast"]
-"""Why a match is none: few echoes on lines; they do not agree with the map; a direction is not
-held, as along a bare corridor; the search did not end; no robot drives so fast. "" where it is
-one."""
+"""Reason for a rejection: few echoes on lines; echoes that disagree with the map; a direction that
+is undetermined, as along a bare corridor; no convergence; an impossible speed. "" if accepted."""
 
 
 class ScanTracker:
-    """Where the lidar is, scan after scan, on one unbroken map."""
+    """Pose of the lidar, scan after scan, on one unbroken map."""
 
     def __init__(self, start: Floats) -> None:
         """Begin at a pose (3,), with an empty map."""
         self.pose = start
         self._map = LocalMap()
         self.covariance = FLOOR**2 * np.eye(3)
-        """Of the last pose on the map, world axes, shape (3, 3)."""
+        """Covariance of the last pose in the map, world axes, shape (3, 3)."""
         self.scatter = 0.0
-        """Of the echoes of the last scan about the map's lines [m]."""
+        """Scatter of the echoes of the last scan about the lines of the map [m]."""
 
     def take(self, points: Floats, spacing: Floats, motion: Floats, duration: float) -> Flag:
-        """Match deskewed echoes (k, 2); `motion` (3,) since the last pose is the guess.
+        """Match deskewed echoes (k, 2), starting from the last pose moved by `motion` (3,).
 
-        Where it fails, the pose stays where it was.
+        If the match is rejected, the pose stays as it was.
         """
         if self._map.elements is None:
             if len(points) < FEWEST_POINTS:
@@ -76,7 +75,7 @@ def _flag(found: Match, motion: Floats, duration: float) -> Flag:
         return "few"
     if np.linalg.det(found.information) < 1e-9 or not np.isfinite(found.covariance).all():
         return "weak"
-    # By where the lines lie alone: what few echoes scatter says little of a direction.
+    # From the geometry of the lines alone: the scatter of few echoes says little of a direction.
     covariance = found.noise**2 * np.linalg.inv(found.information)
     held = np.linalg.eigvalsh(covariance[:2, :2])
     sigmas = np.sqrt([held[1], covariance[2, 2]])

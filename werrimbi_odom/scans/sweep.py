@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One scan: echoes on the floor plan, each seen at its own time while the robot moved."""
+"""One scan: 2-D echoes, each measured at its own time while the robot moved."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """The echoes of one turn of a lidar; k of them."""
+    """Echoes of one turn of a lidar; k of them."""
 
     time: float
-    """Of the middle of the sweep, which is where its pose is told [s]."""
+    """Middle of the sweep, for which its pose is estimated [s]."""
     points: Floats
-    """In the lidar's frame at the instant of each, shape (k, 2) [m]."""
+    """Echoes in the lidar's frame at their own instants, shape (k, 2) [m]."""
     share: Floats
-    """Of the turn, from its middle to where each was seen, shape (k,); -0.5 to 0.5."""
+    """Time of each echo from the middle, as a share of the turn, -0.5 to 0.5, shape (k,)."""
     duration: float
-    """Of the turn [s]; 0 where all are seen at once, negative where the last is seen first."""
+    """Duration of the turn [s]; 0 if all beams are simultaneous, negative if the order is
+    reversed."""
     spacing: Floats
-    """Distance between neighbouring beams there, shape (k,) [m]."""
+    """Distance between neighbouring beams at each echo, shape (k,) [m]."""
 
 
 @dataclass(frozen=True)
 class SweepMotion:
-    """How the lidar moved about the middle of a sweep, in its own frame then: b t + c t^2."""
+    """Motion b t + c t^2 of the lidar, t from the middle of a sweep, in its frame there."""
 
     linear: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """[m/s, m/s, rad/s]"""
@@ -45,20 +46,20 @@ def sweep_of(
     nearest: float = 0.0,
     farthest: float = np.inf,
 ) -> Sweep:
-    """A sweep from the ranges of one turn.
+    """Sweep from the ranges of one turn.
 
     Parameters
     ----------
     time : float
-        When the first beam was measured [s].
+        Time of the first beam [s].
     ranges : ndarray, shape (n,)
-        [m]; 0, infinity, NaN and what is beyond the lidar's limits are no echoes.
+        Ranges [m]; 0, infinity, NaN and values beyond the lidar's limits are no echoes.
     angles : ndarray, shape (n,)
-        Directions of the beams, even steps [rad].
+        Directions of the beams in equal steps [rad].
     beam_interval : float
-        Time between two beams [s]; 0 where all are measured at once, as in some simulators.
+        Time between two beams [s]; 0 if all are simultaneous, as in some simulators.
     nearest, farthest : float
-        Limits that the lidar states [m].
+        Range limits stated by the lidar [m].
     """
     with np.errstate(invalid="ignore"):
         echo = np.isfinite(ranges) & (ranges > max(nearest, 0.0)) & (ranges <= farthest)
@@ -72,7 +73,7 @@ def sweep_of(
 
 
 def deskewed(sweep: Sweep, course: SweepMotion) -> Floats:
-    """The echoes as they would have been seen from where the lidar was at the middle, (k, 2)."""
+    """Echoes corrected for the motion during the sweep, shape (k, 2) [m]."""
     t = sweep.duration * sweep.share[:, None]
     moved = t * np.array(course.linear) + t * t * np.array(course.quadratic)
     cos, sin = np.cos(moved[:, 2]), np.sin(moved[:, 2])
@@ -81,7 +82,7 @@ def deskewed(sweep: Sweep, course: SweepMotion) -> Floats:
 
 
 def own_course(motion: Floats, duration: float) -> SweepMotion:
-    """The course of a lidar that goes on as in its last motion (3,), which took `duration`."""
+    """Sweep motion if the lidar goes on as in its last motion (3,), which took `duration` [s]."""
     x, y, turn = (motion / duration).tolist()
-    # The mean of the way is seen from its start; the middle of the turn is what stays as it is.
+    # Constant velocity in the lidar's own frame: turning bends its path, hence the quadratic terms.
     return SweepMotion((x, y, turn), (-0.5 * turn * y, 0.5 * turn * x, 0.0))

@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A differential-drive robot in the MuJoCo physics engine.
 
-It imports nothing else of this package: what it records is a fair test of the odometry, because
-nothing of the odometry's own physics went into it. The engine rolls real wheels on a real floor.
+The engine simulates real wheels on a real floor. It imports nothing else of this package, so its
+recordings are independent of the odometry's own models and a fair test of them.
 
 >>> from werrimbi_odom.simulation import TrueRobot, record, square, write_run
 >>> recording = record(TrueRobot(), square(side=1.0), seed=1)
 >>> len(recording.t_s) == len(recording.left_ticks)
 True
 
-Reading order: `robot` (the true robot), `manoeuvre` (what is commanded), `chassis` and `engine`
-(the physics), `wheel_noise`, `sensors` (what is measured), `recorder` and `recording` (one drive),
-`sessions` (a day of drives), `live` (driven by commands as they come), `field` (recorded without
-motion capture), `hidden` (effects for others to find).
+Reading order: `robot` (the true robot), `manoeuvre` (commands), `chassis` and `engine` (the
+physics), `wheel_noise`, `sensors` (measurements), `recorder` and `recording` (one drive),
+`sessions` (a set of drives), `live` (driven by commands as they arrive), `field` (recorded without
+motion capture), `hidden` (hidden effects as test data).
 """
 
 from .engine import AxlePose, TruePath, UnstableError

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writing a recording as a ROS 2 bag (rosbag2 with MCAP), as `ros2 bag record` would have."""
+"""Write a recording as a ROS 2 bag (rosbag2 with MCAP), as `ros2 bag record` would."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .recording import Recording
 from .robot import TrueRobot
 
 EPOCH = 1_767_225_600
-"""When the simulation's clock showed zero: 2026-01-01 00:00 UTC [s]. Bags tell the time of day."""
+"""Unix time of the start of the simulation's clock: 2026-01-01 00:00 UTC [s]."""
 
 
 def write_bag(recording: Recording, robot: TrueRobot, folder: str | Path) -> Path:
@@ -25,13 +25,14 @@ def write_bag(recording: Recording, robot: TrueRobot, folder: str | Path) -> Pat
     ----------
     recording : Recording
     robot : TrueRobot
-        For its counts in a revolution.
+        Gives the counts per revolution.
     folder : path
-        Of the bag; must not exist.
+        Folder of the bag; must not exist.
 
     Returns
     -------
-    Path of the folder
+    Path
+        The folder.
     """
     folder = Path(folder)
     store = get_typestore(Stores.ROS2_JAZZY)

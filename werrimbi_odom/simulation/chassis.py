@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The robot's body as MuJoCo's XML, with the contact settings that make wheels roll truly.
+"""The robot's body in MJCF (MuJoCo's XML), with contact settings that make wheels roll accurately.
 
-Why these settings (measured; the figures are in docs/simulation.md):
+Reasons for the settings (measured; the figures are in docs/simulation.md):
 
-- Wheels are spheres: one contact point each, straight below the centre, wherever the body leans.
-- The skid is frictionless, so only the wheels decide where the robot goes.
-- MuJoCo's contacts are springs that give way. A wheel sinks in by some micrometres; its contact
-  acts halfway down: the rolling radius is short by half the penetration.
+- Wheels are spheres: one contact point each, vertically below the centre at any tilt of the body.
+- The skid has no friction, so only the wheels determine the motion.
+- MuJoCo's contacts are springs. A wheel penetrates the floor by a few micrometres, and its contact
+  acts at half of this depth, so the rolling radius is short by half the penetration.
 - Friction removes slip with a time constant of TIME_CONSTANT * IMPEDANCE / 2, as an acceleration
-  that leaves out the turning of the contact itself. So in a curve the wheels creep outwards by
-  that time, less half a step, times speed times yaw rate. A longer time constant (the default is
+  that leaves out the rotation of the contact frame. In a curve the wheels therefore creep outwards
+  by this time, less half a step, times speed times yaw rate. A longer time constant (the default is
   0.02 s) makes that 9 ms instead of 0.45.
-- `Euler`, because with `implicitfast` the wheels' angles lead the body by milliseconds of travel
-  whenever the motors work.
+- The integrator is `Euler`: with `implicitfast` the wheels' angles lead the body by milliseconds of
+  travel while the motors exert torque.
 """
 
 from __future__ import annotations
@@ -24,61 +24,62 @@ from dataclasses import dataclass
 from .robot import TrueRobot
 
 STEP = 1e-3
-"""Of the integrator [s]."""
+"""Time step of the integrator [s]."""
 
 TIME_CONSTANT = 2e-3
-"""Of the contacts [s]; two steps is the shortest that MuJoCo holds to be stable."""
+"""Time constant of contacts [s]: two steps, the shortest that MuJoCo treats as stable."""
 
 IMPEDANCE = 0.95
-"""Of the contacts, the same at every depth, so that the depth is proportional to the load."""
+"""Impedance of contacts, constant over depth so that depth is proportional to load."""
 
 IMPRATIO = 100
-"""How much stiffer friction is than the normal direction: loaded wheels must not creep."""
+"""Ratio of frictional to normal impedance; high, so that loaded wheels do not creep."""
 
 SKID_BEHIND = 0.16
-"""From the axle back to the skid [m]."""
+"""Distance from the axle back to the skid [m]."""
 
 MOTOR_DAMPING = 5.0
-"""Torque of the speed controller for an error of speed [N m s/rad]."""
+"""Proportional gain of the speed controller [N m s/rad]."""
 
 MOTOR_STIFFNESS = 50.0
-"""Its integral part: torque for an error of the angle [N m/rad]; no travel is lost for good."""
+"""Integral gain of the speed controller [N m/rad]; it removes lasting errors of the wheel angle."""
 
 ROTOR = 0.01
-"""Inertia of a motor as its wheel feels it through the gear [kg m^2].
+"""Inertia of a motor reflected through the gear to its wheel [kg m^2].
 
-With less, the speed controller's torque would outrun a step of the integrator on a wheel that
-hops off the floor, and the simulation explode.
+With less, the speed controller is too fast for the integrator's step when a wheel leaves the floor,
+and the simulation becomes unstable.
 """
 
 BEARING_DRAG = 0.5
-"""Torque that brakes a wheel with play [N m]: less, and the robot coasts through the play."""
+"""Friction torque of a wheel with play [N m]; with less, the robot coasts through the play."""
 
 
 STOP_TIME_CONSTANT = 0.01
-"""Of the stops of a wheel's play [s]; harder ones let the rotor's impact tear the wheel loose."""
+"""Time constant of the stops of a wheel's play [s]; with harder stops the rotor's impact makes the
+wheel lose its grip."""
 
 
 @dataclass(frozen=True)
 class WheelPlan:
-    """One wheel.
+    """Parameters of one wheel.
 
     Parameters
     ----------
     side : str
         "left" or "right".
     y : float
-        Of its hub along the axle from the body's middle, left positive [m].
+        Position of its hub along the axle from the middle of the body, left positive [m].
     radius : float
         Rolling radius [m].
     offset : float
-        From the axle to the wheel's centre [m]; not zero: an eccentric wheel.
+        Distance of the wheel's centre from its axle [m]; not zero for an eccentric wheel.
     phase : float
-        Angle of the wheel [rad] at which its centre is straight ahead of the axle.
+        Angle of the wheel [rad] at which its centre is straight ahead of its axle.
     ovality : float
         (largest - smallest radius) / (2 radius); the wheel is an ellipsoid.
     play : float
-        Free angle between the encoder's shaft and the wheel [rad].
+        Backlash between the encoder's shaft and the wheel [rad].
     """
 
     side: str
@@ -92,15 +93,15 @@ class WheelPlan:
 
 @dataclass(frozen=True)
 class Chassis:
-    """All that shapes the body in the engine.
+    """Parameters of the body in the engine.
 
     Parameters
     ----------
     left, right : WheelPlan
     mass : float
-        Of everything [kg].
+        Total mass [kg].
     axle_yaw : float
-        How far the axle is turned against the body, anticlockwise [rad].
+        Rotation of the axle relative to the body, anticlockwise [rad].
     """
 
     left: WheelPlan
@@ -110,29 +111,29 @@ class Chassis:
 
     @property
     def height(self) -> float:
-        """Of the axle above the floor [m]."""
+        """Height of the axle above the floor [m]."""
         return (self.left.radius + self.right.radius) / 2
 
     @property
     def wheels(self) -> tuple[WheelPlan, WheelPlan]:
-        """Left and right."""
+        """Left and right wheel."""
         return self.left, self.right
 
     @property
     def giving(self) -> WheelPlan | None:
-        """The wheel whose tyre gives way sideways: one that is not round, if any.
+        """The wheel with lateral compliance: one that is not round, if any.
 
-        The contact of such a wheel wanders ahead of and behind its axle. Two rigid wheels whose
-        contacts are not in line with the axle cannot both roll while the robot turns: they would
-        fight, one of them slide, and a sliding wheel loses its grip along as well. Real tyres give
-        way sideways by a little in each turn; here this wheel gives way freely (the engine sets it
-        back to its place after every period) and the other one keeps the robot's line.
+        The contact of such a wheel moves ahead of and behind its axle. Two rigid wheels with
+        contacts off the axle's line cannot both roll while the robot turns: one of them slides, and
+        then loses its longitudinal grip too. Real tyres deflect laterally by a little in each turn.
+        Here this wheel moves laterally without resistance (the engine resets it after every
+        period), and the other one holds the robot laterally.
         """
         return next((wheel for wheel in self.wheels if wheel.offset or wheel.ovality), None)
 
 
 def chassis_of(robot: TrueRobot) -> Chassis:
-    """The body of a robot without peculiarities."""
+    """The chassis of a robot without peculiarities."""
     half = robot.wheel_separation / 2
     return Chassis(
         left=WheelPlan("left", half, robot.left_wheel_radius),
@@ -142,10 +143,10 @@ def chassis_of(robot: TrueRobot) -> Chassis:
 
 
 def to_mjcf(chassis: Chassis) -> str:
-    """The model for MuJoCo.
+    """The chassis as MJCF.
 
-    The body stands on three slides and three hinges instead of a free joint: then the yaw is a
-    coordinate that counts full turns, and a shift of the floor plan is an addition.
+    The body has three slide and three hinge joints instead of a free joint, so that the yaw is one
+    coordinate that counts full turns, and a shift on the floor is an addition.
     """
     height = chassis.height
     wheel_mass = 0.03 * chassis.mass
@@ -186,12 +187,12 @@ def to_mjcf(chassis: Chassis) -> str:
 
 
 def shaft_joint(plan: WheelPlan) -> str:
-    """Name of the joint that the motor drives and the encoder watches."""
+    """Name of the joint that the motor drives and the encoder reads."""
     return f"{plan.side}_shaft" if plan.play else plan.side
 
 
 def _wheel(plan: WheelPlan, height: float, mass: float, *, gives: bool) -> str:
-    # Hubs at the height of their own radius keep the body level when the radii differ.
+    # Hubs at the height of their own radius keep the body level if the radii differ.
     hub = f"0 {plan.y} {plan.radius - height}"
     ahead, up = plan.offset * math.cos(plan.phase), plan.offset * math.sin(plan.phase)
     if plan.ovality:
@@ -205,7 +206,7 @@ def _wheel(plan: WheelPlan, height: float, mass: float, *, gives: bool) -> str:
         if gives
         else ""
     )
-    rotor = 0.001 if plan.play else ROTOR  # with play, it is the shaft that feels the motor
+    rotor = 0.001 if plan.play else ROTOR  # with play, the shaft carries the motor's inertia
     drag = f'frictionloss="{BEARING_DRAG}"' if plan.play else ""
     body = f"""
         <body name="{plan.side}" pos="{hub}">{give}
@@ -223,7 +224,7 @@ def _wheel(plan: WheelPlan, height: float, mass: float, *, gives: bool) -> str:
 
 
 def _play(plan: WheelPlan) -> str:
-    """Shaft and wheel turn freely against each other between two stops."""
+    """Backlash: shaft and wheel turn freely relative to each other between two stops."""
     return f"""
     <fixed name="{plan.side}_play" limited="true" range="{-plan.play / 2} {plan.play / 2}"
            solreflimit="{STOP_TIME_CONSTANT} 1" solimplimit="{IMPEDANCE} {IMPEDANCE} 0.001">

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The physics engine: commands in, the true path and the wheels' angles out."""
+"""The physics engine: takes commands, returns the true path and the wheel angles."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from .chassis import IMPEDANCE, STEP, TIME_CONSTANT, Chassis, shaft_joint, to_mj
 Floats = NDArray[np.float64]
 
 PERIOD = 5e-3
-"""Of the speed controller, and of the recorded true path [s]."""
+"""Period of the speed controller and of the recorded true path [s]."""
 
 CURVE_CREEP = TIME_CONSTANT * IMPEDANCE / 2 - STEP / 2
-"""Outward creep of the engine's wheels over speed times yaw rate [s]; measured: 0.451 ms."""
+"""Outward creep of the engine's wheels per speed times yaw rate [s]; measured: 0.451 ms."""
 
 
-# By default MuJoCo writes its warnings to a file in whatever folder the user is in. The engine asks
-# for them itself, in `Engine.check`.
+# By default MuJoCo writes its warnings to a file in the current folder. `Engine.check` reads them
+# from the data instead.
 mujoco.set_mju_user_warning(lambda message: None)
 
 
 class UnstableError(RuntimeError):
-    """The engine lost its footing: the robot asked for is beyond what it can simulate."""
+    """The simulation became unstable: the requested robot is beyond the engine."""
 
 
 class AxlePose(NamedTuple):
-    """Of the axle's midpoint on the floor: x, y [m], yaw [rad], the yaw counting full turns."""
+    """Pose of the axle's midpoint on the floor: x, y [m], yaw [rad]; the yaw counts full turns."""
 
     x: float
     y: float
@@ -42,9 +42,9 @@ class AxlePose(NamedTuple):
 
 
 class Stride(NamedTuple):
-    """What the robot did in one period of the controller.
+    """Motion of the robot in one period of the controller.
 
-    Time at its end and period [s], hub travel by each wheel's turning [m], pose at its end.
+    Time at its end and duration [s], rolled distance of each wheel [m], pose at its end.
     """
 
     time: float
@@ -55,7 +55,7 @@ class Stride(NamedTuple):
 
 
 class Shift(NamedTuple):
-    """A small motion that no wheel turned for: along, sideways (left) [m], turn [rad]."""
+    """A small motion without wheel rotation: along, sideways (left positive) [m], turn [rad]."""
 
     along: float
     sideways: float
@@ -63,21 +63,21 @@ class Shift(NamedTuple):
 
 
 Shifter = Callable[[Stride], Shift]
-"""Says by how much the robot moved besides its wheels' rolling; may remember what it saw."""
+"""Returns the motion of the robot in addition to rolling; may have a state."""
 
 
 @dataclass(frozen=True)
 class TruePath:
-    """What truly happened, free of any measuring noise; arrays of shape (n,), every PERIOD.
+    """Ground truth without measurement noise; arrays of shape (n,), one row per PERIOD.
 
     Parameters
     ----------
     t_s : ndarray
-        Time since the simulation began [s].
+        Time since the start of the simulation [s].
     x_m, y_m, yaw_rad : ndarray
-        The axle's midpoint in the world; the yaw counts full turns.
+        Pose of the axle's midpoint in the world; the yaw counts full turns.
     left_angle_rad, right_angle_rad : ndarray
-        Angles of the encoders' shafts against the body, positive forwards.
+        Angles of the encoder shafts relative to the body, positive forwards.
     """
 
     t_s: Floats
@@ -89,12 +89,12 @@ class TruePath:
 
 
 class Engine:
-    """A robot standing on MuJoCo's floor, ready to be driven. The only mutable thing here."""
+    """A robot on MuJoCo's floor, ready to drive. The only mutable state of the engine."""
 
     def __init__(self, chassis: Chassis, start: AxlePose, angles: tuple[float, float]) -> None:
         self._model = mujoco.MjModel.from_xml_string(to_mjcf(chassis))
         self._data = mujoco.MjData(self._model)
-        # The engine's own memory; to ask for it anew at each step costs as much as the step.
+        # Views of the engine's memory: a new look-up in each step would cost as much as the step.
         self._q, self._v, self._speeds = self._data.qpos, self._data.qvel, self._data.ctrl
         self._x, self._y, self._yaw = (self._place(name) for name in ("x", "y", "yaw"))
         self._wheels = [self._place(wheel.side) for wheel in chassis.wheels]
@@ -113,7 +113,7 @@ class Engine:
         return int(self._model.joint(joint).qposadr[0])
 
     def _settle(self) -> None:
-        """Let the robot sink into its contacts, then make its wheels larger by half of that."""
+        """Let the robot settle into its contacts, and add half the penetration to the radii."""
         self._run(500)
         sunk = dict.fromkeys(self._radii, 0.0)
         for contact in self._data.contact:
@@ -128,26 +128,26 @@ class Engine:
     def _grow(self, side: str, by: float) -> None:
         geom = self._model.geom(side)
         geom.size[:] += by
-        geom.rbound[:] += by  # else the engine would not look for contacts so far out
+        geom.rbound[:] += by  # otherwise the engine would not look for contacts that far out
 
     def _run(self, steps: int) -> None:
         mujoco.mj_step(self._model, self._data, steps)
 
     @property
     def pose(self) -> AxlePose:
-        """Of the axle's midpoint in the world."""
+        """Pose of the axle's midpoint in the world."""
         q = self._q
         return AxlePose(float(q[self._x]), float(q[self._y]), float(q[self._yaw]))
 
     @property
     def wheel_angles(self) -> tuple[float, float]:
-        """Of the wheels, left and right [rad]."""
+        """Angles of the wheels, left and right [rad]."""
         left, right = self._wheels
         return float(self._q[left]), float(self._q[right])
 
     @property
     def shaft_angles(self) -> tuple[float, float]:
-        """Of the encoders' shafts, left and right [rad]: the wheels', but for play."""
+        """Angles of the encoder shafts, left and right [rad]; without play equal to the wheels'."""
         left, right = self._shafts
         return float(self._q[left]), float(self._q[right])
 
@@ -156,26 +156,26 @@ class Engine:
         return self._radii[side]
 
     def set_radius(self, side: str, radius: float) -> None:
-        """Let a wheel swell or shrink to `radius` [m]."""
+        """Change the rolling radius of a wheel to `radius` [m]."""
         self._grow(side, radius - self._radii[side])
         self._radii[side] = radius
 
     def advance(self, left_speed: float, right_speed: float) -> None:
-        """Hold the commanded speeds of the motors [rad/s] for one PERIOD."""
+        """Hold the commanded motor speeds [rad/s] for one PERIOD."""
         self._speeds[:] = (left_speed, left_speed, right_speed, right_speed)
         self._run(round(PERIOD / STEP))
         for give in self._gives:
             self._q[give] = 0.0
 
     def check(self) -> None:
-        """Raise UnstableError if anything went wrong since the beginning."""
+        """Raise UnstableError if the engine has warned since the start."""
         if any(warning.number for warning in self._data.warning):
             raise UnstableError("the physics engine became unstable; is the robot buildable?")
 
     def move(self, shifts: Iterable[Shift]) -> None:
-        """Move the whole robot on the floor by each in turn, and turn its velocity with it.
+        """Apply shifts to the whole robot on the floor, in this order, and rotate its velocity too.
 
-        The floor is the same everywhere, so contacts and forces do not notice.
+        The floor is uniform, so contacts and forces do not change.
         """
         q, v = self._q, self._v
         x, y, yaw = self.pose
@@ -195,19 +195,19 @@ class Engine:
 
 
 Reshaper = Callable[[Engine, Stride], None]
-"""Changes the robot while it drives, after each PERIOD; may remember what it saw."""
+"""Changes the robot while it drives, after each PERIOD; may have a state."""
 
 Row = tuple[float, float, float, float, float, float]
-"""Of a TruePath: time, x, y, yaw, and the angles of both shafts."""
+"""Row of a TruePath: time, x, y, yaw, and the angles of both shafts."""
 
 
 class DrivenRobot:
-    """A robot that is driven period by period, with all that moves and changes it on the way.
+    """A robot driven period by period, with its shifters and reshapers.
 
     Parameters
     ----------
     chassis, start, angles, shifters, reshapers
-        As of `drive`.
+        As in `drive`.
     """
 
     def __init__(
@@ -223,10 +223,10 @@ class DrivenRobot:
         self._pose, self._wheels = self._engine.pose, self._engine.wheel_angles
         self._periods = 0
         self.row: Row = (0.0, *self._pose, *self._engine.shaft_angles)
-        """The present row of the true path."""
+        """The current row of the true path."""
 
     def advance(self, left_speed: float, right_speed: float) -> Row:
-        """Hold the commanded speeds of the motors [rad/s] for one PERIOD; the path's next row."""
+        """Hold the motor speeds [rad/s] for one PERIOD; return the next row of the path."""
         engine, before, wheels = self._engine, self._pose, self._wheels
         self._periods += 1
         engine.advance(left_speed, right_speed)
@@ -248,7 +248,7 @@ class DrivenRobot:
         return self.row
 
     def check(self) -> None:
-        """Raise UnstableError if anything went wrong since the beginning."""
+        """Raise UnstableError if the engine has warned since the start."""
         self._engine.check()
 
 
@@ -261,24 +261,25 @@ def drive(
     shifters: Sequence[Shifter] = (),
     reshapers: Sequence[Reshaper] = (),
 ) -> TruePath:
-    """Drive a robot through the given motor speeds.
+    """Drive a robot with given motor speeds.
 
     Parameters
     ----------
     chassis : Chassis
     wheel_speeds : ndarray, shape (n, 2)
         Commanded mean speeds of the left and right motor in each PERIOD [rad/s].
-    start : Pose
+    start : AxlePose
     angles : (left, right)
-        Of the encoders' shafts at the start [rad].
+        Angles of the encoder shafts at the start [rad].
     shifters : sequence of Shifter
-        Motions besides rolling, applied after each PERIOD, each seeing the same stride.
+        Motions in addition to rolling, applied after each PERIOD; all get the same stride.
     reshapers : sequence of Reshaper
         Changes of the robot, applied after each PERIOD.
 
     Returns
     -------
-    TruePath, of n + 1 rows
+    TruePath
+        With n + 1 rows.
     """
     robot = DrivenRobot(chassis, start, angles, shifters, reshapers)
     rows = np.empty((len(wheel_speeds) + 1, 6))

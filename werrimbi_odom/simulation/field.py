@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot without motion capture leaves behind: counters, a gyro, a localiser's idea of it.
+"""Recordings without motion capture: counters, gyro, lidar, and poses of a localiser.
 
-The drive is the engine's. In between somebody holds the robot while its wheels turn, and carries
-it while they stand; then everything is seen as an ordinary robot sees it.
+The drive comes from the engine. During it, somebody holds the robot while its wheels turn, and
+later carries it while it stands. The result is measured with the sensors of an ordinary robot.
 """
 
 from __future__ import annotations
@@ -27,40 +27,40 @@ from .sensors import ReferenceSensor, count, sampling_times
 Floats = NDArray[np.float64]
 
 HELD, CARRIED = 4.0, 5.0
-"""How long the robot is held and carried [s]."""
+"""Durations of holding and carrying the robot [s]."""
 
 TURN = 2.0 * math.pi
-"""Of a wheel [rad]."""
+"""One revolution of a wheel [rad]."""
 
 AT_PACE = 0.5
-"""Until the hand that carries it moves as fast as it will [s]."""
+"""Time in which the carrying hand reaches its speed [s]."""
 
 BEHIND = Lidar(mount=AxlePose(-0.032, 0.0, 0.0))
-"""A lidar of 218 beams a little behind the axle, as on a TurtleBot3."""
+"""A lidar with 218 beams slightly behind the axle, as on a TurtleBot3."""
 
 
 @dataclass(frozen=True)
 class FieldSensors:
-    """What is on board, and how bad it is.
+    """Sensors on board, and their errors.
 
     Parameters
     ----------
     wheels_hz, imu_hz, localiser_hz : float
-        Messages a second of wheel angles, gyro, and localiser.
+        Message rates of wheel angles, gyro, and localiser [Hz].
     stamp_jitter : float
-        Standard deviation of header stamps about the instant of measuring [s].
+        Standard deviation of header stamps about the time of measurement [s].
     latency : float
-        Mean time from a stamp until the message is received [s], exponential.
+        Mean delay from the stamp to the reception of a message [s], exponentially distributed.
     gyro_noise : float
         Standard deviation of a reading [rad/s].
     gyro_bias, gyro_scale : float
-        Range of the bias [rad/s] and of the scale's deviation from 1, drawn anew for each robot.
+        Ranges of the bias [rad/s] and of the scale error, drawn once for each robot.
     wander_xy, wander_yaw, wander_time : float
         Standard deviations of the localiser's error [m, rad], and its time constant [s].
     jumps, jump_xy, jump_yaw : float
-        How often a drive it jumps, and by how much [m, rad] (standard deviations).
+        Number of jumps in a drive, and their standard deviations [m, rad].
     lidar : Lidar
-        In a furnished room about the drive.
+        The lidar, in a furnished room around the drive.
     """
 
     wheels_hz: float = 20.0
@@ -82,19 +82,20 @@ class FieldSensors:
 
 @dataclass(frozen=True)
 class FieldDrive:
-    """One drive as ordinary sensors see it; all times since the simulation's clock began [s].
+    """One drive as measured by ordinary sensors; times [s] in the simulation's clock.
 
     Parameters
     ----------
     wheels, imu, localiser : ndarray, shapes (n, 4), (m, 3), (k, 5)
-        Header stamp, received, and: angles of both wheels [rad]; turn rate [rad/s]; x, y [m] and
-        yaw [rad] of base_link in the map.
+        Header stamp, time of reception, and: angles of both wheels [rad]; yaw rate [rad/s]; x, y
+        [m] and yaw [rad] of base_link in the map.
     odometry : ndarray, shape (n, 3)
-        The robot's own x, y [m] and yaw [rad] by its nominal numbers, with each row of `wheels`.
+        The robot's own dead reckoning x, y [m] and yaw [rad] with nominal sizes, per row of
+        `wheels`.
     lidar, scans : Lidar, Sweeps
-        What it is, and what it saw; `scans.time` holds the header stamps.
+        The lidar and its scans; `scans.time` has the header stamps.
     truth : mapping
-        For truth.json: what nobody told the robot; times in the clock of the bag.
+        Ground truth for truth.json, which is not in the bag; times in the clock of the bag.
     """
 
     name: str
@@ -109,7 +110,7 @@ class FieldDrive:
 
 @dataclass(frozen=True)
 class Gyro:
-    """One robot's gyro: bias and noise of a reading [rad/s], and its scale."""
+    """Gyro of one robot: bias and noise of a reading [rad/s], and its scale."""
 
     bias: float
     scale: float
@@ -117,7 +118,7 @@ class Gyro:
 
 
 def gyro_of(sensors: FieldSensors, *, robot_seed: int) -> Gyro:
-    """The gyro that a robot has in all its drives."""
+    """The gyro of a robot, the same in all its drives."""
     own = np.random.default_rng([robot_seed, 78])
     bias = float(own.uniform(-1.0, 1.0) * sensors.gyro_bias)
     scale = float(1.0 + own.uniform(-1.0, 1.0) * sensors.gyro_scale)
@@ -133,16 +134,16 @@ def as_in_the_field(
     sensors: FieldSensors | None = None,
     hidden: Sequence[Peculiarity] = (),
 ) -> FieldDrive:
-    """See a drive with ordinary sensors, after somebody has held and carried the robot in it.
+    """Measure a drive with ordinary sensors, after somebody held and carried the robot in it.
 
     Parameters
     ----------
     seed, robot_seed : int
-        Of this drive, and of what is the robot's in all its drives (the gyro's bias and scale).
+        Seeds of this drive, and of properties common to all drives of the robot (the gyro).
     hidden : sequence of Peculiarity
-        What the drive was recorded with. Those of counters show in the wheels' angles; those of a
-        reference in the localiser, in the gyro as far as they delay a heading, and in the lidar as
-        far as it can sit elsewhere than its transform says, and be late as a whole.
+        Peculiarities that the drive was recorded with. Those of counters change the wheels' angles.
+        Those of a reference change the localiser; the gyro, if they delay a heading; and the lidar,
+        in its mount and its delay.
     """
     sensors = sensors or FieldSensors()
     rng = np.random.default_rng([seed, 77])
@@ -191,7 +192,7 @@ def as_in_the_field(
 
 
 def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:
-    """A lidar of which its transform tells a base that is `beside` the robot's."""
+    """The lidar if its transform is relative to a base displaced by `beside`."""
     cos, sin = math.cos(beside.yaw), math.sin(beside.yaw)
     x, y, yaw = lidar.mount
     there = AxlePose(beside.x + cos * x - sin * y, beside.y + sin * x + cos * y, beside.yaw + yaw)
@@ -201,7 +202,7 @@ def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:
 def _counted(
     recording: Recording, path: TruePath, robot: TrueRobot, at: Floats, zeros: NDArray[np.int64]
 ) -> Recording:
-    """The same recording along another path, its counters read at other times."""
+    """The same recording along another path, with counters read at other times."""
     sides = (
         (path.left_angle_rad, robot.left_ticks_per_revolution, zeros[0]),
         (path.right_angle_rad, robot.right_ticks_per_revolution, zeros[1]),
@@ -213,19 +214,19 @@ def _counted(
 
 
 def _by_the_bag(times: Sequence[float]) -> list[float]:
-    """Times in the clock of the bag [s], to the millisecond."""
+    """Times in the clock of the bag [s], rounded to milliseconds."""
     return [round(EPOCH + time, 3) for time in times]
 
 
 def _stamped(at: Floats, sensors: FieldSensors, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Header stamps, in order, and when messages come in."""
+    """Header stamps, sorted, and times of reception."""
     stamps = np.sort(at + sensors.stamp_jitter * rng.standard_normal(at.size))
     received = np.maximum(stamps, at) + rng.exponential(sensors.latency, at.size)
     return stamps, np.maximum.accumulate(received)
 
 
 def _inserted(path: TruePath, row: int, more: Floats) -> TruePath:
-    """The path with `more` rows (x, y, yaw, left, right) after a row; what follows comes later."""
+    """The path with rows (x, y, yaw, left, right) inserted after a row; later rows are delayed."""
     table = np.column_stack(
         [path.x_m, path.y_m, path.yaw_rad, path.left_angle_rad, path.right_angle_rad]
     )
@@ -235,10 +236,10 @@ def _inserted(path: TruePath, row: int, more: Floats) -> TruePath:
 
 
 def _held(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
-    """Somebody holds the robot as it drives: its wheels go on, it does not.
+    """Insert a time in which somebody holds the robot: its wheels turn, it does not move.
 
-    They go on by whole turns, about as fast as before: the rest of the drive was recorded with the
-    wheels upright as they were, and what is not round about them must stay where it is.
+    They turn by whole revolutions at about the same speed as before, because the rest of the drive
+    was recorded with certain wheel angles, and effects of unround wheels depend on these.
     """
     speed = np.abs(np.gradient(path.left_angle_rad + path.right_angle_rad))
     row = _somewhere(speed > 0.5 * speed.max(), (0.2, 0.45), rng)
@@ -248,7 +249,7 @@ def _held(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[floa
     turned = [angle[row] + more * share for angle, more in zip(_angles(path), gone, strict=True)]
     still = np.tile([path.x_m[row], path.y_m[row], path.yaw_rad[row]], (steps, 1))
     longer = _inserted(path, row, np.column_stack([still, *turned]))
-    on = row + 1 + steps  # the wheels have turned farther for the rest of the drive
+    on = row + 1 + steps  # wheel angles of the rest of the drive are larger by this
     left, right = longer.left_angle_rad.copy(), longer.right_angle_rad.copy()
     left[on:] += gone[0]
     right[on:] += gone[1]
@@ -261,7 +262,7 @@ def _angles(path: TruePath) -> tuple[Floats, Floats]:
 
 
 def _carried(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
-    """Somebody lifts the robot as it stands, turns it, and puts it down elsewhere."""
+    """Insert a time in which somebody lifts the robot at rest and puts it down elsewhere."""
     speed = np.abs(np.gradient(path.left_angle_rad)) + np.abs(np.gradient(path.right_angle_rad))
     row = _somewhere(speed <= np.quantile(speed, 0.02), (0.55, 0.9), rng)
     steps = round(CARRIED / PERIOD)
@@ -287,7 +288,7 @@ def _carried(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[f
 
 
 def _somewhere(where: NDArray[np.bool_], part: Sequence[float], rng: np.random.Generator) -> int:
-    """A row at which something is so, in a part of the drive; anywhere in it if nowhere."""
+    """A random row where a condition holds in a part of the drive; else its middle row."""
     first, last = (int(share * where.size) for share in part)
     rows = np.flatnonzero(where[first:last])
     return first + int(rng.choice(rows) if rows.size else (last - first) // 2)
@@ -296,7 +297,7 @@ def _somewhere(where: NDArray[np.bool_], part: Sequence[float], rng: np.random.G
 def _wandering(
     count: int, sensors: FieldSensors, rng: np.random.Generator
 ) -> tuple[Floats, NDArray[np.intp]]:
-    """Errors of a localiser's poses, (k, 3) [m, m, rad], and the rows at which it jumps."""
+    """Errors of a localiser's poses, shape (k, 3) [m, m, rad], and the rows at which it jumps."""
     sizes = np.array([sensors.wander_xy, sensors.wander_xy, sensors.wander_yaw])
     kept = math.exp(-1.0 / (sensors.localiser_hz * sensors.wander_time))
     steps = rng.standard_normal((count, 3)) * sizes * math.sqrt(1.0 - kept * kept)
@@ -306,13 +307,13 @@ def _wandering(
     for row in range(count):
         error = kept * error + steps[row]
         if row in rows:
-            error = jump * rng.standard_normal(3)  # it has found itself anew, or lost itself
+            error = jump * rng.standard_normal(3)  # relocalised, or lost
         errors.append(error)
     return np.array(errors), rows
 
 
 def _dead_reckoned(left: Floats, right: Floats, robot: TrueRobot) -> Floats:
-    """What the robot's own driver makes of its wheels, (n, 3), from zero on."""
+    """Dead reckoning of the robot's own driver from zero, shape (n, 3) [m, m, rad]."""
     radius, base = robot.nominal.wheel_radius, robot.nominal.wheel_separation
     gone, turned = (radius * np.diff(each) for each in (0.5 * (left + right), right - left))
     yaw = np.concatenate([[0.0], np.cumsum(turned / base)])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writing a drive in the field as the rosbag2 that its owner would have recorded."""
+"""Write a drive with ordinary sensors as the rosbag2 that its user would have recorded."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LIDAR_FRAME = "base_scan"
 
 
 def urdf(robot: TrueRobot) -> str:
-    """The robot as its maker describes it: wheel joints where the nominal numbers put them."""
+    """URDF of the manufacturer, with wheel joints at their nominal places."""
     half, radius = robot.nominal.wheel_separation / 2, robot.nominal.wheel_radius
     parts = ['<?xml version="1.0"?>', '<robot name="simulated">', '  <link name="base_link"/>']
     for side, y in (("left", half), ("right", -half)):
@@ -54,9 +54,9 @@ def write_field_bag(
     Parameters
     ----------
     folder : path
-        Of the bag; must not exist.
+        Folder of the bag; must not exist.
     mounting : bool
-        Whether a transform tells where the lidar sits.
+        Whether to write the transform of the lidar's mount.
     """
     folder = Path(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -160,7 +160,7 @@ def _nanoseconds(time: float) -> int:
 
 
 def _map_to_odom(drive: FieldDrive, stamp: float, pose: np.ndarray) -> np.ndarray:
-    """What the localiser adds to the robot's own odometry for base_link to be where it thinks."""
+    """The localiser's transform from map to odom, by its pose of base_link and the odometry."""
     own = [np.interp(stamp, drive.wheels[:, 0], drive.odometry[:, column]) for column in range(3)]
     turn = pose[2] - own[2]
     place = complex(pose[0], pose[1]) - complex(own[0], own[1]) * np.exp(1j * turn)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A lidar on the robot, in rooms: each beam is measured at its own time, while the robot moves."""
+"""A lidar on the robot, in rooms: each beam is measured at its own time while the robot moves."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ _BLOCK = 1 << 14
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody who walks to and fro between two places; a leg's width of them is seen.
+    """A person who walks to and fro between two points; the lidar sees one leg, a circle.
 
     Parameters
     ----------
     start, end : (float, float)
-        Where they turn round [m].
+        Turning points [m].
     period : float
-        Time for once there and back [s].
+        Time of one return trip [s].
     radius : float
-        [m]
+        Radius of the circle [m].
     """
 
     start: tuple[float, float]
@@ -41,12 +41,12 @@ class Person:
 
 @dataclass(frozen=True)
 class Room:
-    """What the lidar sees; the world's axes.
+    """Obstacles for the lidar, in world axes.
 
     Parameters
     ----------
     walls : ndarray, shape (k, 4)
-        Straight pieces from x, y to x, y [m].
+        Line segments from x, y to x, y [m].
     people : sequence of Person
     """
 
@@ -61,23 +61,23 @@ class Lidar:
     Parameters
     ----------
     beams : int
-        Of a whole turn.
+        Number of beams of a turn.
     rate_hz : float
-        Turns a second.
+        Turns per second.
     nearest, farthest : float
-        Limits of what it sees [m].
+        Range limits [m].
     noise, noise_share : float
-        Standard deviation of a range: a length [m], and a share of the range; variances add up.
+        Standard deviation of a range: a length [m], and a share of the range; variances add.
     bias : float
         Added to each range [m].
     lost, mixed : float
-        Shares of beams without an echo, and of echoes at an edge that lie between near and far.
-    mount : Pose
-        Ahead of and left of the axle's midpoint [m], and turned [rad].
+        Shares of beams without an echo, and of beams at an edge with a range between near and far.
+    mount : AxlePose
+        Ahead and to the left of the axle's midpoint [m], and yaw [rad].
     rotates : bool
-        Each beam at its own time; else all at once, as in some simulators.
+        Whether each beam has its own time; otherwise all are simultaneous, as in some simulators.
     upside_down : bool
-        Beams go clockwise, seen from above.
+        Whether beams go clockwise, seen from above.
     """
 
     beams: int = 218
@@ -106,16 +106,16 @@ class Lidar:
 
 @dataclass(frozen=True)
 class Sweeps:
-    """Scans; n of them. Beam i of each looks to i times the increment.
+    """Scans; n of them. Beam i has the direction i times the increment.
 
     Parameters
     ----------
     time : ndarray, shape (n,)
-        Of the first beam [s].
+        Time of the first beam [s].
     ranges : ndarray, shape (n, beams)
-        [m]; infinite without an echo.
+        Ranges [m]; infinite without an echo.
     truth : ndarray, shape (n, 3)
-        Where the lidar was in the middle of each sweep: x, y [m], yaw [rad].
+        Pose of the lidar in the middle of each sweep: x, y [m], yaw [rad].
     """
 
     time: Floats
@@ -124,7 +124,7 @@ class Sweeps:
 
 
 def scanned(path: TruePath, room: Room, lidar: Lidar, seed: int) -> Sweeps:
-    """What a lidar sees along a path."""
+    """Scans of a lidar along a path."""
     rng = np.random.default_rng([seed, 79])
     turn = 1.0 / lidar.rate_hz
     start = np.arange(path.t_s[0] + rng.uniform(0.0, turn), path.t_s[-1] - turn, turn)
@@ -134,7 +134,7 @@ def scanned(path: TruePath, room: Room, lidar: Lidar, seed: int) -> Sweeps:
 def sweeps_at(
     path: TruePath, room: Room, lidar: Lidar, start: Floats, rng: np.random.Generator
 ) -> Sweeps:
-    """What a lidar sees in turns that begin at `start` (n,) [s]."""
+    """Scans of a lidar for turns that begin at `start` (n,) [s]."""
     number = np.arange(lidar.beams)
     at = (start[:, None] + lidar.beam_interval * number).ravel()
     x, y, yaw = _lidar_at(path, lidar, at)
@@ -170,7 +170,7 @@ def _lidar_at(path: TruePath, lidar: Lidar, at: Floats) -> tuple[Floats, Floats,
 
 
 def _distance(room: Room, x: Floats, y: Floats, direction: Floats, at: Floats) -> Floats:
-    """To the nearest thing along each beam, (m,); infinite where there is none."""
+    """Distance to the nearest obstacle along each beam, shape (m,) [m]; infinite for none."""
     cos, sin = np.cos(direction)[:, None], np.sin(direction)[:, None]
     ax, ay, bx, by = room.walls.T
     dx, dy = bx - ax, by - ay

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A robot that is driven now: commands in, readings of its sensors out, in bounded memory."""
+"""A robot that is driven live: takes commands, returns sensor readings, in bounded memory."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ from .sensors import ReferenceSensor, count
 Floats = NDArray[np.float64]
 
 ACCELERATION, YAW_ACCELERATION = 3.0, 12.0
-"""Most that the robot's own controller asks of its motors [m/s^2, rad/s^2]; brisker than any drive
-of `sessions`, and within what the tyres hold."""
+"""Largest accelerations by the robot's own controller [m/s^2, rad/s^2]: above those of all drives
+of `sessions`, and within the grip of the tyres."""
 
 CHECKED_EVERY = 20
-"""Periods between two looks at the engine's warnings, each of which costs more than a period."""
+"""Periods between two checks for engine warnings, each of which costs more than a period."""
 
 KEPT = 400
-"""Rows of the true path that are kept, 2 s: more than any sensor looks back."""
+"""Rows of the true path that are kept, 2 s: longer than any sensor delay."""
 
 
 class LiveRobot:
-    """A robot in the engine, driven period by period as commands come.
+    """A robot in the engine, driven period by period by commands as they arrive.
 
     Parameters
     ----------
     robot : TrueRobot
     seed : int
-        Of everything random, as of `record`.
+        Seed of all random numbers, as in `record`.
     reference : ReferenceSensor, optional
-    start : Pose
-        Where the robot begins, in the world.
+    start : AxlePose
+        Start pose in the world.
     hidden : sequence of Peculiarity
-        What is odd; extra channels are not seen live.
+        Hidden peculiarities; their extra channels are not available live.
     sensors : FieldSensors, optional
-        The gyro's and the lidar's.
+        Errors of gyro and lidar.
     room : Room, optional
-        What the lidar sees. The engine knows nothing of it: the robot drives through its walls.
+        Obstacles for the lidar only: in the engine the robot drives through the walls.
     """
 
     def __init__(
@@ -80,24 +80,24 @@ class LiveRobot:
         self._count = self._unchecked = 0
         self._wanted = self._speeds = (0.0, 0.0)
         self.counters_lag = max((odd.ahead for odd in hidden), default=0.0)
-        """How long after its stamp a reading of the counters can be had [s]."""
+        """Delay from the stamp of a counter reading until it is available [s]."""
         delays = (self._sensor.delay, self._sensor.delay + self._sensor.heading_delay)
         self.reference_lag = max(0.0, *(-delay for delay in delays))
-        """The same of the reference [s]."""
+        """The same for the reference [s]."""
         self._keep()
 
     @property
     def time(self) -> float:
-        """Since the beginning [s]."""
+        """Time since the start [s]."""
         return self._driven.row[0]
 
     @property
     def pose(self) -> AxlePose:
-        """Where the robot truly is."""
+        """True pose of the robot."""
         return AxlePose(*self._driven.row[1:4])
 
     def command(self, speed: float, yaw_rate: float) -> None:
-        """Ask for a speed [m/s] and a yaw rate [rad/s], from now on."""
+        """Set the commanded speed [m/s] and yaw rate [rad/s]."""
         self._wanted = speed, yaw_rate
 
     def advance(self) -> None:
@@ -106,7 +106,7 @@ class LiveRobot:
         Raises
         ------
         UnstableError
-            When the engine lost its footing.
+            If the engine became unstable.
         """
         most = ACCELERATION * PERIOD, YAW_ACCELERATION * PERIOD
         self._speeds = (
@@ -121,7 +121,7 @@ class LiveRobot:
             self._driven.check()
 
     def counters(self, time: float) -> tuple[int, int]:
-        """What the counters, left and right, show at a time of the last second."""
+        """Readings of the counters, left and right, at a time within the last second [s]."""
         path = self._path()
         at = np.array([time])
         counted = self._rows[: self._count, 6:]
@@ -140,12 +140,12 @@ class LiveRobot:
         return int(seen.left_ticks[0]), int(seen.right_ticks[0])
 
     def reference(self, time: float) -> AxlePose:
-        """What the reference measures at a time of the last second."""
+        """Measurement of the reference at a time within the last second [s]."""
         measured = self._sensor.measure(self._path(), np.array([time]), self._noise)
         return AxlePose(*(float(each[0]) for each in measured))
 
     def gyro(self, since: float, until: float) -> float:
-        """Mean yaw rate [rad/s] that the gyro reads between two times of the last second."""
+        """Mean yaw rate of the gyro [rad/s] between two times within the last second [s]."""
         path = self._path()
         before, after = np.interp([since, until], path.t_s, path.yaw_rad)
         rate = (after - before) / (until - since)
@@ -153,14 +153,14 @@ class LiveRobot:
         return float(self._gyro.scale * rate + self._gyro.bias + noise)
 
     def sweep(self, start: float) -> Floats:
-        """Ranges [m] of the lidar's beams in the turn that began at a time and has ended."""
+        """Ranges [m] of the turn of the lidar that began at `start` [s]; it must have ended."""
         assert self._room is not None
         at = np.array([start])
         seen = sweeps_at(self._path(), self._room, self.lidar, at, self._lidar_noise)
         return np.asarray(seen.ranges[0])
 
     def _keep(self) -> None:
-        """Add the present row; of twice as many as are needed the older half goes."""
+        """Append the current row; when the buffer is full, discard its older half."""
         if self._count == len(self._rows):
             self._rows[:KEPT] = self._rows[KEPT:]
             self._count = KEPT

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot is told to drive: speed and yaw rate, piecewise linear in time."""
+"""Commands to a robot: speed and yaw rate, piecewise linear in time."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ Knot = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """A scripted drive: what goes to the robot's speed controller, as from a joystick.
+    """A scripted drive: commands to the robot's speed controller, as from a joystick.
 
     Parameters
     ----------
     name : str
-        Used as the run folder's name.
+        Name of the run folder.
     knots : tuple of (time, speed, yaw_rate)
-        Corners of the piecewise linear commands [s, m/s, rad/s], times not decreasing;
-        anticlockwise is positive. Two knots at the same time make a step.
+        Knots of the piecewise linear commands [s, m/s, rad/s] in the order of time; anticlockwise
+        is positive. Two knots at the same time make a step.
     """
 
     name: str
@@ -38,12 +38,12 @@ class Manoeuvre:
     def commands(self, times: Floats) -> tuple[Floats, Floats]:
         """Mean speed and yaw rate over each interval between `times`.
 
-        Means, not samples: so the commanded path closes however its corners lie on the time grid.
+        Exact means, not samples, so that a commanded path closes on any time grid.
 
         Parameters
         ----------
         times : ndarray, shape (n + 1,)
-            Increasing [s]. The commands are zero before the first and after the last knot.
+            Increasing [s]. Commands are zero before the first and after the last knot.
 
         Returns
         -------
@@ -55,7 +55,7 @@ class Manoeuvre:
 
 
 def _means(t: Floats, value: Floats, times: Floats) -> Floats:
-    """Mean of the piecewise linear `value` between successive `times`, exact."""
+    """Exact mean of the piecewise linear `value` between successive `times`."""
     at = np.clip(times, t[0], t[-1])
     integral_at_knots = np.concatenate(
         ([0.0], np.cumsum(np.diff(t) * (value[1:] + value[:-1]) / 2))
@@ -73,7 +73,7 @@ def _means(t: Floats, value: Floats, times: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class MoveLimits:
-    """How briskly to drive: limits of a move.
+    """Limits of speed and acceleration for moves.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class MoveLimits:
     yaw_rate, yaw_acceleration : float
         [rad/s], [rad/s^2].
     pause : float
-        Standstill after each move [s].
+        Rest after each move [s].
     """
 
     speed: float = 0.4
@@ -95,14 +95,14 @@ class MoveLimits:
 def moves(
     name: str, steps: Sequence[tuple[float, float]], pace: MoveLimits | None = None
 ) -> Manoeuvre:
-    """A manoeuvre of moves from rest to rest, each along a line, an arc or on the spot.
+    """A manoeuvre of moves from rest to rest, each a line, an arc or a turn on the spot.
 
     Parameters
     ----------
     name : str
     steps : sequence of (length, turn)
-        Signed length [m] and turn [rad] of each move; both at once make an arc.
-    pace : Pace, optional
+        Signed length [m] and turn [rad] of each move; both together make an arc.
+    pace : MoveLimits, optional
     """
     pace = pace or MoveLimits()
     knots: list[Knot] = [(0.0, 0.0, 0.0)]
@@ -116,10 +116,10 @@ def moves(
 
 
 def _trapezium(length: float, turn: float, pace: MoveLimits) -> list[tuple[float, float]]:
-    """Corners (time, rate) of a move's progress from 0 to 1 within the limits of `pace`."""
+    """Trapezoidal speed profile: corners (time, rate) of a move's progress from 0 to 1."""
     rate = min(_ratio(pace.speed, length), _ratio(pace.yaw_rate, turn))
     ramp = min(_ratio(pace.acceleration, length), _ratio(pace.yaw_acceleration, turn))
-    rate = min(rate, ramp**0.5)  # a short move never reaches full speed
+    rate = min(rate, ramp**0.5)  # a short move does not reach full speed
     rise = rate / ramp
     cruise = 1.0 / rate - rise
     return [(0.0, 0.0), (rise, rate), (rise + cruise, rate), (2 * rise + cruise, 0.0)]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The library of manoeuvres: squares, out and back, spins, eights, arcs, free and hard driving."""
+"""Library of manoeuvres: squares, out and back, spins, eights, arcs, free and hard driving."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .manoeuvre import Knot, Manoeuvre, MoveLimits, moves
 def square(
     side: float = 2.0, sense: str = "ccw", *, laps: int = 1, pace: MoveLimits | None = None
 ) -> Manoeuvre:
-    """`laps` squares of `side` [m], corners turned on the spot, left (`ccw`) or right (`cw`).
+    """`laps` squares of `side` [m] with turns on the spot, to the left (`ccw`) or right (`cw`).
 
-    The last corner is turned too, so a perfect robot ends where and as it began (UMBmark).
+    The last corner is turned too, so an ideal robot ends at its start pose (UMBmark).
     """
     corner = {"ccw": math.pi / 2, "cw": -math.pi / 2}[sense]
     return moves(f"square_{sense}", [(side, 0.0), (0.0, corner)] * (4 * laps), pace)
@@ -29,7 +29,7 @@ def out_and_back(
     laps: int = 1,
     pace: MoveLimits | None = None,
 ) -> Manoeuvre:
-    """Forwards by `distance` [m] and backwards again, as in the paper's section 5.2.
+    """Forwards by `distance` [m] and backwards again (Chong and Kleeman 1997, section 5.2).
 
     With `turn_round`, half a turn at each end instead of driving backwards.
     """
@@ -41,12 +41,12 @@ def out_and_back(
 
 
 def spin(turns: float = 5.0, *, pace: MoveLimits | None = None) -> Manoeuvre:
-    """`turns` full turns on the spot in one go, anticlockwise where positive."""
+    """`turns` full turns on the spot without a stop, anticlockwise if positive."""
     return moves("spin", [(0.0, 2 * math.pi * turns)], pace)
 
 
 def spins(turns: float = 2.0, *, pairs: int = 2, pace: MoveLimits | None = None) -> Manoeuvre:
-    """Spins to the left and to the right in turn, `pairs` of each."""
+    """Alternate spins to the left and to the right, `pairs` of each."""
     angle = 2 * math.pi * turns
     return moves("spins", [(0.0, angle), (0.0, -angle)] * pairs, pace)
 
@@ -66,7 +66,7 @@ def arcs(
     angle: float = math.pi,
     pace: MoveLimits | None = None,
 ) -> Manoeuvre:
-    """Arcs of several radii [m], each left forwards, left backwards, right forwards, right back."""
+    """Arcs of several radii [m]: left and right, each forwards and backwards."""
     steps = [
         (direction * radius * angle, direction * sense * angle)
         for radius in radii
@@ -79,7 +79,7 @@ def arcs(
 def pivots(
     angle: float = math.pi, *, base: float = 0.35, pace: MoveLimits | None = None
 ) -> Manoeuvre:
-    """Turns about one standing wheel, each wheel, both ways; `base` [m] is the wheel base."""
+    """Turns about one wheel at rest, both wheels, both directions; `base` [m] is the wheel base."""
     half = base / 2
     steps = [
         (along * half * angle, turn * angle) for along, turn in ((1, 1), (-1, -1), (1, -1), (-1, 1))
@@ -110,18 +110,18 @@ def free(
     acceleration: float = 0.6,
     backwards: float = 0.2,
 ) -> Manoeuvre:
-    """Driving about as with a joystick: new speed and yaw rate every second or two.
+    """Random driving as with a joystick: new speed and yaw rate every second or two.
 
     Parameters
     ----------
     duration : float
-        [s]; ends at rest, a little later.
+        Duration [s]; the drive ends at rest slightly later.
     seed : int
         The same seed gives the same drive.
     speed, yaw_rate : float
         Largest values [m/s, rad/s].
     acceleration : float
-        Typical ramp of the speed [m/s^2]; the yaw rate's is four times as many rad/s^2.
+        Typical acceleration [m/s^2]; the yaw acceleration has four times its value [rad/s^2].
     backwards : float
         Share of the time spent driving backwards, 0 to 1.
     """
@@ -139,14 +139,14 @@ def free(
 
 
 def _ramp(knots: list[Knot], speed: float, yaw_rate: float, acceleration: float) -> None:
-    """Append the knot where the new speed and yaw rate are reached."""
+    """Append the knot at which the new speed and yaw rate are reached."""
     t, v, w = knots[-1]
     takes = max(abs(speed - v) / acceleration, abs(yaw_rate - w) / (4 * acceleration), 0.05)
     knots.append((t + takes, speed, yaw_rate))
 
 
 def chain(name: str, *parts: Manoeuvre) -> Manoeuvre:
-    """Several manoeuvres, one after the other, as one."""
+    """Concatenate manoeuvres."""
     knots: list[Knot] = []
     for part in parts:
         start = knots[-1][0] if knots else 0.0

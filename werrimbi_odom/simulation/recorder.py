@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One drive from beginning to end: a robot, what it is told, and what was recorded of it."""
+"""Record one drive: a robot, its commands, and the measurements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .wheel_noise import wheel_noise
 Floats = NDArray[np.float64]
 
 REST = 0.6
-"""Standstill before and after the manoeuvre [s]."""
+"""Rest before and after the manoeuvre [s]."""
 
 
 def record(
@@ -45,16 +45,16 @@ def record(
     robot : TrueRobot
     manoeuvre : Manoeuvre
     seed : int
-        Of everything random in this run: noises, start pose, wheel angles, counters, time grids.
-        Each has its own stream, so switching one off leaves the others as they were.
+        Seed of all random numbers of this run: noises, start pose, wheel angles, counters, sampling
+        times. Each has its own stream, so that switching one off does not change the others.
     reference : ReferenceSensor, optional
-        By default a motion capture system at 20 Hz with 1 mm and 2 mrad of noise.
+        Default: motion capture at 20 Hz with 1 mm and 2 mrad of noise.
     ticks_rate_hz : float
-        How often the counters are read.
-    start : Pose, optional
-        Where the robot begins, in the world; by default anywhere within a metre, facing anywhere.
+        Sampling rate of the counters.
+    start : AxlePose, optional
+        Start pose in the world; by default random within a metre, with a random heading.
     hidden : sequence of Peculiarity
-        What is odd about the robot, its floor or its recording; acts in this order.
+        Peculiarities of the robot, its floor or its recording, applied in this order.
     """
     ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
     robot = ready.robot
@@ -77,7 +77,7 @@ def record(
 
 @dataclass(frozen=True)
 class ReadyRobot:
-    """A robot ready to be driven, with all that is odd about it, as `drive` takes it."""
+    """A robot ready to drive with its peculiarities, as arguments of `drive`."""
 
     robot: TrueRobot
     sensor: ReferenceSensor
@@ -96,7 +96,7 @@ def prepared(
     start: AxlePose | None = None,
     hidden: Sequence[Peculiarity] = (),
 ) -> ReadyRobot:
-    """Put a robot on its floor; parameters as of `record`."""
+    """Apply all peculiarities and draw the start; parameters as in `record`."""
     robot = reduce(lambda so_far, odd: odd.robot(so_far), hidden, robot)
     chassis = reduce(lambda so_far, odd: odd.chassis(so_far), hidden, chassis_of(robot))
     sensor = reduce(
@@ -127,7 +127,7 @@ def prepared(
 
 
 def counter_zeros(robot: TrueRobot, seed: int) -> tuple[int, int]:
-    """What the counters, left and right, show where their shafts' angles are zero."""
+    """Counter values, left and right, at zero shaft angle."""
     if robot.counters_keep_zero:
         return 0, 0
     left, right = stream(seed, "counters").integers(-100_000, 100_000, 2)
@@ -142,7 +142,7 @@ def _sample(
     ticks_rate_hz: float,
     seed: int,
 ) -> Recording:
-    """What encoders and reference saw of the true path."""
+    """Measurements of encoders and reference along the true path."""
     end = float(path.t_s[-1])
     t = sampling_times(ticks_rate_hz, end, stream(seed, "encoders"))
     zeros = counter_zeros(robot, seed)
@@ -170,7 +170,7 @@ def _sample(
 
 
 def wheel_speeds(robot: TrueRobot, manoeuvre: Manoeuvre) -> Floats:
-    """Motor speeds that the robot's own controller, believing the nominal geometry, asks for.
+    """Motor speeds commanded by the robot's own controller with its nominal geometry.
 
     Returns
     -------
@@ -190,7 +190,7 @@ def motor_speeds(robot: TrueRobot, speed: Floats, yaw_rate: Floats) -> tuple[Flo
 def motor_speeds(
     robot: TrueRobot, speed: float | Floats, yaw_rate: float | Floats
 ) -> tuple[float | Floats, float | Floats]:
-    """Of the left and right motor [rad/s], by the nominal geometry."""
+    """Speeds of the left and right motor [rad/s], by the nominal geometry."""
     half, radius = robot.nominal.wheel_separation / 2, robot.nominal.wheel_radius
     return (speed - half * yaw_rate) / radius, (speed + half * yaw_rate) / radius
 
@@ -207,5 +207,5 @@ _PURPOSES: tuple[Purpose, ...] = (
 
 
 def stream(seed: int, purpose: Purpose, number: int = 0) -> np.random.Generator:
-    """Random numbers of one purpose in the run `seed`, always from their beginning."""
+    """A new random generator for one purpose in the run `seed`."""
     return np.random.default_rng([seed, _PURPOSES.index(purpose), number])

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What one drive leaves behind: counters, a reference, and, for judging alone, the truth.
+"""Recording of one drive: counters, a reference, and the ground truth for evaluation only.
 
-Written to a folder (ticks.csv and reference.csv), the truth is left out.
+`write_run` writes counters and reference (ticks.csv and reference.csv) without the truth.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ Counts = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Happened:
-    """Something that happened at an instant of a drive, and is no law of the robot.
+    """An abrupt event in a drive.
 
-    `of` says what it was, `t_s` when [s], on the recording's clock; the robot, or what a reference
-    told, moved along and sideways [m] and turned [rad]; for a reference that is along its x and y.
+    `of` is its kind, `t_s` its time [s] in the recording's clock. The robot, or the output of a
+    reference, moved along and sideways [m] and turned [rad]; for a reference along its x and y.
     """
 
     of: str
@@ -37,26 +37,26 @@ class Happened:
 
 @dataclass(frozen=True)
 class Recording:
-    """One recorded drive; n rows of counters, m rows of reference, on the same clock.
+    """One recorded drive; n rows of counters, m rows of reference, in one clock.
 
     Parameters
     ----------
     name : str
-        The manoeuvre's.
+        Name of the manoeuvre.
     t_s : ndarray, shape (n,)
-        When the counters were read [s].
+        Times of the counter readings [s].
     left_ticks, right_ticks : ndarray of int64, shape (n,)
-        Cumulative signed counters, started anywhere, positive forwards.
+        Cumulative signed counters with arbitrary start values, positive forwards.
     reference_t_s, reference_x_m, reference_y_m, reference_yaw_rad : ndarray, shape (m,)
-        What the reference measured: the axle's midpoint in the reference's frame; yaw wrapped to
-        (-pi, pi], as a motion capture system gives it.
+        Measurements of the reference: the axle's midpoint in the reference's frame; yaw wrapped to
+        (-pi, pi], as from a motion capture system.
     true_path : TruePath
-        The axle's midpoint in the world, free of measuring noise (wheel noise moved the robot, so
-        it is in it).
+        Pose of the axle's midpoint in the world without measurement noise. Wheel noise is included,
+        because it moves the robot.
     channels : mapping of str to ndarray of shape (n,)
         Further measured columns of ticks.csv.
     happened : tuple of Happened
-        At single instants; the truth, which is not written with the drive.
+        Events; part of the truth, so not written with the drive.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Recording:
 
 
 def write_run(recording: Recording, folder: str | Path) -> Path:
-    """Write `recording` as a run folder, made with its parents; the truth is left out.
+    """Write `recording` as a run folder without the truth; parent folders are created.
 
     Parameters
     ----------
@@ -93,7 +93,8 @@ def write_run(recording: Recording, folder: str | Path) -> Path:
 
     Returns
     -------
-    Path of the folder
+    Path
+        The folder.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The robot as it truly is, and as its maker believes it to be. Both immutable."""
+"""The true robot, and its nominal parameters. Both immutable."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Nominal:
-    """What the maker believes: the numbers of the robot file and of the robot's own controller.
+    """Nominal parameters: those of the robot file and of the robot's own controller.
 
     Parameters
     ----------
@@ -25,31 +25,31 @@ class Nominal:
 
 @dataclass(frozen=True)
 class TrueRobot:
-    """A differential-drive robot on two spherical wheels and a frictionless skid behind.
+    """True parameters of a differential-drive robot on two spherical wheels and a skid.
 
-    With the default values the truth is as the maker believes, and the wheels have no noise.
+    By default they are equal to the nominal ones, and the wheels have no noise.
 
     Parameters
     ----------
     wheel_separation : float
         True distance between the contact points, B [m].
     left_wheel_radius, right_wheel_radius : float
-        True rolling radii [m]: a turn of the wheel moves its hub by exactly 2 pi times this.
+        True rolling radii [m]: one revolution moves the hub by exactly 2 pi times this.
     left_ticks_per_revolution, right_ticks_per_revolution : float
-        Counts of each encoder in one turn of its wheel.
+        Counts of each encoder per revolution of its wheel.
     left_wheel_noise, right_wheel_noise : float
-        k_L, k_R [m^0.5]: over a path of length s each wheel's travel errs by a Gaussian of
-        variance k^2 |s|, white along the path, the wheels independent (Chong and Kleeman 1997,
-        section 4). Zero: none.
+        k_L, k_R [m^0.5]: over a path of length s the travel of each wheel has a Gaussian error of
+        variance k^2 |s|, white along the path and independent between wheels (Chong and Kleeman
+        1997, section 4). Zero for none.
     counters_keep_zero : bool
-        True: a counter of zero always belongs to the same angle of the wheel (an absolute
-        encoder). False: counters start anywhere, as after switching on a real robot.
+        True: counter zero is always at the same wheel angle (absolute encoder). False: counters
+        have random start values, as after a real robot is switched on.
     mass : float
-        Of the whole robot [kg].
+        Total mass [kg].
     wheels_a_side : int
-        That the robot file lists.
+        Number of wheels per side in the robot file.
     nominal : Nominal
-        What the controller and the robot file believe.
+        Parameters of the controller and of the robot file.
     """
 
     wheel_separation: float = 0.35

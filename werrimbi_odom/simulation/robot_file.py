@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writing the robot file that a user of the robot would have: nominal values, commented."""
+"""Write the robot file that a user of the robot would have: nominal values, with comments."""
 
 from __future__ import annotations
 
@@ -34,17 +34,18 @@ odom_node:
 
 
 def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
-    """Write what the maker believes of `robot`; its true geometry stays out, its noise goes in.
+    """Write the nominal parameters of `robot` and its noise, without its true geometry.
 
     Parameters
     ----------
     robot : TrueRobot
     path : path
-        Of the YAML file; its folder must exist.
+        YAML file to write; its folder must exist.
 
     Returns
     -------
-    Path of the file
+    Path
+        The file.
     """
     path = Path(path)
     text = _TEMPLATE.format(
@@ -62,13 +63,13 @@ def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
 
 
 def joints(side: str, count: int) -> list[str]:
-    """Names of a side's wheel joints."""
+    """Names of the wheel joints of one side."""
     if count == 1:
         return [f"{side}_wheel_joint"]
     return [f"{place}_{side}_wheel_joint" for place in ("front", "rear")]
 
 
 def _real(value: float) -> str:
-    """Digits that every YAML reader takes for a real number: with a point, also before an e."""
+    """Digits that every YAML reader takes for a float: with a point, also before an exponent."""
     digits = repr(float(value))
     return digits if "." in digits else digits.replace("e", ".0e")

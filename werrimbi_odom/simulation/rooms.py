@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Rooms for a lidar: furnished, bare, long. Each has its middle at the origin unless it says so."""
+"""Rooms for a lidar: furnished, bare, long. They are centred at the origin unless stated."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 def living_room(people: bool = False) -> Room:
-    """6 m by 5 m with a cupboard, shelves, a sofa, table legs and a wall that is askew."""
+    """6 m by 5 m with a cupboard, shelves, a sofa, table legs and an oblique wall."""
     walls = [
         box(-3.0, -2.5, 3.0, 2.5),
         box(2.5, -1.2, 3.0, 0.6),  # a cupboard
@@ -37,13 +37,13 @@ def arena(side: float = 2.6) -> Room:
 
 
 def corridor(length: float = 80.0, width: float = 2.0) -> Room:
-    """Two bare walls along x, from -10 m on; the ends are beyond what is seen."""
+    """Two bare walls along x, from -10 m on; the ends are beyond the lidar's range."""
     half = 0.5 * width
     return Room(np.array([[-10.0, -half, length, -half], [-10.0, half, length, half]]))
 
 
 def corridor_with_cupboards(length: float = 40.0, width: float = 2.0, seed: int = 0) -> Room:
-    """A corridor with cupboards and doors' frames every metre or two, on both sides."""
+    """A corridor with cupboards and door frames every metre or two, on both sides."""
     rng = np.random.default_rng(seed)
     half = 0.5 * width
     walls = [box(-3.0, -half, length, half)]
@@ -58,14 +58,14 @@ def corridor_with_cupboards(length: float = 40.0, width: float = 2.0, seed: int 
 
 
 def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
-    """A furnished room about a path, with walls and cupboards out of its way.
+    """A furnished room around a path that keeps clear of the path.
 
     Parameters
     ----------
     x, y : ndarray
         The path [m].
     margin : float
-        Least distance from the path to a wall [m]; cupboards stand half of it out.
+        Least distance from the path to a wall [m]; cupboards take up to half of it.
     """
     rng = np.random.default_rng([seed, 80])
     wide = margin + rng.uniform(0.0, 0.6, 4)
@@ -88,7 +88,7 @@ def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
 
 
 def box(left: float, lower: float, right: float, upper: float) -> Floats:
-    """Its four sides, shape (4, 4)."""
+    """Four sides of a rectangle, shape (4, 4)."""
     return np.array(
         [
             [left, lower, right, lower],

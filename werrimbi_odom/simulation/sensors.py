@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Encoders that count and a reference that measures, both sampled from the true path."""
+"""Encoders and a reference, both sampled from the true path."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 WORLD = AxlePose(0.0, 0.0, 0.0)
-"""The frame of the world itself."""
+"""The world frame."""
 
 
 @dataclass(frozen=True)
 class ReferenceSensor:
-    """A motion capture system, or whatever measures the robot's pose from outside.
+    """A motion capture system, or another external measurement of the robot's pose.
 
     Parameters
     ----------
     rate_hz : float
-        Samples a second, on its own grid of times.
+        Sampling rate, with its own sampling times.
     sigma_xy, sigma_yaw : float
-        Standard deviations of each coordinate [m] and of the yaw [rad], independent in each sample.
-    frame : Pose
-        The reference's own frame, as seen in the world: where its origin lies and how it is turned.
-    mount : Pose
-        Of the marker on the robot: ahead of and left of the axle's midpoint [m], and turned [rad].
+        Standard deviations of each coordinate [m] and of the yaw [rad], white noise.
+    frame : AxlePose
+        Pose of the reference's frame in the world.
+    mount : AxlePose
+        Of the marker on the robot: ahead and to the left of the axle's midpoint [m], and yaw [rad].
     delay : float
-        What is stamped t was measured at t - delay [s].
+        A sample with stamp t was measured at t - delay [s].
     heading_delay : float
-        The yaw's further delay [s].
+        Additional delay of the yaw [s].
     mirrored : str
         "no", "y_down" (y and yaw with the wrong sign) or "exchanged" (x and y exchanged, yaw
         clockwise from the new x), as in a left-handed frame.
@@ -53,14 +53,14 @@ class ReferenceSensor:
     mirrored: Literal["no", "y_down", "exchanged"] = "no"
 
     def times(self, end: float, rng: np.random.Generator) -> Floats:
-        """Times of the samples until `end` [s], started anywhere in the first 0.3 s."""
+        """Times of the samples until `end` [s], from a random start in the first 0.3 s."""
         return sampling_times(self.rate_hz, end, rng)
 
     def measure(
         self, path: TruePath, times: Floats, rng: np.random.Generator
     ) -> tuple[Floats, Floats, Floats]:
         """Poses x, y [m], yaw [rad] in the reference's frame at `times`, with noise."""
-        # Between the path's rows (5 ms) a chord differs from the arc by some micrometres at most.
+        # Between rows of the path (5 ms) a chord differs from the arc by a few micrometres at most.
         at = times - self.delay
         heading = np.interp(at, path.t_s, path.yaw_rad)
         x = np.interp(at, path.t_s, path.x_m)
@@ -84,22 +84,22 @@ class ReferenceSensor:
 
 
 def sampling_times(rate_hz: float, end: float, rng: np.random.Generator) -> Floats:
-    """A regular grid of times until `end` [s], started anywhere in the first 0.3 s."""
+    """A regular grid of times until `end` [s], from a random start in the first 0.3 s."""
     return np.arange(rng.uniform(0.0, 0.3), end, 1.0 / rate_hz)
 
 
 def count(
     path_t: Floats, angle: Floats, times: Floats, ticks_per_revolution: float, start: int = 0
 ) -> Counts:
-    """What an encoder's counter shows at `times` when its shaft turned as `angle` [rad] says.
+    """Counter readings of an encoder at `times`, shape (n,), for the shaft angle `angle` [rad].
 
-    A counter steps when the shaft passes a mark, so it shows the angle rounded down.
+    A counter steps when the shaft passes a mark, so the angle is rounded down.
     """
     turns = np.interp(times, path_t, angle) / (2 * math.pi)
     return np.floor(turns * ticks_per_revolution).astype(np.int64) + start
 
 
 def wrap(angle: Floats) -> Floats:
-    """The same directions within (-pi, pi] [rad]."""
+    """Angles wrapped to (-pi, pi] [rad]."""
     wrapped: Floats = -((math.pi - angle) % (2 * math.pi) - math.pi)
     return wrapped

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A day with the robot: eleven drives of about a minute, seven to learn from, four to test."""
+"""A session of eleven drives of about a minute: seven for training, four held out."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ FAST = MoveLimits(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.
 
 
 def drives(seed: int) -> dict[str, Manoeuvre]:
-    """The session's manoeuvres by the names of their run folders.
+    """Manoeuvres of the session by the names of their run folders.
 
-    Between them they hold what an effect may depend on: lines in all directions, curves to both
-    sides, slow and fast, spins, driving backwards, hard starts and stops, standing still.
+    Together they excite everything that an effect may depend on: lines in all directions, curves to
+    both sides, slow and fast, spins, driving backwards, hard starts and stops, standing still.
     """
     return {
         "train/square_ccw": square(1.5, laps=2),
@@ -74,15 +74,15 @@ def session(
     reference: ReferenceSensor | None = None,
     ticks_rate_hz: float = 50.0,
 ) -> Iterator[tuple[str, Recording]]:
-    """Record the session's drives, one after the other.
+    """Record the drives of the session, one after the other.
 
     Parameters
     ----------
     robot : TrueRobot
     seed : int
-        Of the whole session; each run has its own from it.
+        Seed of the session; the seeds of the runs follow from it.
     hidden : sequence of Peculiarity
-        What is odd, in all runs alike.
+        Peculiarities, the same in all runs.
     reference : ReferenceSensor, optional
     ticks_rate_hz : float
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""White noise of each wheel's travel along its path: Chong and Kleeman's error model."""
+"""White noise of each wheel's travel along its path (Chong and Kleeman 1997)."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .robot import TrueRobot
 
 
 def wheel_noise(robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-    """Each wheel travels a little more or less than its turning says.
+    """Travel noise of both wheels.
 
-    Over a stride of path length s the left wheel errs by N(0, k_L^2 s), the right one by
-    N(0, k_R^2 s), independently (section 4 of the paper). No force belongs to it, so the body is
-    moved after the step; the encoders see the rolling alone.
+    Over a stride of path length s the left wheel errs by N(0, k_L^2 s), the right one by N(0,
+    k_R^2 s), independently (section 4 of the paper). The noise has no force, so the body is moved
+    after the step; the encoders see only the rolling.
     """
 
     def shift(stride: Stride) -> Shift:

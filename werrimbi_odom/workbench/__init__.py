@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The workbench: compare, diagnose, add and save on one local page.
 
-What is open (`opened`) is read once and shared; what a browser tab has done with it (`steps`) is
-a value of its own. Long work (`verbs`) runs in a process of its own (`job`, `work`), so that it
-can be stopped. `page` and `views` show it all; `server` lets only this machine in.
+The input (`opened`) is read once and shared by all browser tabs. The history of a tab (`steps`) is
+an immutable value. Long work (`verbs`) runs in another process (`job`, `work`), so that it can be
+cancelled. `page` and `views` show it all; `server` accepts requests of this machine only.
 """

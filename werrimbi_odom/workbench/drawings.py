@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the page draws: the measured paths, the legs on the floor, the error falling; light, dark.
+"""Figures of the page: measured paths, legs on the floor, decrease of the error; light and dark.
 
-Values in, figures out: no page is needed to try them. A long drive is drawn with fewer points;
-every figure is counted with all.
+They are functions from values to figures, testable without a page. Long drives are drawn with fewer
+points; all statistics are of the complete data.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ from werrimbi_odom.report.style import (
 from werrimbi_odom.workbench.steps import ModelVersion
 
 BUTTONS = ["select2d", "lasso2d", "autoScale2d", "toImage"]
-"""Of plotly's tool bar, that nobody needs here."""
+"""Buttons of plotly's tool bar that are removed."""
 
 _COLOURS = re.compile("|".join(IN_THE_DARK), re.IGNORECASE)
 WIDTH, HEIGHT, EDGE = 720.0, 400.0, 24.0
-"""Of the drawing of the measured paths [pixels]."""
+"""Size and margin of the drawing of the measured paths [pixels]."""
 
 YELLOW = "#E69F00"
 CHI2_9999 = np.array([np.inf, 15.136705226623606, 18.420680743952367, 21.107513466160785])
-"""99.99 % quantiles of chi-squared by its degrees of freedom."""
+"""99.99 % quantiles of chi-squared, by degrees of freedom."""
 
 CLASSES = (
     ("as promised", BLUE, 2.0, "solid"),
@@ -59,13 +59,13 @@ CLASSES = (
 )
 
 _POINTS = 6000
-"""Of all paths, that are drawn."""
+"""Limit of drawn points of all paths."""
 
 _LEGS = 2000
-"""Of each class, that are drawn; beyond (some hours of driving) every few."""
+"""Limit of drawn legs of each class; beyond it (some hours of driving) a regular selection."""
 
 _TEXTS = MARKS
-"""Legs, beyond which only those that err tell their figures under the pointer."""
+"""Limit of legs with hover texts; beyond it those with the largest errors."""
 
 
 def classes_of(comparison: Comparison) -> NDArray[np.intp]:
@@ -78,10 +78,10 @@ def classes_of(comparison: Comparison) -> NDArray[np.intp]:
 
 
 def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> Figure:
-    """The legs where they were driven, told apart by how far they err from what was promised.
+    """The legs on the floor, classified by their error relative to the covariance.
 
-    Where `which` is given, those stand out and the rest is faint. Colour, width and dash tell the
-    same, so that no eye needs the colour.
+    If `which` is given, these legs are highlighted and the rest is faint. Colour, width and dash
+    are redundant, so that colour vision is not needed.
     """
     figure = empty_floor()
     lines = _lines(comparison)
@@ -115,7 +115,7 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
 
 
 def empty_floor() -> Figure:
-    """Nothing on it yet: seen from above, equal scales, to be moved about."""
+    """An empty floor plan with equal scales, which can be panned."""
     figure = blank()
     figure.update_xaxes(title="x [m]")
     figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
@@ -127,9 +127,9 @@ def empty_floor() -> Figure:
 def _add_texts(
     figure: Any, comparison: Comparison, chosen: NDArray[np.bool_], grade: NDArray[np.intp]
 ) -> None:
-    """The middle of the legs, unseen, which tells their figures under the pointer.
+    """Add invisible lines through the middles of the legs, with hover texts.
 
-    An unseen line and no marks: it is one element of the page, however many corners it has.
+    A line instead of marks is a single element of the page.
     """
     legs = comparison.legs
     told = np.flatnonzero(chosen & np.isfinite(legs.x) & np.isfinite(legs.end_x))
@@ -147,7 +147,7 @@ def _add_texts(
 
 
 def leg_told(comparison: Comparison, index: int) -> str:
-    """One leg in two lines."""
+    """Hover text of one leg in two lines."""
     legs = comparison.legs
     run = comparison.runs[legs.run[index]].run.name
     along, sideways, heading = legs.errors.error[index]
@@ -159,7 +159,7 @@ def leg_told(comparison: Comparison, index: int) -> str:
 
 
 def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
-    """The measured path of every leg, thinned."""
+    """The measured path of every leg, thinned out."""
     legs, paths = comparison.legs, comparison.paths
     total = sum(path.measured.size for path in paths)
     every = max(1, total // _POINTS)
@@ -177,7 +177,7 @@ def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
 def _joined(
     lines: list[tuple[Floats, Floats]], which: NDArray[np.intp]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Lines behind each other, parted by NaN."""
+    """Lines in sequence, separated by NaN."""
     gap = np.array([np.nan])
     if which.size > _LEGS:
         which = which[np.linspace(0, which.size - 1, _LEGS).astype(np.intp)]
@@ -191,7 +191,7 @@ def _joined(
 
 
 def gain_figure(steps: Sequence[ModelVersion]) -> Figure:
-    """Held-out and fitted drives apart, and what noise alone would leave of the held-out ones."""
+    """Errors of held-out and fitted drives, and the error of the former by noise alone."""
     added = steps[-1].added
     explained = added is not None and added.explained
     floor = added.noise_alone(added.holdout) if added is not None and explained else math.nan
@@ -207,9 +207,9 @@ def gain_figure(steps: Sequence[ModelVersion]) -> Figure:
 
 
 def measured_drawing(runs: Sequence[Run]) -> str | None:
-    """The paths from above (SVG) with a bar for the scale; None where no position was measured.
+    """The paths from above (SVG) with a scale bar; None if no positions were measured.
 
-    It needs no program: plotly.js takes a while to begin, and comes while this is looked at.
+    It needs no JavaScript, so it is visible while plotly.js loads.
     """
     paths = [places for run in runs if (places := _places(run)).size]
     if not paths:
@@ -253,13 +253,13 @@ def _drawn(
 
 
 def _round(length: float) -> float:
-    """1, 2 or 5 times a power of ten, not longer."""
+    """Largest of 1, 2 or 5 times a power of ten that is not longer."""
     ten = 10.0 ** math.floor(math.log10(length))
     return next(step * ten for step in (5.0, 2.0, 1.0) if step * ten <= length * (1.0 + 1e-9))
 
 
 def shown(figure: Figure | str, dark: bool) -> dict[str, Any]:
-    """A figure (or its JSON) as the page draws it; in the dark every colour has its twin."""
+    """A figure (or its JSON) for plotly.js; in the dark theme its colours are replaced."""
     words = figure if isinstance(figure, str) else str(figure.to_json())
     if dark:
         words = _COLOURS.sub(lambda found: IN_THE_DARK[found.group().upper()], words)
@@ -267,7 +267,7 @@ def shown(figure: Figure | str, dark: bool) -> dict[str, Any]:
     if dark:
         for name, axis in drawn["layout"].items():
             if name.startswith("coloraxis") and not axis.get("meta"):
-                axis["reversescale"] = True  # much stands out from the page
+                axis["reversescale"] = True  # the high end of the scale contrasts with the page
     drawn["config"] = {
         "displaylogo": False,
         **KEPT_HERE,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 // SPDX-License-Identifier: Apache-2.0
-// A figure: drawn once its drawing program is there, as wide as its place, gone with it.
+// A figure: drawn when plotly.js is loaded, with the width of its container, and purged with it.
 const program = () => new Promise((done) => {
   const look = () => (window.Plotly ? done(window.Plotly) : setTimeout(look, 20));
   look();
@@ -11,10 +11,10 @@ export default {
   props: { figure: Object },
   async mounted() {
     const Plotly = await program();
-    if (!this.$el.isConnected) return;  // drawn anew meanwhile
+    if (!this.$el.isConnected) return;  // redrawn meanwhile
     const { data, layout, config } = this.figure;
     await Plotly.newPlot(this.$el, data, layout, config);
-    // Its label and the tables say it; marks and tool bar would only be stumbled over.
+    // For screen readers: the label and the tables have the content; marks and tool bar are noise.
     for (const part of this.$el.children) part.setAttribute("aria-hidden", "true");
     for (const part of this.$el.querySelectorAll("[tabindex], a, button")) part.tabIndex = -1;
     this.watcher = new ResizeObserver(() => {

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Plain HTML elements, with names for screen readers, and figures, drawn by plotly.js itself.
+"""Plain HTML elements with labels for screen readers, and figures drawn by plotly.js.
 
-The drawing program is asked for before the first figure comes, so that it is there by then.
+plotly.js is requested before the first figure arrives, so that it is loaded by then.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ def text(tag: str, words: str = "", classes: str = "", **attributes: object) -> 
 
 
 def box(tag: str = "div", classes: str = "", **attributes: object) -> Any:
-    """An element for others to go in."""
+    """A container element."""
     return _dressed(ui.element(tag), classes, attributes)
 
 
 class HasActions(Protocol):
-    """What knows what each button does."""
+    """An object with the actions of buttons by their keys."""
 
     actions: dict[str, Callable[[], Any]]
 
@@ -49,7 +49,7 @@ def button(
     disabled: bool = False,
     **attributes: object,
 ) -> Any:
-    """A real button; `key` is how the page finds it again, and what it does, after a redraw."""
+    """A button element; `key` identifies it and its action after a redraw."""
     element = text("button", words, classes, type="button", data_key=key, **attributes)
     if disabled:
         element.props["disabled"] = True
@@ -58,10 +58,10 @@ def button(
 
 
 def listen(place: Any, tab: HasActions) -> None:
-    """Hear every button within, those drawn later too.
+    """Handle clicks on every button within, including those drawn later.
 
-    A press names its button by key: one that was drawn anew while the finger came down still does
-    what it says.
+    A click is identified by the button's key, so it works even if the button was redrawn while it
+    was pressed.
     """
 
     async def pressed(event: GenericEventArguments) -> None:
@@ -89,7 +89,7 @@ def _dressed(element: Any, classes: str, attributes: dict[str, object]) -> Any:
 
 
 def prose(parts: Iterable[Part]) -> None:
-    """Parts of a document, as its page has them."""
+    """Parts of a document as HTML."""
     ui.html(as_html(parts), sanitize=False)
 
 
@@ -97,7 +97,7 @@ _DRAWING = "/plotly.min.js"
 
 
 class _Figure(Element, component="figure.js"):
-    """What `figure.js` draws."""
+    """The Vue component of `figure.js`."""
 
     def __init__(self, drawn: dict[str, Any]) -> None:
         super().__init__()
@@ -105,19 +105,19 @@ class _Figure(Element, component="figure.js"):
 
 
 def serve_drawing() -> None:
-    """Have the drawing program at an address of the server; it never leaves this machine."""
+    """Serve plotly.js locally."""
     with as_file(drawing_program()) as file:
         app.add_static_file(local_file=file, url_path=_DRAWING)
 
 
 def ask_for_drawing(at_once: bool) -> None:
-    """Have the page load the drawing program while other things go on.
+    """Load plotly.js in the background.
 
     Parameters
     ----------
-    at_once
-        Whether figures will be there at once. It holds the page for a second as it begins: where
-        they will not, what needs no figure is shown first.
+    at_once : bool
+        Whether figures are shown at once. Loading blocks the page for a second, so otherwise it
+        waits until the rest is shown.
     """
     begin = "ask()" if at_once else "addEventListener('load', () => setTimeout(ask, 50))"
     ui.add_head_html(
@@ -133,6 +133,6 @@ def ask_for_drawing(at_once: bool) -> None:
 
 
 def figure(drawn: Any, dark: bool, label: str, classes: str = "plot") -> None:
-    """A plotly figure, or its JSON, in the page's colours; `label` is for who does not see it."""
+    """A plotly figure, or its JSON, in the page's colours; `label` is for screen readers."""
     with box("div", "figure", role="figure", aria_label=label):
         _Figure(shown(drawn, dark)).classes(classes)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the page asks of a process of its own: told how far it is, stopped when nobody wants it.
+"""A task in another process, with progress and cancellation.
 
-Few imports: the first process is begun before anything else is.
+This module has few imports, because the first process is started before anything else.
 """
 
 from __future__ import annotations
@@ -26,50 +26,52 @@ if TYPE_CHECKING:
 
 
 def begin(asked: Connection) -> None:
-    """See `work.work`."""
+    """Entry point of the process; see `work.work`."""
     from werrimbi_odom.workbench.work import work
 
     work(asked)
 
 
 class CancelledError(Exception):
-    """The work was stopped by who had asked for it."""
+    """The task was cancelled by its owner."""
 
 
 @dataclass(eq=False)
 class Job:
-    """One piece of work under way; its progress is there to be looked at."""
+    """A running task and its progress."""
 
     task: Task
     share: float = 0.0
-    """Done, 0 to 1."""
+    """Share done, 0 to 1."""
     words: str = "starting"
     cancelled: bool = False
     begun: float = field(default_factory=time.monotonic)
-    """[s]"""
+    """Time of the start [s]."""
     _process: Any = field(default=None, repr=False)
     _pipe: Any = field(default=None, repr=False)
 
     def cancel(self) -> None:
-        """Stop it; whoever waits for its result gets `CancelledError`."""
+        """Cancel the task; whoever waits for its result gets `CancelledError`."""
         self.cancelled = True
         if self._process is not None:
             self._process.kill()
 
     async def result(self, given: Recordings, known: Mapping[str, Any]) -> Any:
-        """Do the work; the event loop goes on meanwhile.
+        """Run the task without blocking the event loop.
 
         Parameters
         ----------
-        known
-            What the worker has too, and need not send back, by the words it knows it by.
+        given : Recordings
+            Input of the task.
+        known : mapping of str to object
+            Objects that the worker has too and need not send back, by their common names.
 
         Raises
         ------
         InputError
-            When the drives do not allow it.
+            If the task fails on these drives.
         CancelledError
-            When it was stopped.
+            If it was cancelled.
         """
         import asyncio
 
@@ -79,14 +81,14 @@ class Job:
             self.cancel()
 
     def start(self) -> None:
-        """Have the process there, and let it import what it needs, before the work is known.
+        """Start the process, which imports its modules before the task is known.
 
         Raises
         ------
         CancelledError
-            When it was stopped already.
+            If it was cancelled already.
         """
-        # Not forked: a copy of a process with threads (those of the server) may hang.
+        # Not forked: a fork of a process with threads (those of the server) may deadlock.
         context = multiprocessing.get_context("spawn")
         self._pipe, other = context.Pipe()
         process = context.Process(target=begin, args=(other,), daemon=True)
@@ -96,18 +98,18 @@ class Job:
         self._process = process
         if self.cancelled:
             process.kill()
-        other.close()  # ours; so that its end is seen when the worker ends
+        other.close()  # our copy, so that the end of the pipe is seen when the worker ends
 
     def ask(self, given: Recordings) -> None:
-        """Say what is to be done, to a process that was started."""
+        """Send the task to a process that was started."""
         from werrimbi_odom.workbench.work import packed
 
         data = packed((self.task, given), {})
-        # It may still be importing, and a pipe holds little until it reads.
+        # The process may still be importing, and a pipe blocks until it reads.
         Thread(target=self._send, args=(given.how.effects, data), daemon=True).start()
 
     def _send(self, files: tuple[Path, ...], data: bytes) -> None:
-        with suppress(OSError):  # it was stopped; whoever waits for the result is told
+        with suppress(OSError):  # it was cancelled; the waiting side reports it
             self._pipe.send(files)
             self._pipe.send_bytes(data)
 
@@ -118,9 +120,9 @@ class Job:
         process, receiving = self._process, self._pipe
         try:
             result = self._received(receiving, known, given.collection)
-            process.kill()  # it has nothing left to do, and would take its time to end
+            process.kill()  # it has nothing left to do, and its exit takes time
             return result
-        except (EOFError, OSError):  # what it had not read yet makes it a reset, not an end
+        except (EOFError, OSError):  # with unread data, the pipe is reset instead of ended
             if self.cancelled:
                 raise CancelledError from None
             raise InputError(
@@ -149,14 +151,14 @@ class Job:
 
 @dataclass(frozen=True)
 class Diagnose:
-    """Find out what a robot's model is missing."""
+    """Diagnose what a robot's model is missing."""
 
     robot: Robot
 
 
 @dataclass(frozen=True)
 class Add:
-    """Fit more effects together, and compare."""
+    """Fit additional effects together, and compare."""
 
     effects: tuple[str, ...]
     robot: Robot

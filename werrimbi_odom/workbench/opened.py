@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the workbench was started with, read and cut into legs once, shared by all who look."""
+"""The input of the workbench, read and cut into legs once, shared by all tabs."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ from werrimbi_odom.progress import Show, silent
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """A robot over all drives, cut into the same legs as every other robot."""
+    """Comparison of a robot on all drives, over the same legs as every other robot."""
 
     robot: Robot
     train: Comparison
     holdout: Comparison
     verdict: Verdict
-    """On the fitted drives."""
+    """Verdict on the fitted drives."""
     holdout_verdict: Verdict
 
     @property
     def holdout_error(self) -> float:
-        """Position error of the held-out legs, rms; NaN where no position was measured [m]."""
+        """Position RMSE of the held-out legs [m]; NaN if no positions were measured."""
         return self.holdout.main.all.figures.rmse_position_m
 
     @property
     def train_error(self) -> float:
-        """The same of the drives that are fitted [m]."""
+        """Position RMSE of the fitted legs [m]."""
         return self.train.main.all.figures.rmse_position_m
 
 
 @dataclass(frozen=True, eq=False)
 class Opened:
-    """Drives to learn from, drives to judge on, and how they are to be read."""
+    """Drives for fitting, held-out drives, and how they are read."""
 
     given: Recordings
-    """As they were given: enough to open them again in another process, to the same legs."""
+    """As given; sufficient to open them in another process with the same legs."""
     train: PreparedRuns
-    """Cut into legs by the travel of the robot as given."""
+    """Fitted drives, cut into legs by the travel of the robot as given."""
     holdout: PreparedRuns
     judged_on: tuple[str, ...]
-    """Names of the held-out drives, given or put aside."""
+    """Names of the held-out drives, given or split off."""
 
     def look(self, robot: Robot, show: Show = silent) -> Look:
         """Compare a robot on all drives."""
@@ -63,12 +63,12 @@ class Opened:
 
 
 def opened(given: Recordings) -> Opened:
-    """Match and cut everything.
+    """Match and cut all drives.
 
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks.
+        If a run has no usable reference or no ticks.
     """
     both = split(given)
     judge = judge_of(both.runs, both.holdout, given.robot, given.evaluation)
@@ -77,7 +77,7 @@ def opened(given: Recordings) -> Opened:
 
 
 def split(given: Recordings) -> Recordings:
-    """With runs to judge on: those given, or parts of all runs put aside."""
+    """With held-out runs: those given, or parts of all runs."""
     if given.holdout:
         return given
     runs, holdout = set_aside(given.runs)

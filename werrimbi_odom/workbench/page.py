@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The page: built for each browser tab, drawn again whenever its state has changed."""
+"""The page: built for each browser tab, redrawn on every change of its state."""
 
 from __future__ import annotations
 
@@ -45,18 +45,18 @@ for (const event of ["keydown", "pointerdown"]) {
   addEventListener(event, () => { werrimbiWanted = null; }, true);  // the user goes his own way
 }
 </script>"""
-"""Drawing takes place when the browser likes; until then the old element may still be there."""
+"""The browser redraws at its own time; until then the old element may still be there."""
 
 _SESSION, _DARK = "session", "dark"
 
 
 async def page(opening: Opening) -> None:
-    """Everything that a tab sees: first what is known before anything is compared."""
+    """The whole page of a tab; at first with what is known before the comparison."""
     ask_for_drawing(at_once=opening.shared is not None)
     ui.add_css(STYLE.read_text(encoding="utf-8"))
     ui.add_head_html(FOCUS)
     ui.page_title(f"{opening.given.source.path.name} · werrimbi workbench")
-    client, theme = ui.context.client, ui.dark_mode(None)  # as the system has it, until known
+    client, theme = ui.context.client, ui.dark_mode(None)  # as in the system settings, until known
     first = box("div")
     with first:
         if opening.shared is None:
@@ -65,7 +65,7 @@ async def page(opening: Opening) -> None:
             text("p", "Opening …", "opening")
     await client.connected()
     if not client.has_socket_connection:
-        return  # something that only fetched the page
+        return  # only fetched the page
     kept = app.storage.tab
     dark = kept.get(_DARK)
     if dark is None:
@@ -74,7 +74,7 @@ async def page(opening: Opening) -> None:
         )
     theme.set_value(bool(dark))
     if opening.shared is None:
-        empty_floor()  # plotly takes a while to begin: now, while others work
+        empty_floor()  # initialise plotly, which takes time, while the other process works
     try:
         shared = await opening.result()
     except InputError as error:
@@ -82,13 +82,13 @@ async def page(opening: Opening) -> None:
         with first:
             failed_view(str(error))
         return
-    if client.id in Client.instances:  # its browser may have gone meanwhile
+    if client.id in Client.instances:  # the browser may have disconnected meanwhile
         first.delete()
         _work(shared, kept, bool(dark), theme)
 
 
 def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
-    """The page proper."""
+    """The page after opening."""
     client = ui.context.client
     status = text("p", "", "status", role="status", aria_live="polite")
     top = box("header")
@@ -96,7 +96,7 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
     main = box("div", "main", data_key="main")
 
     def draw(focus: str | None) -> None:
-        with client:  # whoever asked may be gone: the button that was pressed is drawn anew
+        with client:  # the caller's slot may be deleted: a pressed button is redrawn
             tab.actions.clear()
             for place in (top, strip_place, main):
                 place.clear()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of the drives that can be pointed at, and the legs that belong to each."""
+"""Selectable parts of the drives, and the legs that belong to each."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from werrimbi_odom.report.comparison.phrases import NAMES
 Which = NDArray[np.bool_]
 
 MOST_OF = 0.2
-"""Share of the legs that are shown for a cell of the evidence map: those that err the most."""
+"""Share of the legs shown for a cell of the evidence map: those with the largest errors."""
 
 CHANNELS = {
     "left": "the left wheel's travel",
@@ -37,11 +37,11 @@ class MotionPart:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Description."""
         return NAMES[self.kind]
 
     def legs(self, comparison: Comparison) -> Which:
-        """Which legs, shape (m,)."""
+        """Mask of the legs, shape (m,)."""
         return np.asarray(comparison.legs.errors.kind == self.kind)
 
 
@@ -50,22 +50,22 @@ class BinPart:
     """Legs within a range of one variable."""
 
     variable: str
-    """With its unit."""
+    """Name with unit."""
     low: float
     high: float
     last: bool
-    """Whether `high` belongs to it too."""
+    """Whether `high` is included."""
     digits: int = 2
-    """After the point, that the whole range asks for."""
+    """Decimals, according to the whole range."""
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Description."""
         return f"legs with {self.variable.split(' [')[0]} {self.range}"
 
     @property
     def range(self) -> str:
-        """From what to what, with the unit."""
+        """Limits with the unit."""
         name, _, unit = self.variable.partition(" [")
         unit = unit.rstrip("]")
         low, high = self.low, self.high
@@ -75,7 +75,7 @@ class BinPart:
         return f"{low:.{self.digits}f} to {high:.{self.digits}f} {unit}".strip()
 
     def legs(self, comparison: Comparison) -> Which:
-        """Which legs, shape (m,)."""
+        """Mask of the legs, shape (m,)."""
         values = comparison.legs.variables.get(self.variable)
         if values is None:
             return np.zeros(comparison.legs.run.size, dtype=np.bool_)
@@ -87,7 +87,7 @@ class BinPart:
 
 @dataclass(frozen=True)
 class PlacePart:
-    """Legs about a place on the floor."""
+    """Legs near a place on the floor."""
 
     x: float
     y: float
@@ -95,11 +95,11 @@ class PlacePart:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Description."""
         return f"legs about x {self.x:.1f} m, y {self.y:.1f} m"
 
     def legs(self, comparison: Comparison) -> Which:
-        """Which legs, shape (m,)."""
+        """Mask of the legs, shape (m,)."""
         legs = comparison.legs
         x, y = 0.5 * (legs.x + legs.end_x), 0.5 * (legs.y + legs.end_y)
         half = 0.5 * self.side
@@ -108,19 +108,19 @@ class PlacePart:
 
 @dataclass(frozen=True)
 class CellPart:
-    """Legs on which one channel of the error is largest: a cell of the evidence map."""
+    """Legs with the largest errors of one channel: a cell of the evidence map."""
 
     channel: str
     variable: str
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Description."""
         share = round(100 * MOST_OF)
         return f"the {share} % of legs with the largest error of {CHANNELS[self.channel]}"
 
     def legs(self, comparison: Comparison) -> Which:
-        """Which legs, shape (m,)."""
+        """Mask of the legs, shape (m,)."""
         size = np.abs(channel_error(comparison, self.channel))
         size[comparison.legs.outlier] = np.nan
         if not np.isfinite(size).any():
@@ -141,12 +141,12 @@ def channel_error(comparison: Comparison, channel: str) -> Floats:
 
 
 def motion_parts(comparison: Comparison) -> list[MotionPart]:
-    """The types of motion that were driven."""
+    """The driven types of motion."""
     return [MotionPart(kind) for kind in KINDS if comparison.main.by_motion[kind].figures.count > 0]
 
 
 def bin_parts(comparison: Comparison) -> dict[str, list[tuple[BinPart, LegStatistics]]]:
-    """Ranges of each variable, with the figures of their legs."""
+    """Bins of each variable, with the statistics of their legs."""
     found = {}
     for item in comparison.variables:
         whole = max(item.bins[-1].high - item.bins[0].low, 1e-9)
@@ -160,12 +160,12 @@ def bin_parts(comparison: Comparison) -> dict[str, list[tuple[BinPart, LegStatis
 
 
 def figures_of(comparison: Comparison, which: Which) -> LegStatistics:
-    """Figures over some legs, those on which the reference jumped left out."""
+    """Statistics over some legs, without those on which the reference jumped."""
     return statistics(comparison.legs.errors.chosen(which & ~comparison.legs.outlier))
 
 
 def worst(comparison: Comparison, which: Which, most: int = 8) -> list[int]:
-    """Indices of the legs that err most against what was promised, the worst first."""
+    """Indices of the legs with the largest normalised errors, in descending order."""
     legs = comparison.legs
     size = np.where(which & ~legs.outlier, legs.errors.deviation, -np.inf)
     order = np.argsort(-size, kind="stable")[:most]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The new robot file: where it goes, what changes in it, and that nothing else is ever written."""
+"""The new robot file: its path, its changes, and protection of all other files."""
 
 from __future__ import annotations
 
@@ -21,24 +21,26 @@ NOISES = ("left_wheel_noise", "right_wheel_noise")
 
 @dataclass(frozen=True)
 class Target:
-    """Where files may be written: one place, and numbered ones beside it."""
+    """Allowed output files: one path, and numbered ones beside it."""
 
     path: Path
     force: bool = False
-    """Whether what is at `path` may be overwritten, once."""
+    """Whether the file at `path` may be overwritten, once."""
     leads_to: str = field(init=False)
-    """Where `path` led at the beginning: a link that somebody puts there later is no leave."""
+    """Target of `path` at the start: a symbolic link that is made later is not followed."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "leads_to", place_of(self.path))
 
     def of(self, session: Session, taken: Collection[Path] = ()) -> Path:
-        """The file of one tab: its own, if nobody has touched it since, else a free one.
+        """The file of one tab: its own if it is unmodified, otherwise a free one.
 
         Parameters
         ----------
-        taken
-            What other tabs have written.
+        session : Session
+            Session of the tab.
+        taken : collection of Path
+            Files written by other tabs.
         """
         for path, item in reversed(tuple(session.saved.items())):
             if _holds(path, item.text):
@@ -56,7 +58,7 @@ class Target:
 
 
 def _holds(path: Path, text: str) -> bool:
-    """Whether a file is as it was written: one that was edited since, or replaced, is not ours."""
+    """Whether a file is as it was written, neither edited nor replaced."""
     try:
         return not path.is_symlink() and path.read_bytes() == text.encode()
     except OSError:
@@ -64,12 +66,12 @@ def _holds(path: Path, text: str) -> bool:
 
 
 def beside(robot: Path) -> Path:
-    """Where the new robot file goes if nothing else was said."""
+    """Default path of the new robot file."""
     return robot.with_name(f"{robot.stem}_new{robot.suffix}")
 
 
 def changes_of(robot: Robot, source: RobotFile) -> dict[str, float]:
-    """Numbers that differ from the file's."""
+    """Parameters that differ from those of the file."""
     given = source.robot
     return {
         name: float(getattr(robot, name))
@@ -79,19 +81,19 @@ def changes_of(robot: Robot, source: RobotFile) -> dict[str, float]:
 
 
 def text_of(source: RobotFile, robot: Robot) -> str:
-    """The new file's text, for who wants to read it before it is written."""
+    """Text of the new file, for a preview."""
     return new_text(source, changes_of(robot, source), robot.effects)
 
 
 def saved(
     source: RobotFile, session: Session, target: Target, taken: Collection[Path] = ()
 ) -> Session:
-    """Write the current step's robot file.
+    """Write the robot file of the current step.
 
     Raises
     ------
     InputError
-        When it cannot be written; then nothing was.
+        If it cannot be written; then nothing is.
     """
     path = target.of(session, taken)
     robot = session.now.look.robot
@@ -106,6 +108,6 @@ def saved(
 
 
 def changed_lines(before: str, after: str) -> list[tuple[str, str]]:
-    """Lines of the new file with "+" (new), "-" (gone) or " " (as before) before each."""
+    """Lines of a diff, with "+" (added), "-" (removed) or " " (unchanged) before each."""
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     return [(line[0], line[2:]) for line in lines if line[0] in "+- "]

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The server: this machine alone, one address, nothing kept on disk, and who may ask.
+"""The server: on loopback only, at one address, without data on disk, and with access control.
 
-Pages of this server on this machine may; a page of another site may not.
+Requests are accepted only from pages of this server, not from pages of other sites.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ ICON = (
 
 
 def listening(port: int) -> socket.socket:
-    """A socket on loopback; port 0: a free one.
+    """A listening socket on loopback; port 0 for a free one.
 
     Raises
     ------
     InputError
-        When the port is taken, or not allowed.
+        If the port is in use or not allowed.
     """
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -55,19 +55,23 @@ def serve(
     ready: Callable[[str], None],
     opened: Callable[[str, Shared], None],
 ) -> None:
-    """Serve the page until it is interrupted.
+    """Serve the page until interrupted.
 
     Parameters
     ----------
-    ready
-        Told the address once it can be opened.
-    opened
-        Told it again once all is compared, with what came of it.
+    opening : Opening
+        Input of the page.
+    at : socket
+        Listening socket.
+    ready : callable
+        Called with the address when it can be opened.
+    opened : callable
+        Called with the address and the result when the comparison is done.
 
     Raises
     ------
     InputError
-        When the drives could not be opened; the server has ended then.
+        If the drives could not be opened; the server has ended then.
     """
     import uvicorn
     from fastapi import FastAPI
@@ -92,7 +96,7 @@ def serve(
     ui.run_with(
         site, root=root, title="werrimbi workbench", favicon=ICON, tailwind=False,
         show_welcome_message=False, language="en-US", reconnect_timeout=10.0,
-        gzip_middleware_factory=None,  # it never leaves this machine: packing only costs time
+        gzip_middleware_factory=None,  # traffic on loopback; compression only costs time
     )  # fmt: skip
     config = uvicorn.Config(
         guarded(site, port),
@@ -131,16 +135,16 @@ CLOSED = (
     (b"content-security-policy", b"frame-ancestors 'none'"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
-"""With every answer: no page holds ours in a frame, to have its buttons pressed unseen, or reads a
-script of ours."""
+"""Headers of every response: no page may embed ours in a frame (clickjacking) or read our
+scripts."""
 
 
 def guarded(app: App, port: int) -> App:
-    """The application, deaf to requests and sockets that come by another name or page.
+    """The application behind a filter of requests and sockets with a foreign Host or Origin.
 
-    A page of another site, or of another server on this machine, can make a browser ask us: then
-    Origin or Sec-Fetch-Site tells. A name of the attacker's that leads to 127.0.0.1 (DNS rebinding)
-    makes it our own page: then Host names him. Another page may link to ours, and nothing else.
+    A page of another site, or of another server on this machine, can make a browser send requests:
+    then Origin or Sec-Fetch-Site shows it. A hostname of an attacker that resolves to 127.0.0.1
+    (DNS rebinding) makes it same-origin: then Host shows it. Other pages may only link to ours.
     """
     hosts = {f"{name}:{port}".encode() for name in NAMES}
     origins = {b"http://" + host for host in hosts}
@@ -156,7 +160,8 @@ def guarded(app: App, port: int) -> App:
                 and host[0] in hosts
                 and all(value in origins for value in given.get(b"origin", []))
                 and (_from_here(given) or _is_link(scope, given))
-                # To ask for a socket and to close at once is none, and nothing of ours asks so.
+                # An upgrade to a websocket within plain HTTP is not valid, and never sent by our
+                # page.
                 and not (scope["type"] == "http" and b"upgrade" in given)
             )
             if not fine:
@@ -176,12 +181,12 @@ def guarded(app: App, port: int) -> App:
 
 
 def _from_here(given: dict[bytes, list[bytes]]) -> bool:
-    """Whether a page of ours asks, or the user himself; what is no browser does not say."""
+    """Whether the request is from our page or from the user; non-browsers send no such header."""
     return set(given.get(b"sec-fetch-site", ())) <= {b"same-origin", b"none"}
 
 
 def _is_link(scope: Message, given: dict[bytes, list[bytes]]) -> bool:
-    """Whether a browser is to open our page as its own."""
+    """Whether a browser navigates to our page."""
     return (
         scope["type"] == "http"
         and scope["method"] == "GET"

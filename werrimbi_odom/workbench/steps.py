@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What one browser tab has done so far: effects added one after the other, undone, done again.
+"""History of one browser tab: effects added one after the other, undo, redo.
 
-Values only: a step back is the same value as before, and no page is needed to try it.
+All are immutable values: undo returns the same value as before, and tests need no page.
 """
 
 from __future__ import annotations
@@ -17,57 +17,57 @@ from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.workbench.opened import Look
 
 GONE = -1
-"""Index of a step that was saved, undone, and replaced by another one: its file is still ours."""
+"""Index of a saved step that was undone and replaced: the file still belongs to the tab."""
 
 
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
-    """What is missing, what to drive next, what these drives could have shown, and its figures."""
+    """A diagnosis with the next manoeuvre and detection limits, and its figures."""
 
     told: Told
     figures: Mapping[str, str]
-    """Plotly figures as JSON: response (before and after along the effect's variable), set_up,
-    manoeuvre; only those that there are."""
+    """Available plotly figures as JSON: response (before and after along the effect's variable),
+    set_up, manoeuvre."""
 
     @property
     def diagnosis(self) -> Diagnosis:
-        """What is missing."""
+        """The diagnosis."""
         return self.told.diagnosis
 
 
 @dataclass(frozen=True, eq=False)
 class ModelVersion:
-    """A robot, how it does, and what was added to get there."""
+    """A robot, its errors, and the effects that were added in this step."""
 
     look: Look
     added: Added | None = None
-    """None: the robot as given."""
+    """None for the robot as given."""
 
     @property
     def name(self) -> str:
-        """What was added."""
+        """Names of the added effects."""
         return "as given" if self.added is None else self.added.name.replace(",", " + ")
 
 
 @dataclass(frozen=True)
 class Saved:
-    """What was written to a file."""
+    """Content of a written file."""
 
     step: int
-    """Index of the step that it holds, or `GONE`."""
+    """Index of the saved step, or `GONE`."""
     text: str = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
 class Session:
-    """The steps of one tab; those after `at` were undone and can be done again."""
+    """The steps of one tab; those after `at` were undone and can be redone."""
 
     steps: tuple[ModelVersion, ...]
     at: int = 0
     proposed: ModelVersion | None = None
-    """Fitted, but something speaks against it: the user has to say."""
+    """A fitted step with an objection, which awaits the user's decision."""
     diagnoses: Mapping[int, Diagnosed] = field(default_factory=dict)
-    """By the index of the step that was diagnosed."""
+    """By the index of the diagnosed step."""
     saved: Mapping[Path, Saved] = field(default_factory=dict)
     """Files that this tab wrote."""
 
@@ -83,7 +83,7 @@ class Session:
 
     @property
     def diagnosis(self) -> Diagnosed | None:
-        """Of the current step, where it was diagnosed."""
+        """Diagnosis of the current step, if any."""
         return self.diagnoses.get(self.at)
 
     @property
@@ -98,21 +98,21 @@ class Session:
 
     @property
     def is_saved(self) -> bool:
-        """Whether a file holds the current step."""
+        """Whether a file has the current step."""
         return any(item.step == self.at for item in self.saved.values())
 
     def diagnosed(self, diagnosis: Diagnosed) -> Session:
-        """With what is missing at the current step."""
+        """Session with a diagnosis of the current step."""
         return replace(self, diagnoses={**self.diagnoses, self.at: diagnosis})
 
     def fitted(self, step: ModelVersion) -> Session:
-        """An effect was fitted: taken if nothing speaks against it, else proposed."""
+        """Session after a fit: the step is added if there is no objection, otherwise proposed."""
         if step.added is not None and step.added.objection is not None:
             return replace(self, proposed=step)
         return self.taken(step)
 
     def taken(self, step: ModelVersion) -> Session:
-        """A step further; what was undone is gone."""
+        """Session with a further step; undone steps are discarded."""
         following = self.at + 1
         return replace(
             self,
@@ -127,27 +127,27 @@ class Session:
         )
 
     def insisted(self) -> Session:
-        """The user wants the proposed step, whatever speaks against it."""
+        """Session with the proposed step added, despite the objection."""
         return self if self.proposed is None else self.taken(self.proposed)
 
     def declined(self) -> Session:
-        """The user leaves the proposed step."""
+        """Session without the proposed step."""
         return replace(self, proposed=None)
 
     def undone(self) -> Session:
-        """A step back; where there is none, the same."""
+        """Session one step back, if possible."""
         return replace(self, at=max(self.at - 1, 0), proposed=None)
 
     def redone(self) -> Session:
-        """A step forward again; where there is none, the same."""
+        """Session one step forward, if possible."""
         return replace(self, at=min(self.at + 1, len(self.steps) - 1), proposed=None)
 
     def written(self, path: Path, text: str) -> Session:
-        """The current step is in a file."""
+        """Session with the current step in a file."""
         others = {other: item for other, item in self.saved.items() if other != path}
         return replace(self, saved={**others, path: Saved(self.at, text)})
 
 
 def begun(look: Look) -> Session:
-    """A session that has done nothing yet."""
+    """A new session."""
     return Session((ModelVersion(look),))

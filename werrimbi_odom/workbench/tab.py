@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What all browser tabs share, and one of them: its session, its work, what it looks at.
+"""State shared by all browser tabs, and the state of one: session, work, selection.
 
-The first comparison is made while the server and the page come up, in a process of its own, as all
-long work: in a thread it would hold up the server, and NiceGUI, as it starts, looks at every object
-there is (`gc.get_objects`), which CPython does not allow beside a thread that is making tuples.
+The first comparison runs in another process while the server and the page start. In a thread it
+would delay the server. Also, NiceGUI inspects all objects at its start (`gc.get_objects`), which
+CPython does not allow while another thread creates tuples.
 """
 
 from __future__ import annotations
@@ -35,73 +35,73 @@ VIEWS = ("compare", "diagnose", "add", "save")
 
 @dataclass(frozen=True, eq=False)
 class Shared:
-    """What all tabs share; nobody changes it, but for files written and work under way."""
+    """State shared by all tabs; constant except for written files and running jobs."""
 
     opened: Opened
     look: Look
-    """The robot as given."""
+    """Comparison of the robot as given."""
     source: RobotFile
     collection: Collection
     target: Target
     taken: set[Path] = field(default_factory=set)
-    """Files that some tab wrote."""
+    """Files written by any tab."""
     jobs: set[Job] = field(default_factory=set)
-    """Work under way, to be stopped when the server ends."""
+    """Running jobs, to be cancelled when the server ends."""
 
 
 @dataclass(eq=False)
 class Tab:
-    """State of one tab; `changed` is called whenever the page must be drawn again."""
+    """State of one tab; `changed` is called whenever the page must be redrawn."""
 
     shared: Shared
     session: Session
     changed: Callable[[str | None], None]
-    """Told the key of what should have the focus afterwards, or None."""
+    """Called with the key of the element to focus afterwards, or None."""
     view: str = "compare"
     part: Part | None = None
-    """Of the drives, whose legs are shown."""
+    """Selected part of the drives; its legs are shown."""
     held_out: bool = False
     """Whether the floor shows the held-out drives."""
     variable: int = 0
     why: str | None = None
-    """Effect whose page is open."""
+    """Effect with its page open."""
     dark: bool = False
     actions: dict[str, Callable[[], Any]] = field(default_factory=dict)
-    """What each button that is drawn does, by its key."""
+    """Actions of all drawn buttons by their keys."""
     job: Job | None = None
     news: str = ""
-    """What happened last, for the status line and for screen readers."""
+    """Last message, for the status line and for screen readers."""
     trouble: bool = False
-    """Whether that is something that did not work."""
+    """Whether this message is an error."""
 
     @property
     def comparison(self) -> Comparison:
-        """Of the current robot, over the drives that are looked at."""
+        """Comparison of the current robot on the selected drives."""
         look = self.session.now.look
         return look.holdout if self.held_out else look.train
 
     @property
     def verdict(self) -> Verdict:
-        """Of `comparison`."""
+        """Verdict of `comparison`."""
         look = self.session.now.look
         return look.holdout_verdict if self.held_out else look.verdict
 
     def go(self, view: str) -> None:
-        """Look at another step of the four, from its top."""
+        """Go to another of the four views, at its top."""
         self.view = view
         self.changed(f"title-{view}")
 
     def point(self, part: Part | None, focus: str) -> None:
-        """Show the legs of a part; pressed again, all legs."""
+        """Show the legs of a part; if already selected, all legs."""
         self.part = None if part == self.part else part
         self.changed(focus)
 
     def tell(self, words: str, *, trouble: bool = False) -> None:
-        """Say something in the status line."""
+        """Show a message in the status line."""
         self.news, self.trouble = words, trouble
 
     async def diagnose(self) -> None:
-        """Find out what is missing."""
+        """Diagnose the current robot."""
         at = self.session.now
         found = await self._done(Diagnose(at.look.robot), "diagnosis")
         if found is not None and at is self.session.now:
@@ -111,7 +111,7 @@ class Tab:
             self.go("diagnose")
 
     async def add(self, *effects: str) -> None:
-        """Fit effects together; taken where nothing speaks against any."""
+        """Fit effects together; add them if there is no objection."""
         at = self.session.now
         self.view = "add"
         effect = listed(effects)
@@ -126,7 +126,7 @@ class Tab:
         self.go("add")
 
     async def _done(self, task: Task, name: str) -> Any:
-        """The result of a task, or None where it failed or was cancelled; the page says which."""
+        """Result of a task, or None if it failed or was cancelled, with a message on the page."""
         if self.job is not None:
             return None
         job = self.job = Job(task)
@@ -148,12 +148,12 @@ class Tab:
         return None
 
     def cancel(self) -> None:
-        """Stop the work under way."""
+        """Cancel the running work."""
         if self.job is not None:
             self.job.cancel()
 
     def insist(self) -> None:
-        """Take the proposed effect all the same."""
+        """Add the proposed effect despite the objection."""
         if self.session.proposed is None:
             return
         self.session = self.session.insisted()
@@ -161,13 +161,13 @@ class Tab:
         self.go("add")
 
     def decline(self) -> None:
-        """Leave the proposed effect."""
+        """Discard the proposed effect."""
         self.session = self.session.declined()
         self.tell("Left out; nothing has changed.")
         self.go("diagnose" if self.session.diagnosis else "add")
 
     def undo(self) -> None:
-        """A step back."""
+        """Go one step back."""
         if self.job is not None or not self.session.can_undo:
             return
         name = self.session.now.name
@@ -176,7 +176,7 @@ class Tab:
         self.changed("undo" if self.session.can_undo else "redo")
 
     def redo(self) -> None:
-        """A step forward again."""
+        """Go one step forward."""
         if self.job is not None or not self.session.can_redo:
             return
         self.session = self.session.redone()
@@ -203,7 +203,7 @@ class Tab:
 
 
 def millimetres(metres: float) -> str:
-    """As text; a dash where nothing was measured."""
+    """A length as text; "not measured" for NaN."""
     if math.isnan(metres):
         return "not measured"
     if metres >= 1.0:
@@ -213,31 +213,31 @@ def millimetres(metres: float) -> str:
 
 
 def percent(share: float) -> str:
-    """A change, with a real minus sign."""
+    """A relative change, with a minus sign instead of a hyphen."""
     return f"{share:+.0f} %".replace("-", "−")
 
 
 def new_tab(shared: Shared, changed: Callable[[str | None], None]) -> Tab:
-    """A tab that has done nothing yet."""
+    """A new tab."""
     return Tab(shared, begun(shared.look), changed)
 
 
 class Opening:
-    """What all tabs wait for.
+    """The opening of the drives, which all tabs wait for.
 
     Parameters
     ----------
     job : Job
-        A process that was started, for an `Open`; it is asked at once.
+        A started process for an `Open`; gets its task at once.
     given : Recordings
-        What was read.
+        The recordings as read.
     target : Target
-        Where files may be written.
+        Allowed output files.
 
     Attributes
     ----------
     trouble : BaseException or None
-        Why it did not work.
+        The error, if it failed.
     """
 
     def __init__(self, job: Job, given: Recordings, target: Target) -> None:
@@ -249,18 +249,18 @@ class Opening:
 
     @property
     def shared(self) -> Shared | None:
-        """What was opened, if that is done already."""
+        """The result, if it is ready."""
         if self._task is None or not self._task.done() or self.trouble is not None:
             return None
         return self._task.result()
 
     async def result(self) -> Shared:
-        """What was opened, once it is there; who stops waiting does not stop the others.
+        """The result, when ready; cancelling one wait does not affect the others.
 
         Raises
         ------
         InputError
-            When the drives cannot be used.
+            If the drives cannot be used.
         """
         if self._task is None:
             self._task = asyncio.create_task(self._finished())

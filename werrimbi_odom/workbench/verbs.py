@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is missing, and more effects: the long work of the page, on the drives it judges on."""
+"""Long work of the page: diagnosis and adding effects, on its fitted and held-out drives."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from werrimbi_odom.workbench.steps import Diagnosed, ModelVersion
 
 
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:
-    """Diagnose, on the very drives that the page judges on.
+    """Diagnose, with the same held-out drives as the page.
 
     Raises
     ------
     InputError
-        When the drives do not allow it; the message says why.
+        If it fails on these drives; the message says why.
     """
     told = diagnosis_of(split(replace(given, fitted=task.robot)), show).found
     show(0.99, "figures")
@@ -49,12 +49,12 @@ def _figures(told: Told) -> dict[str, str]:
 
 
 def added(task: Add, opened: Opened, show: Show) -> ModelVersion:
-    """Fit, and compare over the same legs as before.
+    """Fit effects, and compare over the same legs as before.
 
     Raises
     ------
     InputError
-        When the drives do not allow it; the message says why.
+        If it fails on these drives; the message says why.
     """
     given = split(replace(opened.given, fitted=task.robot))
     effects = [given.collection.find(name) for name in task.effects]

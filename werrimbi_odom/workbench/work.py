@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What runs in a process of its own: it is told what to do, tells how far it is, sends what came.
+"""The worker process: receives a task, reports progress, sends the result.
 
-It imports what is wanted first at once, while the drives are still being read, and the rest when
-that is asked for.
+It imports what is needed first at once, while the drives are still being read, and the rest on
+demand.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class _Out(pickle.Pickler):
         return None if word is None else ("known", word)
 
     def reducer_override(self, thing: Any) -> Any:
-        if isinstance(thing, MappingProxyType):  # a robot file's values; pickle has no word for it
+        if isinstance(thing, MappingProxyType):  # values of a robot file; not supported by pickle
             return _read_only, (dict(thing),)
         return NotImplemented
 
@@ -59,24 +59,24 @@ class _In(pickle.Unpickler):
 
 
 def packed(value: Any, known: Mapping[str, Any]) -> bytes:
-    """The value as bytes; `known` is what the other process has, by the words it knows it by."""
+    """Serialise a value; objects in `known` exist in the other process and are sent by name."""
     file = io.BytesIO()
     _Out(file, {id(thing): word for word, thing in known.items()}).dump(value)
     return file.getvalue()
 
 
 def unpacked(data: bytes, collection: Collection, known: Mapping[str, Any]) -> Any:
-    """What `packed` made, from a process that we started ourselves."""
+    """Deserialise the output of `packed`, from our own process only."""
     return _In(io.BytesIO(data), collection, known).load()
 
 
 def known_to_both(opened: Opened) -> Mapping[str, Any]:
-    """What both processes cut alike, and need not send."""
+    """Objects that both processes cut identically, and that need not be sent."""
     return {"train": opened.train, "holdout": opened.holdout}
 
 
 def known_before(given: Recordings) -> Mapping[str, Any]:
-    """What both have before anything is cut; a run that was looked at has the same columns."""
+    """Objects that both have before cutting; the arrays of a run are shared."""
     there: dict[str, Any] = {"given": given}
     for number, run in enumerate((*given.runs, *given.holdout)):
         there[f"run {number}"] = run
@@ -87,7 +87,7 @@ def known_before(given: Recordings) -> Mapping[str, Any]:
 
 
 def left_there(opened: Opened) -> Mapping[str, Any]:
-    """Most of what was cut: whoever compares cuts it himself, and the page does without."""
+    """Most results of the cutting, which the page does not need."""
     there: dict[str, Any] = {}
     for side, drives in (("train", opened.train), ("holdout", opened.holdout)):
         there[f"{side} cuts"] = drives.cuts
@@ -100,14 +100,14 @@ NOT_SENT: Mapping[str, Any] = {
     for side in ("train", "holdout")
     for what in ("cuts", *get_args(Measure))
 }
-"""What the page has for `left_there`."""
+"""Replacements on the page for `left_there`."""
 
 
 def work(asked: Connection) -> None:
-    """In the worker: do what is asked, tell how far it is, send back what came of it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started us; he stops us
+    """Main function of the worker: do the task, report progress, send the result."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C and ends this process
     try:
-        import scipy.interpolate  # noqa: F401  # not later: it takes a good part of a second
+        import scipy.interpolate  # noqa: F401  # at once: it takes a good part of a second
 
         collection = all_effects(asked.recv())
         task, given = unpacked(asked.recv_bytes(), collection, {})
@@ -121,17 +121,17 @@ def work(asked: Connection) -> None:
     except InputError as error:
         asked.send(("refused", str(error), ""))
     except (BrokenPipeError, EOFError):
-        pass  # nobody waits any more
+        pass  # the parent has closed the connection
 
 
 def _done(task: Task, given: Recordings, show: Show) -> bytes:
-    """What came of it, packed."""
+    """The result of a task, serialised."""
     if isinstance(task, Open):
         show(0.0, "matching ticks and reference")
         here = opened(given)
         look = here.look(given.source.robot, show)
         return packed((here, look), {**known_before(given), **left_there(here)})
-    os.nice(5)  # the page stays quick
+    os.nice(5)  # keeps the page responsive
     from werrimbi_odom.workbench.verbs import added, diagnosed
 
     if isinstance(task, Diagnose):

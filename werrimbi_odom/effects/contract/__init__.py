@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The laws that every effect must keep, a user's own too; `check_effect` tests one effect.
+"""Properties ("laws") that every effect must have; `check_effect` tests one effect for them.
 
-Fits, the diagnosis and the node rely on these laws: a live drive equals a recorded one, no result
-depends on how often the counters were read, an effect at its null values changes nothing.
+Fits, the diagnosis and the node rely on them: live and recorded drives give equal results, results
+do not depend on the message rate, an effect at its null values is the identity.
 
-Begin with `check`; `laws` has the laws themselves.
+Begin with `check`; `laws` has the properties of effects on wheels and body.
 """
 
 from werrimbi_odom.effects.contract.check import check_effect

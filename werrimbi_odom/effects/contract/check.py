@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which laws are held against an effect; those on words, on views and on mistakes are here."""
+"""Check of an effect, with the properties of texts, views and mistakes."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _UNIT = re.compile(r"(1|[a-zA-Z%]+(\^-?\d+(\.\d+)?)?)([*/][a-zA-Z]+(\^-?\d+(\.\d
 
 
 def check_effect(effect: Effect) -> None:
-    """Hold all laws against an effect; silent when it keeps them.
+    """Test an effect for all laws; returns nothing if it keeps them.
 
     Raises
     ------
     AssertionError
-        For the first law that is broken; the message says which, where, and what helps.
+        For the first broken law; the message says which, where, and a remedy.
     """
     _has_words(effect)
     if effect.stage == "wiring":

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the laws are made of: a demand, and the values at which it is made."""
+"""Helpers of the laws: an assertion with a message, and parameter values to test."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ Values = Mapping[str, float]
 
 
 def demand(kept: bool, effect: Effect, law: str, what: str) -> None:
-    """Raise an AssertionError in words where a law is not kept."""
+    """Raise an AssertionError with a message if a law is broken."""
     if not kept:
         raise AssertionError(f"{effect.name} breaks a law ({law}): {what}")
 
 
 def typical(effect: Effect) -> dict[str, float]:
-    """Values that real robots show."""
+    """Typical values on real robots."""
     return {name: item.typical for name, item in effect.parameters.items()}
 
 
 def settings(effect: Effect) -> list[dict[str, float]]:
-    """Typical values, and the same to the other side of null where physics allows that."""
+    """Typical values, and their mirror images about null where the bounds allow them."""
     other = {}
     for name, item in effect.parameters.items():
         mirrored = 2.0 * item.null - item.typical
@@ -33,7 +33,7 @@ def settings(effect: Effect) -> list[dict[str, float]]:
 
 
 def corners(effect: Effect) -> list[dict[str, float]]:
-    """All parameters at their bounds, and each alone."""
+    """All parameters at their bounds, together and one by one."""
     found = []
     for end in (0, 1):
         at_bound = {name: item.bounds[end] for name, item in effect.parameters.items()}
@@ -43,5 +43,5 @@ def corners(effect: Effect) -> list[dict[str, float]]:
 
 
 def told(values: Values) -> str:
-    """Values in words."""
+    """Values as text."""
     return ", ".join(f"{name} = {value:g}" for name, value in values.items()) or "no parameters"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The laws for effects on the wheels and on the body."""
+"""Laws for effects on the wheels and on the body."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Moved = WheelTravel[Floats] | BodyMotion[Floats]
 _PARTS = (0.2, 0.5, 0.3)
 _SMALL, _LARGER = 2e-3, 2e-2  # of a parameter's scale
 _ROUNDING = 1e-10
-_GENTLY = 0.1  # of a change of heading may come back in one step's turn
+_GENTLY = 0.1  # largest share of a change of heading that may act on the turn of one step
 
 
 def _null_is_identity(effect: Effect, rehearsal: Rehearsal) -> None:
@@ -101,7 +101,7 @@ def _does_not_mind_splitting(effect: Effect, rehearsal: Rehearsal) -> None:
         effect.apply(_before(effect, rehearsal), seen, **values)
         if isinstance(whole, WheelTravel):
             apart = [abs(p.reshape(shape).sum(1) - w) for p, w in zip(pieces, whole, strict=True)]
-            if seen.asked & PLACE:  # places lie on chords, and an arc has chords of its own
+            if seen.asked & PLACE:  # places lie on chords, which differ from those of an arc
                 turn = abs(rehearsal.motion.turn)
                 sides = zip(apart, rehearsal.travel, strict=True)
                 apart = [np.maximum(a - abs(side) * turn, 0.0) for a, side in sides]
@@ -121,11 +121,11 @@ def _does_not_mind_splitting(effect: Effect, rehearsal: Rehearsal) -> None:
 def _apart_when_split(
     rehearsal: Rehearsal, whole: Moved, pieces: Moved, shape: tuple[int, int]
 ) -> list[Floats]:
-    """Distances between each step and its parts driven one after the other, shape (n,).
+    """Distances between each step and the sequence of its parts, shape (n,).
 
-    A step is one arc, driven evenly. Where the effect bends or shifts it unevenly, the arc cannot
-    follow; what that may cost is forgiven: the bend times the way, and the uneven part of the
-    shift times the turn.
+    A step is one arc at constant rate. If the effect varies within a step, one arc is only an
+    approximation. Its error is tolerated: the added turn times the distance, and the variation of
+    the shift times the turn.
     """
     assert isinstance(whole, BodyMotion)
     heading, x, y = (np.zeros_like(whole.turn) for _ in range(3))
@@ -214,7 +214,7 @@ def _is_differentiable(effect: Effect, rehearsal: Rehearsal) -> None:
 
 
 def _coordinates(effect: Effect) -> Iterator[tuple[str, Values, float, tuple[float, ...]]]:
-    """What a fit moves: name, point at which to look, scale, and sides on which physics lies."""
+    """Fitted coordinates: name, point, scale, and sides on which values are possible."""
     shapes = {name for name, item in effect.parameters.items() if item.tries}
     at_null = {**effect.nulls, **{name: effect.parameters[name].typical for name in shapes}}
     start = effect.to_fit(at_null)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A short drive with everything in it, on which the laws of effects are tried."""
+"""A short synthetic drive with all kinds of motion, for testing the laws."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from werrimbi_odom.model.pose import Floats, Pose
 TRACK, RADIUS, FLICKER = 0.35, 0.05, 2.5e-4
 FIRST_ANGLES = (0.3, -1.1)
 
-# Speed [m/s] and yaw rate [rad/s] to be reached, one after the other: lines, arcs and spins to both
-# sides, slow and fast, backwards, standing still.
+# Targets of speed [m/s] and yaw rate [rad/s] in sequence: lines, arcs and spins to both sides, slow
+# and fast, backwards, rests.
 _TARGETS = (
     (0.0, 0.0), (0.4, 0.0), (0.7, 0.0), (0.5, 1.2), (0.2, -0.8), (0.0, 0.0), (-0.4, 0.0),
     (-0.3, 0.6), (0.3, 0.2), (0.6, -1.5), (0.0, 1.5), (0.0, -2.0), (0.0, 0.0), (-0.5, -0.5),
@@ -31,7 +31,7 @@ _TARGETS = (
 
 
 class Moment(NamedTuple):
-    """One step, in floats, as the node has it."""
+    """One step in floats, as in the node."""
 
     travel: WheelTravel[float]
     motion: BodyMotion[float]
@@ -40,24 +40,24 @@ class Moment(NamedTuple):
 
 @dataclass(frozen=True)
 class Rehearsal:
-    """Travel of the wheels in each step, and how long it took; arrays of shape (n,)."""
+    """Wheel travel and duration of each step; arrays of shape (n,)."""
 
     duration: Floats
     left: Floats
     right: Floats
     channels: tuple[str, ...] = ()
     knots: Floats = field(default_factory=lambda: np.zeros(1))
-    """Times at which the channels were measured [s]; straight in between."""
+    """Times at which the channels were measured [s]; linear in between."""
     message: NDArray[np.intp] | None = None
-    """Of which each step is a part, where messages are cut in parts."""
+    """Index of the message that each step belongs to, if messages are split."""
 
     @classmethod
     def of(cls, channels: tuple[str, ...] = ()) -> Rehearsal:
-        """The drive, with made-up values in the channels that an effect looks at."""
+        """The drive, with synthetic values in the channels of an effect."""
         random = np.random.default_rng(1)
         each = 30
         share = np.arange(1, each + 1) / each
-        ramp = np.minimum(1.0, 2.0 * share)[:, None]  # half the time to get there, half to stay
+        ramp = np.minimum(1.0, 2.0 * share)[:, None]  # half of the time to reach it, half to stay
         targets = np.array(_TARGETS)
         speeds = np.concatenate(
             [before + ramp * (after - before) for before, after in pairwise(targets)]
@@ -70,12 +70,12 @@ class Rehearsal:
 
     @property
     def travel(self) -> WheelTravel[Floats]:
-        """Of all steps."""
+        """Wheel travel of all steps."""
         return WheelTravel(self.left, self.right)
 
     @property
     def motion(self) -> BodyMotion[Floats]:
-        """Of all steps, with some creep to the side, as other effects may have made."""
+        """Body motion of all steps, with some sideways creep, as by other effects."""
         motion = wheels_to_body(self.travel, TRACK)
         return motion._replace(sideways=0.01 * motion.along)
 
@@ -102,14 +102,14 @@ class Rehearsal:
         return drive.with_place(x, y, moved)
 
     def _places(self) -> tuple[Floats, Floats]:
-        """Where each step begins [m]."""
+        """Start positions of the steps [m]."""
         motion = self.motion
         heading = np.cumsum(motion.turn) - motion.turn
         dx, dy = displacement(motion, heading)
         return np.cumsum(dx) - dx, np.cumsum(dy) - dy
 
     def steps(self) -> Iterator[Moment]:
-        """Step by step, through the causal memory that the node has."""
+        """Step by step, with the causal memory of the node."""
         memory = DriveMemory(FLICKER, *FIRST_ANGLES)
         motion, heading = self.motion, 0.0
         measured, (x, y) = self.measured, self._places()
@@ -125,7 +125,7 @@ class Rehearsal:
             heading += one.turn
 
     def split(self, shares: tuple[float, ...]) -> Rehearsal:
-        """The same drive with each step in parts, as a pose between two messages cuts one."""
+        """The same drive with each step split, as by a pose between two messages."""
         parts = np.array(shares)
         return replace(
             self,
@@ -137,7 +137,7 @@ class Rehearsal:
 
     @property
     def measured(self) -> dict[str, Span[Floats]]:
-        """The channels at the start and end of each step."""
+        """Channels at the start and end of each step."""
         time = np.concatenate([[0.0], np.cumsum(self.duration)])
         found = {}
         for number, name in enumerate(self.channels):
@@ -147,17 +147,17 @@ class Rehearsal:
 
 
 def rows(drive: Drive[Floats], index: Any) -> Drive[Floats]:
-    """Some rows of a drive."""
+    """Selected rows of a drive."""
     return _each(drive, lambda values: values[index])
 
 
 def sealed(drive: Drive[Floats]) -> Drive[Floats]:
-    """A copy that nobody can write into."""
+    """A read-only copy of a drive."""
     return _each(drive, seal)
 
 
 def seal(values: Floats) -> Floats:
-    """A copy that nobody can write into."""
+    """A read-only copy of an array."""
     copy = values.copy()
     copy.setflags(write=False)
     return copy

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The law that a whole drive comes out alike live, recorded and predicted, however it is written.
+"""The law that a drive gives equal results live, recorded and predicted.
 
-Live a step knows the pose that it begins at. A recorded run is done at once, and a predicted one
-from the poses that were measured: there the pose is told in further passes, to laws that look at
-it. What a law looks at is noted while it runs (`werrimbi_odom.model.effects_over_run`).
+Live, each step has its start pose. A recorded run is computed at once, and a predicted one from
+measured poses: there, effects that read the pose get it in further passes. The quantities that an
+effect reads are recorded while it runs (`werrimbi_odom.model.effects_over_run`).
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 
 _START = Pose(0.4, -0.3, 2.1)
-"""Elsewhere than where counters begin: at zero, a law that was not told the pose might be right."""
+"""Not at the origin, where an effect could be right without the pose."""
 
 _EVERY = 25
-"""Steps from one measured pose to the next."""
+"""Steps between measured poses."""
 
 _TICKS = 2000.0
 
 
 def drives_alike(effect: Effect, rehearsal: Rehearsal) -> None:
-    """Drive the rehearsal in the three ways."""
+    """Compute the rehearsal live, recorded and predicted."""
     for values in settings(effect):
         robot = Robot(TRACK, RADIUS, _TICKS, _TICKS, effects=(AppliedEffect(effect, values),))
         poses, live = _live(robot, rehearsal)
@@ -57,7 +57,7 @@ def drives_alike(effect: Effect, rehearsal: Rehearsal) -> None:
 
 
 def _measured(poses: Floats) -> tuple[Headings, Places]:
-    """What is told in the passes where the `poses` (3, n) of some steps were measured."""
+    """Headings and places for the passes, if the `poses` (3, n) of some steps were measured."""
     first = np.arange(poses.shape[1]) // _EVERY * _EVERY
 
     def headings(found: AfterEffects) -> Floats:
@@ -72,7 +72,7 @@ def _measured(poses: Floats) -> tuple[Headings, Places]:
 
 
 def _live(robot: Robot, rehearsal: Rehearsal) -> tuple[Floats, Floats]:
-    """Poses (3, n) at the steps' starts, and motions (3, n), step by step."""
+    """Start poses (3, n) of the steps, and motions (3, n), step by step."""
     measured = rehearsal.measured
     driving, pose = Driving(robot), _START
     driving.begin(0.0, 0.0, {name: float(span.start[0]) for name, span in measured.items()})

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report of adding an effect: the error before and after, and what is left."""
+"""Report of adding an effect: the error before and after, and what remains."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from werrimbi_odom.report.style import Figure
 
 
 def document_of(added: Added) -> Document:
-    """Everything that is told."""
+    """The complete report."""
     return Document(
         title=f"Added: {listed([effect.name for effect in added.effects])}",
         words=words_of(added),
@@ -30,7 +30,7 @@ def document_of(added: Added) -> Document:
 
 
 def figures_of(added: Added) -> list[Shown]:
-    """The error falling, and what is left."""
+    """Figures of the errors, the effects, and the remaining dependences."""
     shown = [
         Shown(
             "falling",
@@ -76,20 +76,20 @@ def figures_of(added: Added) -> list[Shown]:
 
 @dataclass(frozen=True, slots=True)
 class ErrorOfModel:
-    """The error of one model on the way."""
+    """Leg errors of one of the compared models."""
 
     name: str
-    """What was done last: as given, calibrated, + an effect."""
+    """Last change of the model: as given, calibrated, + an effect."""
     train: float
-    """Root mean square error of the drives of the fit."""
+    """Root mean square error on the drives of the fit."""
     holdout: float
-    """Of the drives held out."""
+    """Root mean square error on the held-out drives."""
     unit: str = "m"
-    """m, of positions; rad, of headings where nothing else was measured."""
+    """m for positions; rad for headings, if only these were measured."""
 
 
 def steps_of(added: Added) -> list[ErrorOfModel]:
-    """As given, calibrated alone, and with the effect."""
+    """Errors of the model as given, calibrated, and with the effects."""
     names = [("as given", "before"), (f"+ {added.name.replace(',', ', ')}", "after")]
     if not added.is_calibration:
         names.insert(1, ("calibrated", "calibrated"))
@@ -105,12 +105,12 @@ def steps_of(added: Added) -> list[ErrorOfModel]:
 
 
 def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("nan")) -> Figure:
-    """One pair of bars for each step; a line where the noise of the final model ends.
+    """Bars of the errors in each step, and a line at the error by noise alone.
 
     Parameters
     ----------
     floor : float
-        Position error of the held-out drives that noise alone would make [m]; NaN: not drawn.
+        Position error of the held-out drives by noise alone [m]; NaN to omit the line.
     """
     figure = style.blank()
     largest = max(
@@ -142,7 +142,7 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
             name=name,
             marker=look,
             text=[f"{value:.2f}" if np.isfinite(value) else "" for value in values],
-            # At the foot of the bars: at their heads the floor's line would run through it.
+            # At the foot of the bars, because the line may cross their heads.
             textposition="inside",
             insidetextanchor="start",
             textangle=0,
@@ -167,7 +167,7 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
 
 
 def held_out_legs_figure(added: Added) -> Figure:
-    """Errors of the held-out legs along and sideways, as given and with the effect."""
+    """Along and sideways errors of the held-out legs, as given and with the effect."""
     clouds = [
         (name, legs.errors.error[~legs.outlier], colour, symbol)
         for name, legs, colour, symbol in (
@@ -181,15 +181,14 @@ def held_out_legs_figure(added: Added) -> Figure:
 def clouds_of_legs(
     clouds: Iterable[tuple[str, Floats, str, str]], *, digits: int, height: int
 ) -> Figure:
-    """A cloud for each model, with its median; equal scales.
+    """Scatter plot of leg errors for several models, with their medians; equal scales.
 
     Parameters
     ----------
-    clouds
-        Name, errors along and sideways [m] of shape (m, 2) or more columns (NaN where not
-        measured), colour and symbol.
-    digits
-        After the point, of millimetres.
+    clouds : iterable of (name, errors, colour, symbol)
+        Errors along and sideways [m], shape (m, 2) or more columns; NaN if not measured.
+    digits : int
+        Decimals of millimetres.
     """
     figure = style.blank()
     for name, errors, colour, symbol in clouds:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A draft in words and figures."""
+"""Report of a draft, in words and figures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from werrimbi_odom.report.page import as_html
 
 
 def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
-    """What was drafted, what the error is with it, and the law."""
+    """The dependence, the error with the drafted law, and its source."""
     sides = tried.holdout.sides
     alone = tried.noise_alone(tried.holdout)
     floor = f"noise alone: {error_words(alone, sides.unit)}; " if tried.explained else ""
@@ -34,7 +34,7 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
 
 
 def _what_it_goes_with(draft: Draft) -> str:
-    """Which error goes with which variables, in what law, and what no law of one explains."""
+    """The dependence and its law; for two variables also the gain over a law of one."""
     claim, two = draft.claim, draft.of_two
     symbols = symbols_of(claim.amount, draft.law)
     law = f": {draft.law} (each second{'; ' * bool(symbols)}{symbols})" if draft.law else ""
@@ -59,7 +59,7 @@ def _what_it_goes_with(draft: Draft) -> str:
 
 
 def draft_document(draft: Draft, tried: Added) -> Document:
-    """Everything that is told; a page has what `add` tells of it too."""
+    """The complete report, including that of `add` for the draft."""
     return Document(
         title=f"Drafted: {draft.name}",
         words=draft_words(draft, tried),
@@ -77,7 +77,7 @@ def draft_document(draft: Draft, tried: Added) -> Document:
 
 
 def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
-    """The figures of `add` for the draft, and what it was made of."""
+    """JSON of `add` for the draft, and the origin of the draft."""
     claim = draft.claim
     return {
         **json_of(tried),
@@ -96,7 +96,7 @@ def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
 
 
 def _json_of_two(draft: Draft) -> dict[str, Any] | None:
-    """Of a law of two variables, and of the law of one that it was held against."""
+    """JSON of a law of two variables, and of the law of one variable that it is compared with."""
     two = draft.of_two
     if two is None:
         return None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What adding an effect did, in words, a table and JSON: what was added, fell, and is left."""
+"""Report of adding effects in words, tables and JSON: parameters, errors, and what remains."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_wo
 
 
 def words_of(added: Added) -> list[Part]:
-    """A few sentences, the parameters and the errors."""
+    """Headline, parameters, errors and remarks."""
     return [
         *paragraphs([_headline(added)]),
         *_parameters(added),
@@ -57,7 +57,7 @@ def _parameters(added: Added) -> list[Definition]:
 
 
 def _sizes(added: Added) -> str:
-    """Base and radii that moved, as what they are on the robot; where none did, that."""
+    """Changed wheel base and radii as lengths on the robot, or that none changed."""
     stds = added.multiplier_stds
     found = {name: (getattr(added.robot, name), stds[name]) for name in MULTIPLIERS}
     words = sizes_words(added.given, found)
@@ -67,7 +67,7 @@ def _sizes(added: Added) -> str:
 
 
 def value_told(item: FittedParameter) -> str:
-    """A value with its standard deviation, to the digits that this leaves, and its unit."""
+    """A value with its standard deviation and unit, rounded to significant digits."""
     if item.remark == "undetermined" and not item.written:
         usual = quantity(item.declared.null, math.nan, item.declared.unit)
         return f"not determined by these drives, left at {usual}"
@@ -78,7 +78,7 @@ def value_told(item: FittedParameter) -> str:
 
 
 def remark_told(item: FittedParameter) -> str:
-    """What is to be known of a value, beside the value."""
+    """Remark that follows a value."""
     if item.remark == "null":
         return "; these drives show none of it, so it stays at null"
     if item.remark == "undetermined" and item.written:
@@ -117,7 +117,7 @@ def _errors(added: Added) -> Table:
         ]
         for name, side in sides
     ]
-    rows[1:1] = [  # below the held-out drives, whose errors they are
+    rows[1:1] = [  # below the held-out drives, to which they belong
         [
             f"  without {name}",
             *("" for _ in range(len(columns) - 1)),
@@ -201,7 +201,7 @@ def _noise(added: Added) -> str:
 
 
 def _told(error: float, unit: str) -> str:
-    """An error of legs, with its unit: of positions [m], or of headings [rad]."""
+    """A leg error with its unit: of positions [m], or of headings [rad]."""
     return f"{_number(error, unit)} mm" if unit == "m" else f"{_number(error, unit)}°"
 
 
@@ -211,7 +211,7 @@ def _number(error: float, unit: str) -> str:
 
 
 def json_of(added: Added) -> dict[str, Any]:
-    """With the contract's names, and more."""
+    """JSON with the names of the contract, and more."""
     return {
         "effect": added.name,
         "effects": [effect.name for effect in added.effects],

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `calibrate` says and shows; begin with `document`."""
+"""Reports of `calibrate`; begin with `document`."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a calibration: its words, its figure, and the numbers that were written."""
+"""Report of a calibration: its words, its figure, and the written parameters."""
 
 from __future__ import annotations
 
@@ -28,10 +28,12 @@ def calibration_document(
 
     Parameters
     ----------
-    heading, see
-        Of the figure: its heading, and what to see in it.
-    changes
-        Name of each parameter that was written, before and after.
+    heading, see : str
+        Heading of the figure, and what to see in it.
+    figure : callable
+        Makes the figure.
+    changes : mapping of str to (float, float)
+        Written parameters by name, before and after.
     """
     rows = [[name, f"{before:.6g}", f"{after:.6g}"] for name, (before, after) in changes.items()]
     table = Table("", ("parameter", "before", "after"), rows)
@@ -49,7 +51,7 @@ _MILLI = 1e3
 
 @dataclass(frozen=True, slots=True)
 class OffsetCloud:
-    """Offsets of one set of squares [m], shape (n, 2) and (m, 2), and what to call them."""
+    """Offsets of one set of squares [m], shapes (n, 2) and (m, 2), and the name of the set."""
 
     name: str
     cw: Floats
@@ -59,7 +61,7 @@ class OffsetCloud:
 def umbmark_figure(before: OffsetCloud, after: OffsetCloud | None) -> Figure:
     """Offsets of clockwise and anticlockwise squares with their centres of gravity (figure 3).
 
-    Circles of radius E_max,syst go through the further centre of each set. Equal scales.
+    Circles of radius E_max,syst go through the farther centre of each set. Equal scales.
     """
     figure = blank()
     clouds = [(before, True)] + ([(after, False)] if after else [])
@@ -133,14 +135,14 @@ def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
 
 
 def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
-    """Errors of repeated drives with the 95 % ellipses of data and model (figure 4 a to c).
+    """Errors of repeated drives with the 95 % ellipses of data and model (figures 4 a to c).
 
     Parameters
     ----------
     errors : ndarray, shape (n, 3)
         x, y [m], yaw [rad].
     data, model : ndarray, shape (3, 3)
-        Covariances; both ellipses are drawn about the mean of the runs.
+        Covariances; both ellipses are centred at the mean of the runs.
     """
     from plotly.subplots import make_subplots
 

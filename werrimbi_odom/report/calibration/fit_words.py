@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a calibration from any driving found, in plain words, a table and JSON."""
+"""Report of a calibration from arbitrary drives, in words, a table and JSON."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
 from werrimbi_odom.report.numbers import listed, picked, scaled_with_std
 
-_MOST = 3  # dependences that are told
+_MOST = 3  # dependences that are reported
 _UNITS = {
     "left_wheel_noise": "m^0.5",
     "right_wheel_noise": "m^0.5",
@@ -26,7 +26,7 @@ _UNITS = {
 
 
 def fit_in_words(result: Calibration) -> list[Part]:
-    """Whether the model explains the drives, the values, and how far they may be believed."""
+    """Whether the model explains the drives, the values, and how reliable they are."""
     said = []
     if result.twin:
         said.append(_twin_words(result))
@@ -102,7 +102,7 @@ def _capital(words: str) -> str:
 
 
 def fit_json(result: Calibration) -> dict[str, Any]:
-    """Values, how they hang together, and whether they may be believed."""
+    """Values, their correlation, and whether they are reliable."""
     parameters: dict[str, Any] = {
         name: picked(item, "value std determined") for name, item in result.multipliers.items()
     }

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the drives out and back say about the wheels' noise, in plain words and as JSON."""
+"""Report of the wheel noise from drives out and back, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PIVOT_TURNS = 10.0
 
 
 def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: bool) -> list[Part]:
-    """The k of both wheels, and how far they may be believed."""
+    """The k of both wheels, and how reliable they are."""
     heads = ("wheel", "k [m^0.5]", "95 % interval", "ellipses matched")
     rows = [
         _wheel("left", fit.left, fit.by_moments[0]),
@@ -46,7 +46,7 @@ def _wheel(side: str, estimate: NoiseInterval, matched: float) -> list[str]:
 
 
 def _split(fit: NoiseFit, track: float, *, turn_round: bool) -> str:
-    """Whether the wheels can be told apart, and if not, by what drive they could."""
+    """Whether the wheels' noises are separable; otherwise a drive that separates them."""
     known = (
         f"known to ± {_k(fit.difference_std)}, correlation of the two {fit.correlation:.2f}"
         if fit.difference_std < 2.0 * fit.left.value
@@ -95,7 +95,7 @@ def _verdict(fit: NoiseFit) -> str:
 
 
 def _misfit(fit: NoiseFit) -> str:
-    """How well the model's covariance matches the runs', and what would mend it."""
+    """Agreement of the model's covariance with that of the runs, and a remedy."""
     if fit.misfit_p >= SURE_WHEN_ASKED:
         return f"Of runs by this model, {100.0 * fit.misfit_p:.2g} % match it worse than these do."
     ratio = np.sqrt(np.diag(fit.data) / np.diag(fit.model))
@@ -116,7 +116,7 @@ def _k(value: float) -> str:
 
 
 def noise_json(fit: NoiseFit, distance: float, columns: Sequence[str]) -> dict[str, Any]:
-    """Everything that was found; `columns`: names of the errors at the end of a run."""
+    """Complete result; `columns` names the errors at the end of a run."""
     wheels = {"left_wheel_noise": fit.left, "right_wheel_noise": fit.right}
     missing = fit.missing_reference
     return {

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What UMBmark found, in plain words for someone with a tape measure, and as JSON."""
+"""Report of UMBmark in words for users with a tape measure, and as JSON."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from werrimbi_odom.report.numbers import picked, scaled_with_std
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
-    """Verdict, offsets, angles, factors, and what to make of them."""
+    """Verdict, offsets, angles, correction factors, and doubts."""
     exact = (
         "What is written is exact; the paper's equations are of first order. A factor common to "
         "both radii does not show in squares: compare a long straight line with a tape."
@@ -171,7 +171,7 @@ def _significant(estimate: ValueAndStd, null: float) -> bool:
 
 
 def _share(factor: ValueAndStd) -> str:
-    """How far a factor is from 1."""
+    """Difference of a factor from 1 in percent."""
     return f"{scaled_with_std(100.0 * abs(factor.value - 1.0), 100.0 * factor.std)} %"
 
 
@@ -186,7 +186,7 @@ def _mrad(angle: float) -> str:
 def umbmark_json(
     squares: Squares, result: Umbmark, old: Robot, later: Squares | None, again: Squares | None
 ) -> dict[str, Any]:
-    """Everything that was found; `later` and `again` as in `gained_in_words`."""
+    """Complete result; `later` and `again` as in `gained_in_words`."""
 
     def centres(of: Squares) -> dict[str, Any]:
         return {"cw": of.cw.mean(axis=0), "ccw": of.ccw.mean(axis=0)}

@@ -25,7 +25,7 @@ from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 
 def json_of(comparison: Comparison) -> dict[str, Any]:
-    """Everything that was found; NaN where nothing was measured (null in the file)."""
+    """Complete result; NaN for what was not measured (null in the file)."""
     main, verdict = comparison.main, verdict_of(comparison)
     return {
         "runs": [_run(item) for item in comparison.runs],
@@ -53,7 +53,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
 
 
 def legs_json(figures: LegFigures) -> dict[str, Any]:
-    """Figures over some legs, with the names of the contract."""
+    """Statistics over some legs, with the names of the contract."""
     return {
         **picked(figures.figures, "count rmse_position_m median_position_m"),
         **picked(figures.figures, "rmse_yaw_rad nees coverage_95"),
@@ -105,7 +105,7 @@ def _cell(cell: Cell) -> dict[str, Any]:
 
 
 def _outliers(comparison: Comparison) -> list[dict[str, Any]]:
-    """The legs on which the reference jumped."""
+    """Legs on which the reference jumped."""
     legs = comparison.legs
     return [
         {
@@ -118,7 +118,7 @@ def _outliers(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def _each_leg(comparison: Comparison) -> dict[str, Any]:
-    """All legs of the length asked for, column by column."""
+    """All legs of the requested length, as columns."""
     legs: Legs = comparison.legs
     errors = legs.errors
     sigmas = np.sqrt(np.maximum(np.diagonal(errors.covariance, axis1=1, axis2=2), 0.0))

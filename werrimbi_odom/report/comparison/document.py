@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a comparison: where the model fails, and whether its covariance is honest."""
+"""Report of a comparison: where the model fails, and whether its covariance is consistent."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from werrimbi_odom.report.document import Document, Part, Shown, Table, paragrap
 from werrimbi_odom.report.over_variable import error_against_figure, variables_of
 from werrimbi_odom.report.style import Figure
 
-_RUNS = 40  # that can be chosen one by one: more would make the file too large to mail
+_RUNS = 40  # runs with a figure of their own; more would make the file too large to mail
 
 
 def document_of(comparison: Comparison, command: str = "") -> Document:
-    """Everything that is told; `command`: the whole one of the next step."""
+    """The complete report; `command` is the full command of the next step."""
     verdict = verdict_of(comparison)
     return Document(
         title="Model against measurement",
@@ -70,7 +70,7 @@ def _figures(comparison: Comparison) -> list[Shown]:
 
 
 def _paths(comparison: Comparison) -> dict[str, Figure]:
-    """All drives together, then each for itself."""
+    """Figures of all drives together, and of each drive."""
     found = {}
     count = len(comparison.runs)
     if count > 1:
@@ -83,13 +83,13 @@ def _paths(comparison: Comparison) -> dict[str, Figure]:
     return found
 
 
-_MOST = 3  # variables with a table of their own
+_MOST = 3  # variables with their own table
 _NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
 
 
 def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
-    """All tables, each with its heading."""
+    """All tables with their headings."""
     tables: list[Part] = [_motions(comparison.main), _lengths(comparison)]
     if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
         tables.append(_runs(comparison))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A comparison in figures: by type of motion, against what was promised, against a variable."""
+"""Figures of a comparison: by type of motion, against the covariance, against a variable."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from werrimbi_odom.report.style import Figure
 
 NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 CHANNELS = (("along", "mm", 1e3), ("sideways", "mm", 1e3), ("heading", "°", float(np.degrees(1.0))))
-"""Name, unit and factor to it of each column of the legs' errors."""
+"""Name, unit and conversion factor of each column of the leg errors."""
 
 
 def measured_channels(comparison: Comparison) -> list[int]:
-    """Columns of the errors that were measured at all."""
+    """Columns of the errors with any measurement."""
     return [
         column for column in range(3) if np.isfinite(comparison.legs.errors.error[:, column]).any()
     ]
 
 
 def nees_figure(comparison: Comparison) -> Figure:
-    """NEES by length of leg and type of motion, with the range that an honest one lies in."""
+    """NEES by leg length and type of motion, with the 95 % range of a consistent covariance."""
     from scipy.stats import chi2
 
     figure = style.blank()
@@ -90,7 +90,7 @@ def nees_figure(comparison: Comparison) -> Figure:
 
 
 def _bars(at: Sequence[float], low: Sequence[float], high: Sequence[float]) -> tuple[list, list]:  # type: ignore[type-arg]
-    """Vertical strokes as one line with gaps."""
+    """Vertical bars as one line with gaps."""
     x: list[float | None] = []
     y: list[float | None] = []
     for where, bottom, top in zip(at, low, high, strict=True):
@@ -103,7 +103,7 @@ _TWO_SIGMA = 1.959964
 
 
 def legs_by_motion_figure(comparison: Comparison) -> Figure:
-    """Errors of the legs by type of motion, beside what the covariance promised for them."""
+    """Leg errors by type of motion, next to the range that the covariance predicts."""
     from plotly.subplots import make_subplots
 
     legs = comparison.legs

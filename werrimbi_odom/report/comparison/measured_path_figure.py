@@ -15,17 +15,17 @@ from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.path_figure import add_mark, add_path, ellipse, spread_along_path
 from werrimbi_odom.report.style import Figure
 
-_FEW = 3  # runs, of which the dead reckoning is drawn too when all are shown at once
+_FEW = 3  # most runs for which the dead reckoning is also drawn in the figure of all runs
 _ELLIPSES = 12
 
 
 def path_figure(comparison: Comparison, run: int | None = None) -> Figure:
-    """Measured path with its legs coloured by position error; of one run the model's path too.
+    """Measured path with its legs coloured by position error; for one run also the model's path.
 
     Parameters
     ----------
     run : int, optional
-        Index of one run; None: all of them, and the model's paths only where they are few.
+        Index of one run; None for all, with the model's paths only for few runs.
     """
     figure = style.blank()
     which = range(len(comparison.paths)) if run is None else (run,)
@@ -56,7 +56,7 @@ def _paths(
     name = style.escaped(comparison.runs[index].run.name)
     rows = style.along_path(path.measured, most)
     after = [end for _, end in comparison.runs[index].run.taken_out]
-    pieces = np.searchsorted(path.time[rows], after)  # nothing is drawn across a cut
+    pieces = np.searchsorted(path.time[rows], after)  # no line across a gap
     measured = np.insert(path.measured[rows], pieces, np.nan)
     add_path(
         figure,
@@ -100,7 +100,7 @@ def _ends(figure: Figure, comparison: Comparison, index: int, *, first: bool) ->
 
 
 def leg_errors_to_colour(comparison: Comparison) -> tuple[Floats, str]:
-    """Size of each leg's error as it is drawn, and its unit: positions, or headings alone."""
+    """Error of each leg as drawn, and its unit; of headings if there are no positions."""
     errors = comparison.legs.errors
     if np.isfinite(errors.distance).any():
         return 1e3 * errors.distance, "mm"
@@ -116,7 +116,7 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
     mine = np.isfinite(size) & (kept if run is None else kept & (legs.run == run))
     rows = np.flatnonzero(mine)
     rows = rows[style.spread_and_extremes(size[rows])]
-    # Small ones first, so that the large are on top.
+    # Small ones first, so that large ones are on top.
     rows = rows[np.argsort(size[rows])]
     texts = [_told(comparison, row) for row in rows.tolist()]
     middle = middles(comparison)[rows]
@@ -134,7 +134,7 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
             "line": {"width": 1, "color": style.PAPER},
         },
     )
-    # A mark for the legend alone: that of many colours is black there, and not seen in the dark.
+    # Only for the legend, where a marker with many colours is black and invisible on a dark page.
     figure.add_scatter(
         x=[None],
         y=[None],
@@ -147,7 +147,7 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
 
 
 def _told(comparison: Comparison, row: int) -> str:
-    """What the hover says of a leg."""
+    """Hover text of a leg."""
     legs = comparison.legs
     error = legs.errors.error[row]
     promised = np.sqrt(np.diagonal(legs.errors.covariance[row]))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of a comparison as phrases: a systematic error, and what is said of the covariance."""
+"""Phrases of a comparison: systematic errors, and the consistency of the covariance."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 
 
 def leg_when(comparison: Comparison, index: int) -> str:
-    """From when to when a leg was driven."""
+    """Start and end time of a leg."""
     legs = comparison.legs
     started = float(comparison.runs[int(legs.run[index])].run.ticks.time[0])
     begin, end = from_start(started, float(legs.start_time[index]), float(legs.end_time[index]))
@@ -25,7 +25,7 @@ def leg_when(comparison: Comparison, index: int) -> str:
 
 
 def systematic_told(part: Systematic) -> str:
-    """What the robot did, against what the model says."""
+    """A systematic error in words: the robot's motion relative to the model."""
     value, std = part.value, part.std
     if part.channel == "heading" and part.per == "turn":
         return _share("turns", "the other way", value, std)
@@ -76,7 +76,7 @@ def _to_side(value: float, std: float) -> str:
 
 
 def _rounded(value: float, std: float) -> str:
-    """Value and standard error, to the digits that the error leaves."""
+    """Value and standard error, rounded by the standard error."""
     if not std > 0.0:
         return f"{value:.3g}"
     digits = min(max(-math.floor(math.log10(std)), 0), 6)
@@ -84,12 +84,12 @@ def _rounded(value: float, std: float) -> str:
 
 
 def covariance_words(verdict: Verdict, nees: float) -> list[str]:
-    """What is said of the covariance, true to the table of lengths.
+    """Consistency of the covariance, in agreement with the table of leg lengths.
 
     Parameters
     ----------
     nees : float
-        Of all legs of the length asked for.
+        NEES of all legs of the requested length.
     """
     if verdict.covariance == "unknown":
         return [f"- NEES is {nees:.3g} (1 is right); legs are too few to judge by it."]
@@ -129,7 +129,7 @@ def _honest(verdict: Verdict, nees: float) -> str:
 
 
 def _by_noise(verdict: Verdict, at: AtLength) -> str:
-    """Where one factor on the wheels' noise explains it."""
+    """Words for an inconsistency that a factor on the wheel noise explains."""
     factor = verdict.factor
     times, low, high = (math.sqrt(part) for part in factor)
     between = (
@@ -150,7 +150,7 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
 
 
 def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
-    """Over which legs NEES is off, and how it goes with their length."""
+    """Leg lengths at which NEES is off, and its trend with length."""
     first, last = lengths[0], lengths[-1]
     worst = (max if small else min)(lengths, key=lambda item: item.nees)
     if len(lengths) == 1:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A comparison in plain words: is the model good, where does it fail, what to do next."""
+"""A comparison in words: is the model good, where does it fail, what to do next."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ def words_of(
     verdict: Verdict | None = None,
     command: str = "",
 ) -> tuple[Paragraph, ...]:
-    """A few sentences.
+    """Summary of a comparison.
 
     Parameters
     ----------
     next_step : str
-        Command that looks for what is missing; none: nothing is said of it.
+        Command that searches for a missing effect; "" to omit it.
     verdict : Verdict, optional
-        If it is known already.
+        The verdict, if already known.
     command : str
-        The whole command of the next step.
+        Full command of the next step.
     """
     verdict = verdict or verdict_of(comparison)
     said = [headline(comparison, verdict)]
@@ -57,7 +57,7 @@ def words_of(
 
 
 def headline(comparison: Comparison, verdict: Verdict) -> str:
-    """Whether the model is good, in a sentence."""
+    """One sentence on whether the model is good."""
     count = comparison.main.all.figures.count
     if verdict.too_short:
         longer = leg_of_positions(verdict.too_short)
@@ -107,7 +107,7 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
 
 
 def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
-    """A line for each motion type that was driven."""
+    """A line for each driven type of motion."""
     lines = []
     common = (
         "" if verdict.depends or verdict.cells or verdict.gross else ", without a common direction"
@@ -204,7 +204,7 @@ def _run_told(comparison: Comparison, index: int) -> str:
     )
 
 
-_NO_NOISE = 1e-7  # rad; no gyro has so little, and digits of it would be those of a remainder
+_NO_NOISE = 1e-7  # rad; below that of any gyro, so its digits would be numerical noise
 
 
 def _reference(comparison: Comparison) -> list[str]:
@@ -247,7 +247,7 @@ def _reference(comparison: Comparison) -> list[str]:
 
 
 def _sizes(measure: Measure, xy: float, yaw: float) -> str:
-    """Of what is measured, in words."""
+    """Sizes of the measured quantities in words."""
     parts = [f"{two_digits(1e3 * xy)} mm"] if measure != "heading" else []
     parts += [f"{math.degrees(yaw):.2g}°"] if measure != "position" else []
     return " and ".join(parts)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A cell of the evidence map in words: which error goes with what, how much, in what shape."""
+"""A cell of the evidence map in words: which error depends on what, its size and shape."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ VARIABLES = {
     "time": "the time since the start of the drive",
     "distance": "the distance driven since the start",
 }
-"""In words; in the order in which figures have them."""
+"""Names of variables, in the order of figures."""
 
 _SHORT = {
     CONSTANT: "always",
@@ -61,41 +61,41 @@ _AMOUNTS = {
 }
 
 _RARE = 0.02
-"""Share of the way, at either end, that is too rare to be told of."""
+"""Share of the path at both ends of a variable's range that is too rare to report."""
 
 
 _MOST, _MOST_TURN = 1.0, 2.0 * math.pi
-"""Largest errors that are told: a metre a metre, a radian a radian; and a whole turn each metre.
-What is larger was told by steps in which there was next to nothing to err by."""
+"""Largest errors that are reported: 1 m per m, 1 rad per rad, and one turn per metre. Larger ones
+come from steps in which the amount was almost zero."""
 _UNTOLD = "by more than wheels can do, for hardly any of it was driven"
 _TURNS_PER_METRE = {("heading", "travel"), ("heading", "path")}
 
 
 def short_name(variable: str) -> str:
-    """A variable's name for tables and figures; the same wherever it stands."""
+    """Short name of a variable for tables and figures."""
     return _SHORT.get(variable, variable.replace("_", " "))
 
 
 def short_words(cell: Dependence) -> str:
-    """The same of a cell; an error that is always there is told with what it is per."""
+    """Short name of a cell; a constant error has its amount in the name."""
     name = short_name(cell.variable.name)
     return f"{name}, per {cell.amount.per}" if cell.variable.name == CONSTANT else name
 
 
 def label_of(name: str) -> str:
-    """A variable's name for a figure."""
+    """Short name of a variable for a figure, escaped."""
     return escaped(short_name(name))
 
 
 def error_of(amount: Amount) -> str:
-    """Which error, for a figure."""
+    """Name of an error, for a figure."""
     wheel = f"error of the {amount.channel} wheel's travel"
     named = {"along": "error along", "sideways": "sideways error", "heading": "heading error"}
     return named.get(amount.channel, wheel)
 
 
 def unit_of(amount: Amount) -> tuple[str, float]:
-    """Unit in which an error for each unit of its amount is told, and the factor to it."""
+    """Unit of an error per unit of its amount, and the conversion factor."""
     degree = math.degrees(1.0)
     if amount.channel == "heading":
         return {
@@ -106,7 +106,7 @@ def unit_of(amount: Amount) -> tuple[str, float]:
 
 
 def variable_words(cell: Dependence) -> str:
-    """What the error goes with."""
+    """The variable of a dependence, in words."""
     if cell.variable.name == CONSTANT:
         return {
             "travel": "the distance, forwards less backwards",
@@ -118,7 +118,7 @@ def variable_words(cell: Dependence) -> str:
 
 
 def amount_words(cell: Dependence) -> str:
-    """What errs."""
+    """The error of a dependence, in words."""
     return _AMOUNTS[cell.amount.channel, cell.amount.per]
 
 
@@ -132,7 +132,7 @@ def dependence_words(cell: Dependence) -> str:
 
 
 def strength_words(cell: Dependence) -> str:
-    """By how much, as half the range that it took on these drives."""
+    """Size of the dependence: half the range of the error on these drives."""
     values = _errors(cell)
     if cell.variable.name == CONSTANT:
         size = abs(float(values[0]))
@@ -162,7 +162,7 @@ def _in_unit(cell: Dependence, size: float) -> str:
 
 
 def _shape(cell: Dependence) -> str:
-    """How it follows its variable."""
+    """Shape of the dependence on its variable."""
     variable = cell.variable
     if cell.form == "line":
         way = "growing" if float(cell.coefficients[0]) > 0.0 else "falling"
@@ -194,7 +194,7 @@ def _round(value: float) -> str:
 
 
 def _sides(cell: Dependence) -> slice:
-    """Which wheels' steps are told: one side where both are alike, or where one alone errs."""
+    """Wheels that are reported: one side if both are alike, or if only one has the error."""
     if cell.variable.shared or cell.form == "place":
         return slice(0, 1)
     only = {"left": slice(0, 1), "right": slice(1, 2)}
@@ -202,7 +202,7 @@ def _sides(cell: Dependence) -> slice:
 
 
 def _errors(cell: Dependence) -> Floats:
-    """The error by its amount at every step."""
+    """Error per amount at every step."""
     functions = functions_of(cell.variable)[cell.form]
     coefficients = np.atleast_2d(cell.coefficients)[0]
     return np.concatenate([side @ coefficients for side in functions[_sides(cell)]])
@@ -214,9 +214,9 @@ def _values(cell: Dependence) -> Floats:
 
 
 def _weights(cell: Dependence) -> Floats:
-    """How much each of those steps counts: by what it went of what the error is in proportion to.
+    """Weight of each of these steps: its share of the amount that the error is proportional to.
 
-    What an error per metre is where the robot stands, or hardly ever was, has never been.
+    An error per metre at values where the robot hardly moved has no evidence.
     """
     size = _errors(cell).size
     if cell.shares is None:
@@ -228,7 +228,7 @@ def _weights(cell: Dependence) -> Floats:
 
 
 def _quantiles(values: Floats, weights: Floats, shares: Floats) -> Floats:
-    """Quantiles of values that count by their weights."""
+    """Weighted quantiles."""
     order = np.argsort(values)
     up_to = np.cumsum(weights[order])
     if not up_to[-1] > 0.0:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a diagnosis: what is missing, what speaks for it, what to do next."""
+"""Report of a diagnosis: what is missing, the evidence, and what to do next."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LISTED = 8
 
 
 def document_of(told: Told, steps: NextSteps | None = None) -> Document:
-    """Everything that is told."""
+    """The complete report."""
     diagnosis = told.diagnosis
     title = {
         "none": "Nothing is missing",
@@ -65,7 +65,7 @@ def document_of(told: Told, steps: NextSteps | None = None) -> Document:
 
 
 def _effects(diagnosis: Diagnosis) -> list[Shown]:
-    """What was found, or its rivals, drawn and described."""
+    """Sketches and descriptions of the named effect, or of its rivals."""
     names = list(dict.fromkeys([*diagnosis.rivals, *diagnosis.found]))
     cards = [effect_card(each) for name in names if (each := diagnosis.effect_named(name))]
     if not cards:
@@ -181,7 +181,7 @@ def _cell_name(cell: Dependence) -> str:
 
 
 def _strongest(cells: list[Dependence]) -> str:
-    """The strongest fields again as buttons, for the keyboard and for those who do not see."""
+    """The strongest fields also as buttons, for keyboards and screen readers."""
     buttons = "".join(
         f'<li><button type="button" data-open="cell:{number}">{html.escape(_cell_name(cell))}'
         f"</button> χ² falls by {cell.gain:.0f}</li>"
@@ -228,7 +228,7 @@ def _next(diagnosis: Diagnosis, manoeuvre: ProposedManoeuvre | None) -> list[Sho
 
 
 def _sketches(diagnosis: Diagnosis) -> list[Shown]:
-    """All other effects that were weighed, to look up."""
+    """All other effects that were considered, for reference."""
     said = {*diagnosis.found, *diagnosis.rivals}
     cards = [
         effect_card(effect)

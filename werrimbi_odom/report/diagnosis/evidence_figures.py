@@ -17,7 +17,7 @@ from werrimbi_odom.report.over_variable import labelled, over
 from werrimbi_odom.report.style import Figure
 
 FAINTEST = 150.0
-"""Fall of chi-squared that is given full colour at the least: noise alone stays pale."""
+"""Smallest reduction of chi-squared with full colour, so that noise alone stays pale."""
 
 _CHANNELS = {"left": "left wheel", "right": "right wheel"}
 
@@ -37,17 +37,17 @@ def _worth(cell: Dependence) -> float:
 
 
 def ordered_cells(cells: Sequence[Dependence]) -> list[Dependence]:
-    """One cell for each field of the map, the strongest first."""
+    """One cell for each field of the map, in descending order."""
     return sorted(best_cells(cells).values(), key=lambda cell: -_worth(cell))
 
 
 def evidence_map_figure(
     cells: Sequence[Dependence], *, opens: str = "", height: int = 430
 ) -> Figure:
-    """Error channel against measured variable: the darker, the more of the misfit goes with it.
+    """Heat map of error channels and variables: darker for a larger explained part of the misfit.
 
-    The custom data of a field are channel, variable, `opens`, and the field's number in
-    `ordered_cells`, for whoever listens to clicks.
+    The custom data of a field are channel, variable, `opens`, and the index of the field in
+    `ordered_cells`, for click handlers.
     """
     best = best_cells(cells)
     order = {id(cell): number for number, cell in enumerate(ordered_cells(cells))}
@@ -75,7 +75,7 @@ def evidence_map_figure(
         xgap=2,
         ygap=2,
     )
-    # Marks have their own ink on a disc of paper, so that they are read on any field.
+    # Marks have an outline on a light disc, so that they are legible on any colour.
     marked = [cell for row in grid for cell in row if cell and cell.p_value < VERY_SURE]
     stars = [_worth(cell) == top for cell in marked]
     figure.add_scatter(
@@ -118,7 +118,7 @@ def _shade(cell: Dependence | None) -> float:
 
 
 def _ticks(top: float) -> list[float]:
-    """Values for the scale, which goes by the root, far enough apart to be read."""
+    """Ticks for the square-root scale, with enough distance for their labels."""
     found = [0.0]
     for value in (10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6):
         if value <= top and np.sqrt(value) - np.sqrt(found[-1]) >= 0.12 * np.sqrt(top):
@@ -139,7 +139,7 @@ _POINTS = 160
 
 
 def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> Figure:
-    """The error of a cell over its variable, as the evidence map has fitted it."""
+    """The error of a cell over its variable, as fitted for the evidence map."""
     if cell.form == "place":
         return _floor(cell)
     figure = style.blank()
@@ -219,7 +219,7 @@ def _turns(
 
 
 def _floor(cell: Dependence) -> Figure:
-    """The error of a cell by place: larger where it is darker, signs by shape."""
+    """The error of a cell by position: darker for larger size, sign by the shape of the mark."""
     unit, factor = unit_of(cell.amount)
     cells, _ = functions_of(cell.variable)["place"]
     values = factor * (cells @ cell.coefficients)

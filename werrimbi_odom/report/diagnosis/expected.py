@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a ruler should show on this robot: an effect's check, worked out with what was found.
+"""Expected result of the manual check of an effect on this robot, from the fitted values.
 
-Each is the effect's own Ruler formula (`werrimbi explain`) at the fitted values.
+Each is the formula of the effect's own Ruler section (`werrimbi explain`) at the fitted values.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import two_digits
 
 SLOW, FAST = 0.1, 0.5
-"""Speeds of a check [m/s]: those of a hand-held test, which any robot reaches."""
+"""Speeds of a manual check [m/s], which any robot reaches."""
 
 TURNS = 2.0 * math.pi * 10.0
 """Ten turns [rad]."""
@@ -24,12 +24,12 @@ Values = Mapping[str, float]
 
 
 def expected_words(name: str, values: Values, robot: Robot) -> str:
-    """A sentence without its stop; "" where there is nothing to work out.
+    """A sentence without its full stop; "" if there is nothing to compute.
 
     Parameters
     ----------
-    values
-        By the effect's parameters; what each drive has anew is NaN or absent.
+    values : mapping of str to float
+        By the effect's parameters; per-run parameters are NaN or absent.
     """
     words = _EXPECTED.get(name)
     if words is None or not all(map(math.isfinite, _needed(name, values))):
@@ -38,7 +38,7 @@ def expected_words(name: str, values: Values, robot: Robot) -> str:
 
 
 def _needed(name: str, values: Values) -> list[float]:
-    """All but where on a wheel it is: a ruler shows how large it is."""
+    """All values except phases and per-run parameters, which a manual check does not need."""
     effect = find(name)
     phase = None if effect.quadrature is None else effect.quadrature[1]
     items = effect.parameters

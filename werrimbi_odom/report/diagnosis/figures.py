@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A diagnosis in figures: the ranking with what each effect gains, and set-up mistakes."""
+"""Figures of a diagnosis: the ranking with the gain of each effect, and set-up mistakes."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from werrimbi_odom.report.style import Figure
 _MOST_BARS = 10
 _PER_EFFECT = 52  # height of its two bars and the gap [pixels]
 _GAP = 0.3
-_WORST = -60.0  # a bar that is longer to the left goes out of the figure [%]
+_WORST = -60.0  # lower limit of the axis; longer bars are cut off [%]
 
 
 def ranking_figure(diagnosis: Diagnosis) -> Figure:
-    """Effects that were fitted, the best first: by how much each lowers the error of the legs.
+    """Reduction of the leg errors by each fitted effect, in descending order.
 
-    A filled bar is the error of held-out drives, the outlined one that of the drives of the fit.
+    Filled bars are for the held-out drives, outlined ones for the drives of the fit.
     """
     ranked = [item for item in diagnosis.ranking if item.holdout or item.train][:_MOST_BARS]
     figure = style.blank()
@@ -76,7 +76,7 @@ def ranking_figure(diagnosis: Diagnosis) -> Figure:
     )
     figure.update_yaxes(autorange="reversed", showgrid=False)
     for name, item in zip(names, ranked, strict=True):
-        if _gain(item.holdout) < 0.0:  # beyond a bar to the left its text would lie on the names
+        if _gain(item.holdout) < 0.0:  # left of the bar its text would overlap the names
             figure.add_annotation(
                 text=_text(item.holdout),
                 x=0.0,
@@ -113,9 +113,9 @@ def _text(sides: Sides | None) -> str:
 
 
 def set_up_figure(diagnosis: Diagnosis) -> Figure:
-    """Turn and travel of each leg, measured against predicted: as given, and put right.
+    """Turn and travel of each leg, measured against predicted: as given, and corrected.
 
-    Whatever is set up rightly lies on the diagonal; a wrong sign or factor is another line.
+    A correct set-up lies on the diagonal; a wrong sign or factor on another line.
     """
     from plotly.subplots import make_subplots
 
@@ -175,7 +175,7 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
 
 
 def _legs(diagnosis: Diagnosis, robot: Robot) -> tuple[Floats, Floats]:
-    """Measured and predicted relative pose of all legs, (m, 3); each in its own start's frame."""
+    """Measured and predicted relative poses of all legs, shape (m, 3), in their start frames."""
     runs = diagnosis.runs
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
@@ -191,17 +191,17 @@ _ARROWS = 10
 
 
 def ideal_of(name: str) -> Ideal | None:
-    """The manoeuvre of a name; None for what is no drive (a marker to be remounted)."""
+    """The manoeuvre of this name; None if it is not a drive (a marker to be remounted)."""
     return next((item for item in MANOEUVRES if item.name == name), None)
 
 
 def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: DrivingLimits) -> Figure:
-    """Where the wheels roll, for a robot of this size that drives as this one did.
+    """Wheel tracks of a manoeuvre, for a robot of this size at the speed of the recorded drives.
 
     Parameters
     ----------
     robot : Robot
-        Gives the base; its effects are left aside.
+        Gives the wheel base; its effects are ignored.
     """
     robot = replace(robot, effects=())
     run = ideal_run(ideal, robot, pace, ticks=_TICK, poses=_TICK, measures=(True, True))
@@ -235,7 +235,7 @@ def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: DrivingLimits) -> Figure:
 
 
 def _arrows(figure: Figure, place: np.ndarray, yaw: Floats, half: float) -> None:
-    """Heads along the way, pointing where the robot goes (backwards too)."""
+    """Arrow heads along the path, in the direction of motion (also backwards)."""
     moved = np.abs(np.diff(place))
     length = np.concatenate([[0.0], np.cumsum(moved)])
     if length[-1] < half:
@@ -259,7 +259,7 @@ def _arrows(figure: Figure, place: np.ndarray, yaw: Floats, half: float) -> None
 
 
 def _robot(figure: Figure, half: float) -> None:
-    """Outline at the start, facing x: body, wheels, nose."""
+    """Outline of the robot at the start, facing x: body, wheels, nose."""
     body = half * np.array(
         [-1.3 - 0.85j, 1.0 - 0.85j, 1.5 + 0j, 1.0 + 0.85j, -1.3 + 0.85j, -1.3 - 0.85j]
     )

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences about one effect: what it is, how large, how sure, what it costs, how to check it."""
+"""Sentences about one effect: what it is, its size, significance, cost, and how to check it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from werrimbi_odom.report.phrases import sizes_words
 
 
 def about(told: Told, name: str) -> list[str]:
-    """What it is, how large, how sure, what it costs, how to check it."""
+    """What the effect is, its size, significance, cost, and how to check it."""
     diagnosis = told.diagnosis
     effect = diagnosis.effect_named(name)
     lines = []
@@ -43,7 +43,7 @@ def about(told: Told, name: str) -> list[str]:
 
 
 def also(told: Told, name: str) -> list[str]:
-    """Another effect that was found, in short."""
+    """Short form for another effect that was found."""
     effect = told.diagnosis.effect_named(name)
     size = sizes(told.diagnosis, name)
     ranked = ranked_of(told.diagnosis, name)
@@ -81,7 +81,7 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
 
 
 def _unseen(value: Value) -> bool:
-    """Whether a parameter may as well be null, by as much as `add` would put it there."""
+    """Whether a parameter is not significantly different from null, as in `add`."""
     away = abs(value.value - value.null)
     if away == 0.0 and not value.is_shape and not value.per_run:
         return True
@@ -90,7 +90,7 @@ def _unseen(value: Value) -> bool:
 
 
 def hang_together(values: Iterable[Value]) -> str:
-    """That no size of an effect is known by itself, where they are known together; "" elsewhere."""
+    """Remark that the sizes of an effect are significant only jointly; "" otherwise."""
     known = [value for value in values if value.told and value.determined and value.std > 0.0]
     if len(known) < 2 or not all(map(_unseen, known)):
         return ""
@@ -98,7 +98,7 @@ def hang_together(values: Iterable[Value]) -> str:
 
 
 def _deviations(diagnosis: Diagnosis, name: str) -> str:
-    """How far from null the surest of its parameters is, in standard deviations."""
+    """Distance of the most significant parameter from null, in standard deviations."""
     far = {
         parameter: abs(value.value - value.null) / value.std
         for parameter, value in values_of(diagnosis, name).items()
@@ -111,7 +111,7 @@ def _deviations(diagnosis: Diagnosis, name: str) -> str:
 
 
 def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
-    """The values of an effect, on request only those that are away from null."""
+    """Values of an effect, on request without those within one standard deviation of null."""
     values = values_of(diagnosis, name)
     return ", ".join(
         f"{parameter} {_value(value)}"
@@ -127,7 +127,7 @@ def _value(value: Value) -> str:
 
 
 def cost(told: Told, name: str) -> list[str]:
-    """What the errors were without an effect, and what they are with it."""
+    """Errors without an effect and with it."""
     ranked = ranked_of(told.diagnosis, name)
     if ranked is None or ranked.holdout is None:
         return []
@@ -164,7 +164,7 @@ def _fall(told: Told, sides: Sides) -> list[str]:
 
 
 def error_kind(sides: Sides) -> str:
-    """Of what an error is."""
+    """Kind of an error."""
     return "heading" if sides.unit == "rad" else "position"
 
 
@@ -173,18 +173,18 @@ def _each(told: Told) -> str:
 
 
 def judged(told: Told) -> str:
-    """On which drives, over which legs."""
+    """Drives and legs of the held-out errors."""
     which = "the drives held out" if told.held_out else "a part put aside for judging"
     return f"{which} (legs of {told.leg:g} m)"
 
 
 def sizes_found(diagnosis: Diagnosis) -> str:
-    """Base and radii of the best model as one measures them on the robot; "" where none is off."""
+    """Wheel base and radii of the best model in measurable units; "" if all are right."""
     return sizes_words(diagnosis.given, best_sizes(diagnosis))
 
 
 def whole(told: Told) -> list[str]:
-    """With everything that was found, where that is more than one thing."""
+    """Errors with everything that was found, if that is more than one effect."""
     diagnosis = told.diagnosis
     sides = diagnosis.holdout
     if len(diagnosis.found) < 2 or not math.isfinite(sides.before):
@@ -197,7 +197,7 @@ def whole(told: Told) -> list[str]:
 
 
 def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
-    """How to check an effect on the robot, after some words, and what to expect there."""
+    """How to check an effect on the robot, with a heading and the expected result."""
     if effect is None:
         return []
     text = page_of(effect).sections.get("Ruler")

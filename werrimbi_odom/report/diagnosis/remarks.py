@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences beside what was found: what is left, stands against it, or cannot be shown."""
+"""Remarks on a diagnosis: what remains, objections, and what the drives cannot show."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from werrimbi_odom.report.numbers import chance_words, error_words, listed, quan
 
 
 def law(told: Told) -> list[str]:
-    """What is left once everything found is put in, or of a law that the robot file holds."""
+    """The misfit that remains with everything found, or that of a law in the robot file."""
     misfit = told.diagnosis.misfit
     if misfit is None:
         return []
@@ -41,7 +41,7 @@ def law(told: Told) -> list[str]:
 
 
 def scatter(told: Told) -> list[str]:
-    """That values scatter from part to part of the drives, and their deviations with them."""
+    """Remark that values differ between parts of the drives by more than noise."""
     diagnosis = told.diagnosis
     widened = widest(diagnosis)
     if widened <= 1.0:
@@ -57,14 +57,14 @@ def scatter(told: Told) -> list[str]:
 
 
 def _or_a_held_law(told: Told) -> str:
-    """The laws that the model holds, which may be a bit other than nature's."""
+    """Laws in the model; their form may differ slightly from the true one."""
     applied = told.diagnosis.robot.effects
     laws = [each.name for each in applied if not each.effect.is_mistake]
     return f", or the law of {listed(laws, 'or')} does not quite fit there" if laws else ""
 
 
 def without_events(told: Told) -> list[str]:
-    """What the errors are without the legs in which something happened at once."""
+    """Errors without the legs of abrupt events."""
     every, quiet = told.diagnosis.holdout, told.diagnosis.quiet[1]
     if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
         return []
@@ -77,7 +77,7 @@ def without_events(told: Told) -> list[str]:
 
 
 def at_bounds_words(diagnosis: Diagnosis) -> dict[str, str]:
-    """Effects that would help, but only at a value that physics does not allow, and that value."""
+    """Effects that would help only at a physically impossible value, and that value."""
     return {
         name: f"{parameter} = {quantity(value, math.nan, unit)}"
         for name, (parameter, value, unit) in at_bounds(diagnosis).items()
@@ -85,7 +85,7 @@ def at_bounds_words(diagnosis: Diagnosis) -> dict[str, str]:
 
 
 def otherwise(diagnosis: Diagnosis) -> list[str]:
-    """Drives that were recorded otherwise than the fitted ones, by what differs."""
+    """Drives that were recorded differently from the fitted ones, by the difference."""
     alike: dict[tuple[str, ...], list[RecordedOtherwise]] = {}
     for each in diagnosis.otherwise:
         alike.setdefault(each.effects, []).append(each)
@@ -104,8 +104,8 @@ def otherwise(diagnosis: Diagnosis) -> list[str]:
 
 
 def not_shown(told: Told) -> list[str]:
-    """Effects that would have stayed hidden, and what would show them."""
-    # What is named was seen, larger than usual.
+    """Effects that would not have been detected, and what would show them."""
+    # Named effects were detected, with more than their typical size.
     found = told.diagnosis.found
     hidden = [sight for sight in told.sights if sight.hidden and sight.effect not in found]
     if not hidden:
@@ -132,7 +132,7 @@ def not_shown(told: Told) -> list[str]:
 
 
 def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
-    """The size of both wheels, where a base was found that is one with it."""
+    """Size of both wheels that is equivalent to a wheel base found from headings alone."""
     if not diagnosis.runs.headings_alone or "track_width" not in diagnosis.found:
         return []
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
@@ -144,7 +144,7 @@ def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
 
 
 def instead_of_held(diagnosis: Diagnosis) -> list[str]:
-    """What the drives cannot tell from an effect that the file holds, and what can."""
+    """Rivals of an effect in the robot file, and how to separate them."""
     return [
         f"But: that it is {name}, which the robot file holds, these drives do not show: "
         f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
@@ -154,7 +154,7 @@ def instead_of_held(diagnosis: Diagnosis) -> list[str]:
 
 
 def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
-    """The same as sentences."""
+    """Sentences on the effects of `at_bounds_words`."""
     return [
         f"But: {name} would lower the error too, only with {value}, the limit of what physics "
         "allows: it is not that effect."

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A diagnosis in tables that fit into 80 columns, and as JSON, as the contract says."""
+"""A diagnosis in tables of at most 80 columns, and as JSON with the names of the contract."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _MAPPED = 10
 
 
 def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> list[Part]:
-    """Parameters, ranking, evidence map, and what would have been seen."""
+    """Parameters, ranking, evidence map, and detection limits."""
     parts = [*_parameters(diagnosis), _ranking(diagnosis), *_map(diagnosis)]
     return [*parts, *_sights(sights)] if diagnosis.verdict == "none" else parts
 
@@ -72,7 +72,7 @@ def _fall(sides: Sides | None) -> tuple[str, str]:
 
 
 def _map(diagnosis: Diagnosis) -> Sequence[Part]:
-    """How strongly each error goes with each variable: the logarithm of the chance, in marks."""
+    """Explained chi-squared of each error channel by each variable."""
     title = "What the errors go with, before anything is put in"
     cells = list(diagnosis.depends_on)
     sure = list(dict.fromkeys(short_words(cell) for cell in cells if cell.p_value < SURE))
@@ -118,7 +118,7 @@ def json_of(
     sights: Sequence[DetectionLimit] = (),
     changes: Sequence[Moved] = (),
 ) -> dict[str, Any]:
-    """Everything that was found."""
+    """Complete result."""
     misfit = diagnosis.misfit
     return {
         **picked(diagnosis, "verdict effect rivals rivals_by_halves:torn"),
@@ -169,7 +169,7 @@ def json_of(
 
 
 def _calibration(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Base and radii of the best model; no deviation where one stays as the robot file has it."""
+    """Wheel base and radii of the best model; no deviation for those kept from the robot file."""
     if diagnosis.of_another_drive:
         return {}
     return {
@@ -184,7 +184,7 @@ def _cell(cell: Dependence) -> dict[str, Any]:
 
 
 def _sides(sides: Sides | None, headings: Sides | None = None) -> dict[str, Any]:
-    """Position errors [m]; of headings alone there are none, and theirs stand beside."""
+    """Position errors [m]; none if only headings are measured, with their errors beside."""
     if sides is not None and sides.unit != "m":
         sides, headings = None, sides
     found: dict[str, Any] = {"before": None, "after": None}

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A diagnosis in plain words: what is missing, how sure, how large, what it costs, what to do."""
+"""A diagnosis in words: what is missing, its significance, size, cost, and what to do."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ from werrimbi_odom.report.phrases import jumps_words, left_out_words, remark_wor
 
 @dataclass(frozen=True)
 class NextSteps:
-    """Commands for the same robot and drives, as one would type them."""
+    """Commands for the same robot and drives, ready to type."""
 
     add: Callable[[Sequence[str]], str] = lambda names: (
         f"werrimbi add {','.join(names)} --robot R RUN... --out NEW.yaml"
     )
-    """Of the names of effects."""
+    """Command to add effects of these names."""
     draft: str = "werrimbi draft --robot R RUN... --out my_effect"
     diagnose: str = "werrimbi diagnose"
 
@@ -76,7 +76,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
 
 
 def _changes(told: Told) -> list[str]:
-    """What differs between the drives, before what they have in common."""
+    """Changes between the drives, before what they have in common."""
     changes = changes_words(told.changes, told.diagnosis.robot)
     if not changes:
         return []
@@ -200,7 +200,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
 
 
 def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
-    """Of a drive that tells rivals apart: for how long, how surely, and what then."""
+    """Duration and power of a drive that separates rivals, and what to do with it."""
     if not move.minutes:
         return
     enough = "are enough"
@@ -271,7 +271,7 @@ def _after(sides: Sides | None) -> float:
 
 
 def _things(diagnosis: Diagnosis) -> list[str]:
-    """What was found, by name; one wheel that is off is one thing, whatever effects it takes."""
+    """Names of what was found; effects of one wrong wheel are combined."""
     side = one_wheel(diagnosis)
     if side is None:
         return list(diagnosis.found)
@@ -284,7 +284,7 @@ _OF_A_WHEEL = ("unequal_wheel_radii", "wheel_radius_scale")
 
 
 def _set_up(diagnosis: Diagnosis) -> list[str]:
-    """Set-up mistakes first: nothing else counts while they are there; then what is no mistake."""
+    """Set-up mistakes, which come first because all else depends on them; then skid steering."""
     findings = diagnosis.set_up.findings
     wrong = diagnosis.set_up.wrong
     lines = ["Something is set up wrongly:"] if wrong else []

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A sketch of an effect's physics, as the effect declares it: one small drawing a family."""
+"""Sketches of the physics of effects: one parametric drawing for each family of effects."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DRAWINGS = {**wheels.DRAWINGS, **robot.DRAWINGS}
 
 
 def effect_sketch(effect: Effect) -> str | None:
-    """The drawing (SVG); None for an effect that declares none."""
+    """The sketch as SVG; None for an effect without one."""
     sketch = effect.sketch
     if sketch is None:
         return None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Strokes for the sketches of effects: SVG that takes its colours from the page around it."""
+"""Drawing primitives for the sketches: SVG with the colours of the page around it."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ SIDES = {"left": BLUE, "right": ORANGE}
 WIDTH, HEIGHT = 340, 170
 
 DASH = "6 5"
-"""Of lines that are not there: what was meant, or is merely thought."""
+"""Dash pattern of lines for what is only intended or imagined."""
 
 Point = tuple[float, float]
 Parts = list[str]
 
 
 def drawing(name: str, says: str, caption: str, parts: Sequence[str]) -> str:
-    """The whole sketch; `says` is for those who do not see it."""
+    """The whole sketch; `says` is its text for screen readers."""
     below = words(WIDTH / 2, HEIGHT - 11, caption)
     return (
         f'<svg class="sketch" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
@@ -37,7 +37,7 @@ def drawing(name: str, says: str, caption: str, parts: Sequence[str]) -> str:
 
 
 def line(*points: Point, colour: str = INK, width: float = 2.0, dash: str = "") -> str:
-    """A line through points."""
+    """A polyline."""
     path = "M" + " L".join(f"{x:.1f} {y:.1f}" for x, y in points)
     return f'<path d="{path}" stroke="{colour}" stroke-width="{width}"{_dashed(dash)}/>'
 
@@ -45,7 +45,7 @@ def line(*points: Point, colour: str = INK, width: float = 2.0, dash: str = "") 
 def circle(
     x: float, y: float, r: float, *, colour: str = INK, dash: str = "", fill: str = ""
 ) -> str:
-    """A circle, or a disc."""
+    """A circle; a disc if filled."""
     return (
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r:.1f}" stroke="{colour}" stroke-width="2"'
         f"{_dashed(dash)}{_filled(fill)}/>"
@@ -63,7 +63,7 @@ def oblong(
     fill: str = "",
     dash: str = "",
 ) -> str:
-    """A rectangle about its middle, turned clockwise by degrees."""
+    """A rectangle by its centre, rotated clockwise [degrees]."""
     return (
         f'<rect x="{x - width / 2:.1f}" y="{y - height / 2:.1f}" width="{width:.1f}" '
         f'height="{height:.1f}" rx="3" transform="rotate({turn:.1f} {x:.1f} {y:.1f})" '
@@ -91,7 +91,7 @@ def arc(
     head: bool = False,
     width: float = 2.0,
 ) -> str:
-    """Part of a circle from one angle to another [degrees, anticlockwise from the right]."""
+    """Part of a circle between two angles [degrees, anticlockwise from the right]."""
     count = max(6, int(abs(end - begin) / 6))
     points = [
         (x + r * math.cos(math.radians(at)), y - r * math.sin(math.radians(at)))
@@ -104,7 +104,7 @@ def arc(
 def wave(
     x: float, y: float, width: float, height: float, *, colour: str = ORANGE, turns: float = 2.0
 ) -> str:
-    """A sine to the right."""
+    """A sine wave to the right."""
     points = [
         (x + width * step / 60, y - height * math.sin(2.0 * math.pi * turns * step / 60))
         for step in range(61)
@@ -131,7 +131,7 @@ def robot(
     castor: bool = False,
     marker: bool = False,
 ) -> str:
-    """From above, facing right, turned anticlockwise by degrees; left is up on the page."""
+    """A robot from above, facing right, rotated anticlockwise [degrees]; left is up on the page."""
     s = size
     parts = [
         f'<path d="M{-26 * s} {-20 * s} H{14 * s} L{28 * s} 0 L{14 * s} {20 * s} H{-26 * s} Z" '

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sketches of how the robot moves on its floor, and of what the reference shows of it."""
+"""Sketches of the robot's motion on its floor, and of errors of the reference."""
 
 from __future__ import annotations
 
@@ -254,4 +254,4 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "late": _late,
     "wandering_bias": _wandering_bias,
 }
-"""By name; what they are called with are the labels of a `Sketch`."""
+"""Drawings by name; their arguments are the labels of a `Sketch`."""

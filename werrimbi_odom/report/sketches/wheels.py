@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sketches of wheels: their shape, size, tread and gears, and how their turns are counted."""
+"""Sketches of wheels (shape, size, tread, gears) and of their counters."""
 
 from __future__ import annotations
 
@@ -242,4 +242,4 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "wrong_sign": _reversed,
     "load": _load,
 }
-"""By name; what they are called with are the labels of a `Sketch`."""
+"""Drawings by name; their arguments are the labels of a `Sketch`."""

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects that can be hidden in a simulated robot, for others to find.
+"""Effects hidden in a simulated robot, as test data for the diagnosis.
 
-`peculiarity` says where in a drive an effect can act, `catalogue` lists all effects with units and
-realistic strengths; each other file holds one family of them.
+`peculiarity` defines where in a simulated drive an effect can act, `catalogue` lists all effects
+with units and realistic strengths; each other file has one family of them.
 """
 
 from .catalogue import (

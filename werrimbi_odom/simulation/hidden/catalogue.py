@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""All that can be hidden: names, units, realistic strengths."""
+"""Catalogue of hidden effects: names, units, realistic strengths."""
 
 from __future__ import annotations
 
@@ -41,35 +41,35 @@ Kind = Literal["effect", "mistake", "outside", "robot", "event"]
 
 
 class UnknownEffectError(ValueError):
-    """There is no such effect to hide."""
+    """The catalogue has no effect of this name."""
 
 
 class StrengthError(ValueError):
-    """An effect cannot be that strong."""
+    """The strength is outside an effect's range."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One thing that can be hidden.
+    """One entry of the catalogue.
 
     Parameters
     ----------
     name : str
     make : callable of (strength, rng)
-        Gives the peculiarity; what else it needs, a direction for example, is drawn from `rng`.
+        Makes the peculiarity; its further parameters, such as a direction, are drawn from `rng`.
     unit : str
-        Of the strength.
+        Unit of the strength.
     low, high : float
-        Realistic range of its distance from `null`, drawn evenly in its logarithm.
+        Realistic range of its distance from `null`, drawn log-uniformly.
     says : str
-        What it is, in a line.
+        Description in one line.
     null : float
         Strength at which there is no effect.
     signed : bool
-        Whether both signs of that distance occur.
+        Whether this distance can be negative.
     kind : "effect", "mistake", "outside", "robot" or "event"
-        In the library's vocabulary, a mistake of set-up, nothing that the library knows, another
-        kind of robot, or what happens at single instants.
+        Effect of the library, set-up mistake, effect outside the library, another kind of robot, or
+        abrupt event.
     """
 
     name: str
@@ -83,14 +83,14 @@ class Entry:
     kind: Kind = "effect"
 
     def draw(self, rng: Rng) -> float:
-        """A realistic strength."""
+        """Draw a realistic strength."""
         size = math.exp(rng.uniform(math.log(self.low), math.log(self.high)))
         sign = rng.choice([-1.0, 1.0]) if self.signed else 1.0
         return float(self.null + sign * size)
 
     @property
     def range_in_words(self) -> str:
-        """The realistic strengths, for people."""
+        """Realistic strengths, as text."""
         if self.kind == "mistake":
             return "yes or no"
         null = f"{self.null:g} " if self.null else ""
@@ -101,7 +101,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Hidden:
-    """One effect that was hidden, for truth.json: what, how strong, and its true parameters."""
+    """One hidden effect for truth.json: its entry, strength, and true parameters."""
 
     entry: Entry
     strength: float
@@ -109,7 +109,7 @@ class Hidden:
 
 
 def _mistake(name: str, make: Callable[[Rng], Peculiarity], says: str) -> Entry:
-    """All or nothing: a strength of 0 is no mistake, any other is one."""
+    """Entry of a mistake: strength 0 means without it, any other with it."""
     return Entry(
         name,
         lambda strength, rng: make(rng) if strength else Peculiarity(),
@@ -123,7 +123,7 @@ def _mistake(name: str, make: Callable[[Rng], Peculiarity], says: str) -> Entry:
 
 
 def _anywhere(rng: Rng) -> float:
-    """Any direction [rad]."""
+    """A random direction [rad]."""
     return float(rng.uniform(-math.pi, math.pi))
 
 
@@ -132,7 +132,7 @@ def _either(rng: Rng) -> bool:
 
 
 def _tread_bump(side: Side, thickness: float, rng: Rng) -> TreadBump:
-    """It goes round the wheel by 30 to 90 degrees."""
+    """A bump that covers 30 to 90 degrees of the wheel."""
     return TreadBump(side, thickness, float(rng.uniform(0.5, 1.6)), _anywhere(rng))
 
 
@@ -142,21 +142,21 @@ def _lever_arm(length: float, rng: Rng) -> ReferenceMount:
 
 
 def _radius_drift(per_drive: float, rng: Rng) -> RadiusDrift:
-    """A drive is 20 m or a minute."""
+    """Drift for a drive of 20 m or a minute."""
     if _either(rng):
         return RadiusDrift(per_drive / 20.0, "metre")
     return RadiusDrift(per_drive / 60.0, "second")
 
 
 def _by_channel(per_swing: float, rng: Rng) -> Peculiarity:
-    """A swing is 10 K or 10 kg."""
+    """Change for a swing of 10 K or 10 kg."""
     if _either(rng):
         return RadiusFollowsTemperature(per_swing / 10.0)
     return RadiusFollowsPayload(abs(per_swing) / 10.0)
 
 
 def _load_transfer(softness: float, rng: Rng) -> LoadTransfer:
-    """Wheels in the middle, with a castor before or behind, or none of it along."""
+    """Driven wheels at the middle with a castor before or behind, or only the lateral part."""
     height, length = rng.uniform((0.6, -0.8), (1.2, 0.8))
     return LoadTransfer(softness, float(height), float(length) * _either(rng))
 
@@ -278,7 +278,7 @@ CATALOGUE: tuple[Entry, ...] = (
 
 
 def find(name: str) -> Entry:
-    """The entry called `name`, or an UnknownEffectError that names the nearest one."""
+    """The entry called `name`; otherwise an UnknownEffectError that names the nearest one."""
     names = [entry.name for entry in CATALOGUE]
     if name in names:
         return CATALOGUE[names.index(name)]
@@ -288,16 +288,16 @@ def find(name: str) -> Entry:
 
 
 def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0) -> Hidden:
-    """Choose the peculiarity of a robot.
+    """Draw a hidden effect.
 
     Parameters
     ----------
     name : str
-        Of an entry, or "random" for any effect of the library's vocabulary.
+        Name of an entry, or "random" for any effect of the library.
     strength : float, optional
-        In the entry's unit; drawn from the realistic range if not given.
+        In the entry's unit; by default drawn from the realistic range.
     seed, number : int
-        Of all that is drawn: of the robot, and which of its hidden effects this is.
+        Seed of the robot, and number of the effect among its hidden effects.
     """
     rng = np.random.default_rng([seed, number, *name.encode()])
     if name == "random":
@@ -311,14 +311,14 @@ def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0
 
 
 FIRST = 21
-"""Effects that there were when seeds began to be written down."""
+"""Number of effects when seeds were first recorded."""
 
 
 def _any_effect(rng: Rng, seed: int, number: int) -> str:
-    """Any effect of the vocabulary, all as likely.
+    """A random effect of the library, all with equal probability.
 
-    An effect that comes later takes its share of the seeds (reservoir sampling: Vitter 1985); the
-    other seeds go on hiding what they hid.
+    Each effect added later takes its share of the seeds (reservoir sampling, Vitter 1985); all
+    other seeds keep their effects.
     """
     names = [entry.name for entry in CATALOGUE if entry.kind == "effect"]
     chosen = str(rng.choice(names[:FIRST]))
@@ -330,12 +330,12 @@ def _any_effect(rng: Rng, seed: int, number: int) -> str:
 
 
 def wished(wish: str, *, seed: int, number: int = 0) -> Hidden:
-    """What EFFECT or EFFECT=STRENGTH asks to be hidden; the rest as of `hide`.
+    """Parse EFFECT or EFFECT=STRENGTH and draw the hidden effect as in `hide`.
 
     Raises
     ------
     UnknownEffectError, StrengthError
-        When there is none of that name, or it cannot be that strong.
+        If the name is unknown, or the strength is no number or out of range.
     """
     name, _, strength = wish.partition("=")
     try:

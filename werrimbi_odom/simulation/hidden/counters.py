@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Counters that lose counts, are read apart, or are wired wrongly: tampering with the record."""
+"""Faults of the counters: lost counts, unequal reading times, wrong wiring."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _angle(recording: Recording, side: Side) -> Floats:
 
 
 def _rows(recording: Recording) -> Iterator[tuple[float, float, float]]:
-    """Time and both shafts' angles."""
+    """Rows of time and both shaft angles."""
     path = recording.true_path
     return zip(
         *(each.tolist() for each in (path.t_s, path.left_angle_rad, path.right_angle_rad)),
@@ -51,15 +51,15 @@ def _resolution(robot: TrueRobot, side: Side) -> float:
 class MissedTicks(Peculiarity):
     """An encoder loses a share of its counts while its wheel is faster than a threshold.
 
-    The share is lost evenly, as where an interrupt is late for every n-th mark, not by chance.
+    The loss is even, as if an interrupt missed every n-th mark, not random.
 
     Parameters
     ----------
     side : "left" or "right"
     fraction : float
-        Of the counts.
+        Lost share of the counts.
     above : float
-        Speed at the rim beyond which they are lost [m/s].
+        Threshold of the rim speed [m/s].
     """
 
     side: Side
@@ -69,7 +69,7 @@ class MissedTicks(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Take the lost counts away."""
+        """Remove the lost counts."""
         t, angle = recording.true_path.t_s, _angle(recording, self.side)
         seen = self.counted(robot)
         counted = np.array([seen(*row) for row in _rows(recording)])
@@ -80,7 +80,7 @@ class MissedTicks(Peculiarity):
         return _with_ticks(recording, self.side, _ticks(recording, self.side) - missing)
 
     def counted(self, robot: TrueRobot) -> Counted:
-        """Both shafts' angles, the one of this side less what was lost so far."""
+        """Both shaft angles, that of this side reduced by the loss so far."""
         radius = getattr(robot, f"{self.side}_wheel_radius")
         which = 0 if self.side == "left" else 1
         before: tuple[float, float] | None = None  # time and angle
@@ -102,19 +102,19 @@ class MissedTicks(Peculiarity):
 
 @dataclass(frozen=True)
 class EncoderSkew(Peculiarity):
-    """The right counter is read later than the left one (earlier where negative) by `delay` [s]."""
+    """The right counter is read `delay` [s] later than the left one (earlier if negative)."""
 
     delay: float
 
     @property
     def ahead(self) -> float:
-        """A counter that is read later shows what comes after its stamp."""
+        """Time from the stamp to the later reading [s]."""
         return max(self.delay, 0.0)
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Let the right counter show what it counted by then."""
+        """Shift the right counter by the delay."""
         t, angle = recording.true_path.t_s, recording.true_path.right_angle_rad
         resolution = robot.right_ticks_per_revolution
         late = count(t, angle, recording.t_s + self.delay, resolution)
@@ -124,7 +124,7 @@ class EncoderSkew(Peculiarity):
 
 @dataclass(frozen=True)
 class WheelsSwapped(Peculiarity):
-    """Left and right are exchanged."""
+    """Left and right counters are exchanged."""
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
@@ -136,12 +136,12 @@ class WheelsSwapped(Peculiarity):
 
 @dataclass(frozen=True)
 class WheelReversed(Peculiarity):
-    """One counter counts backwards."""
+    """One counter has the wrong sign."""
 
     side: Side
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Turn its sign."""
+        """Negate the counter."""
         return _with_ticks(recording, self.side, -_ticks(recording, self.side))

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres that creep under the forces they carry, and bases that depend on the turning.
+"""Tyres that creep under their forces, and wheel bases that depend on the kind of turn.
 
-In an engine with clean contacts no force makes such creep, so the body is moved after the step.
+The engine's contacts do not creep by themselves, so the body is moved after the step.
 """
 
 from __future__ import annotations
@@ -19,44 +19,44 @@ from .peculiarity import Peculiarity
 
 @dataclass(frozen=True)
 class LongitudinalSlip(Peculiarity):
-    """A driving wheel rolls more than it travels, a braking one less: slip in proportion to force.
+    """Slip proportional to force: a driving wheel travels less than it rolls, a braking one more.
 
     Parameters
     ----------
     coefficient : float
-        Share of the travel that is lost per acceleration of that wheel [s^2/m]. A tyre of
-        stiffness C under a mass m has m / C.
+        Share of the travel lost per acceleration of the wheel [s^2/m]. For a tyre of stiffness C
+        under a mass m it is m / C.
     """
 
     coefficient: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Each wheel falls back by coefficient * acceleration * path."""
+        """Each wheel lags by coefficient * acceleration * path."""
         return _falling_back(self.coefficient, 0.0, robot)
 
 
 @dataclass(frozen=True)
 class CoulombSlip(Peculiarity):
-    """A wheel holds up to a force and slips above it.
+    """A wheel grips up to a certain force and slips above it.
 
     Parameters
     ----------
     coefficient : float
-        Share of the travel that is lost per acceleration above the threshold [s^2/m].
+        Share of the travel lost per acceleration above the threshold [s^2/m].
     above : float
-        Acceleration of the wheel up to which it holds [m/s^2].
+        Threshold of the wheel's acceleration [m/s^2].
     """
 
     coefficient: float
     above: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Each wheel falls back by coefficient * (|acceleration| - above) * path."""
+        """Each wheel lags by coefficient * (|acceleration| - above) * path."""
         return _falling_back(self.coefficient, self.above, robot)
 
 
 def _falling_back(coefficient: float, above: float, robot: TrueRobot) -> Shifter:
-    """Of each wheel, by the part of its acceleration that is above a threshold [m/s^2]."""
+    """Lag of each wheel, from the part of its acceleration above a threshold [m/s^2]."""
     before = np.zeros(2)
 
     def shift(stride: Stride) -> Shift:
@@ -73,7 +73,7 @@ def _falling_back(coefficient: float, above: float, robot: TrueRobot) -> Shifter
 
 @dataclass(frozen=True)
 class LateralSlip(Peculiarity):
-    """In a curve the tyres creep outwards.
+    """Tyres creep outwards in curves.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class LateralSlip(Peculiarity):
     creep: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Sideways by -creep * speed * turn."""
+        """Sideways motion of -creep * speed * turn."""
 
         def shift(stride: Stride) -> Shift:
             speed = (stride.left + stride.right) / 2 / stride.period
@@ -96,22 +96,22 @@ class LateralSlip(Peculiarity):
 
 @dataclass(frozen=True)
 class TurnDependentTrack(Peculiarity):
-    """The base that counts for turning depends on how the robot turns.
+    """The effective wheel base depends on the kind of turn.
 
     Parameters
     ----------
     coefficient : float
-        Relative growth of the base: at full sharpness, or in left turns (and as much less in right
-        ones).
+        Relative increase of the base: at sharpness 1, or in left turns (with opposite sign in right
+        turns).
     on : "sharpness" or "sense"
-        Sharpness is |R - L| / (|R| + |L|): 0 on a line, 1 when pivoting and spinning.
+        Sharpness is |R - L| / (|R| + |L|): 0 on a line, 1 in pivots and spins.
     """
 
     coefficient: float
     on: Literal["sharpness", "sense"]
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Take back the turning that the wider base does not make."""
+        """Subtract the part of the turn that the wider base does not make."""
 
         def shift(stride: Stride) -> Shift:
             difference = stride.right - stride.left
@@ -127,18 +127,18 @@ class TurnDependentTrack(Peculiarity):
 
 @dataclass(frozen=True)
 class CastorKick(Peculiarity):
-    """After each reversal the castor swings round and kicks the heading while it does.
+    """After each reversal the castor swings round and changes the heading.
 
     Parameters
     ----------
     angle : float
-        Heading gained by the swing [rad].
+        Total change of heading [rad].
     alternating : bool
-        True: +angle when it begins to drive forwards, -angle backwards; False: always +angle.
+        True: +angle when it starts to drive forwards, -angle backwards; False: always +angle.
     trail : float
-        Way over which the swing dies out by a factor e [m].
+        Distance over which the swing decays by a factor e [m].
     lead : float
-        Way back before the swing begins [m]; a motor's settling at a stop is no reversal.
+        Travel that counts as a reversal [m]; excludes the settling of a motor at a stop.
     """
 
     angle: float
@@ -147,7 +147,7 @@ class CastorKick(Peculiarity):
     lead: float = 2e-3
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Release the kick along the way after a reversal."""
+        """Distribute the change of heading over the path after a reversal."""
         direction = 0.0
         against = 0.0
         backlog = 0.0

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Floors that carry the robot off."""
+"""Floors that displace the robot."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .peculiarity import Peculiarity
 
 @dataclass(frozen=True)
 class FloorSlope(Peculiarity):
-    """On a slope tyres creep downhill with every metre they roll.
+    """On a slope tyres creep downhill while they roll.
 
     Parameters
     ----------
     creep : float
         Drift per metre of path [1].
     downhill : float
-        Its direction in the world [rad].
+        Downhill direction in the world [rad].
     """
 
     creep: float
@@ -42,21 +42,21 @@ class FloorSlope(Peculiarity):
 
 @dataclass(frozen=True)
 class GrainedFloor(Peculiarity):
-    """A ribbed floor: a wheel rolls on the ribs' crests along them, and over each of them across.
+    """A ribbed floor: across the ribs a wheel's contact path is longer than the distance travelled.
 
     Parameters
     ----------
     gain : float
-        Share by which the way along the grain is longer than the mean; across it is shorter.
+        Relative increase of the distance along the grain, and decrease across it.
     grain : float
-        Its direction in the world [rad].
+        Direction of the grain in the world [rad].
     """
 
     gain: float
     grain: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """More way along the grain, by how much of the motion lies along it and how much across."""
+        """Change of the distance by the direction of motion relative to the grain."""
 
         def shift(stride: Stride) -> Shift:
             along = (stride.left + stride.right) / 2
@@ -73,9 +73,9 @@ class SlipperySpot(Peculiarity):
     Parameters
     ----------
     loss : float
-        Share of the travel that is lost on it.
+        Share of the travel lost on it.
     x, y, radius : float
-        Where it lies in the world, and how large it is [m].
+        Centre in the world, and radius [m].
     """
 
     loss: float
@@ -84,7 +84,7 @@ class SlipperySpot(Peculiarity):
     radius: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Each wheel by where it stands."""
+        """Loss of each wheel by its position."""
         half = robot.wheel_separation / 2
 
         def lost(travel: float, stride: Stride, along_axle: float) -> float:
@@ -103,21 +103,21 @@ class SlipperySpot(Peculiarity):
 
 @dataclass(frozen=True)
 class CablePull(Peculiarity):
-    """A cable drags the tail, so the robot turns towards one direction as it goes. Outside.
+    """A dragged cable turns the robot towards one direction. Outside the library.
 
     Parameters
     ----------
     rate : float
-        Heading gained per metre of path when square to that direction [rad/m].
+        Change of heading per metre of path when at right angles to that direction [rad/m].
     towards : float
-        That direction in the world [rad].
+        The direction in the world [rad].
     """
 
     rate: float
     towards: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Turn by the sine of the angle to that direction."""
+        """Turn proportional to the sine of the angle to that direction."""
 
         def shift(stride: Stride) -> Shift:
             path = abs(stride.left + stride.right) / 2

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A robot whose base or radii are not what its maker believes."""
+"""A true wheel base or wheel radii that differ from the nominal ones."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..robot import TrueRobot
 from .peculiarity import Peculiarity
 
 PLAUSIBLE = 1.15
-"""A factor beyond this is a slip of the pen in the robot file, not a slip of the workshop."""
+"""Largest plausible factor: beyond it, the error is in the robot file and not in the robot."""
 
 
 def _believable(factor: float) -> bool:
@@ -19,18 +19,18 @@ def _believable(factor: float) -> bool:
 
 @dataclass(frozen=True)
 class TrackWidth(Peculiarity):
-    """The true base is `multiplier` times the believed one."""
+    """The true wheel base is `multiplier` times the nominal one."""
 
     multiplier: float
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
-        """Wheels mounted further apart or closer, where that is believable."""
+        """Change the true base, if the factor is plausible."""
         if not _believable(self.multiplier):
             return robot
         return replace(robot, wheel_separation=robot.wheel_separation * self.multiplier)
 
     def written(self, robot: TrueRobot) -> TrueRobot:
-        """Else half the base, or its millimetres, in the robot file."""
+        """Otherwise a wrong base in the robot file, for example half the base or millimetres."""
         if _believable(self.multiplier):
             return robot
         base = robot.nominal.wheel_separation / self.multiplier
@@ -39,12 +39,12 @@ class TrackWidth(Peculiarity):
 
 @dataclass(frozen=True)
 class WheelRadiusScale(Peculiarity):
-    """Both true radii are `multiplier` times the believed one."""
+    """Both true radii are `multiplier` times the nominal one."""
 
     multiplier: float
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
-        """Larger or smaller wheels, where that is believable."""
+        """Change the true radii, if the factor is plausible."""
         if not _believable(self.multiplier):
             return robot
         return replace(
@@ -54,7 +54,7 @@ class WheelRadiusScale(Peculiarity):
         )
 
     def written(self, robot: TrueRobot) -> TrueRobot:
-        """Else a diameter, or millimetres, in the robot file."""
+        """Otherwise a wrong radius in the robot file, for example the diameter or millimetres."""
         if _believable(self.multiplier):
             return robot
         radius = robot.nominal.wheel_radius / self.multiplier
@@ -63,12 +63,12 @@ class WheelRadiusScale(Peculiarity):
 
 @dataclass(frozen=True)
 class UnequalWheelRadii(Peculiarity):
-    """The right wheel is `ratio` times as large as the left one (UMBmark's E_d); same mean."""
+    """The right radius is `ratio` times the left one (UMBmark's E_d), with the same mean."""
 
     ratio: float
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
-        """One wheel larger, the other smaller."""
+        """Increase one radius and decrease the other."""
         return replace(
             robot,
             left_wheel_radius=robot.left_wheel_radius * 2 / (1 + self.ratio),

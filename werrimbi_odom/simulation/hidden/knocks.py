@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happens at an instant, now and then: a push, a kick, a bump, a slip, a reference that jumps.
+"""Abrupt events: a push, a heading kick, a bump, a wheel slip, a jump of the reference.
 
-When, how often and to which side is drawn for each drive anew; truth.json tells it.
+Times, number and direction are drawn for each drive and written to truth.json.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from .peculiarity import Peculiarity
 Kind = Literal["push", "heading_kick", "bump", "wheel_slip"]
 
 FIRST, APART = 3.0, 5.0
-"""Time before the first one, and between two at the least [s]."""
+"""Earliest time of the first event, and least time between two events [s]."""
 
 
 def instants(every: float, until: float, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """When things happen, and to which side (+1 or -1): at random, `every` so often on average."""
+    """Random times [s] and signs (+1 or -1) of events, one in `every` seconds on average."""
     found = []
     time = FIRST + float(rng.uniform(0.0, every))
     while time < until:
@@ -36,19 +36,19 @@ def instants(every: float, until: float, rng: np.random.Generator) -> list[tuple
 
 @dataclass(frozen=True)
 class Knock(Peculiarity):
-    """The robot is moved at once, and no wheel turned for it.
+    """The robot is moved within a short time without rotation of its wheels.
 
     Parameters
     ----------
     kind : str
         "push": sideways; "heading_kick": its heading; "bump": along; "wheel_slip": one wheel, left
-        or right, rolls less than it turns.
+        or right, travels less than it rolls.
     size : float
-        [m], or [rad] of a kick.
+        Size [m], or [rad] of a heading kick.
     lasts : float
-        How long it takes [s].
+        Duration of an event [s].
     every : float
-        Mean time between two of them [s].
+        Mean time between events [s].
     """
 
     kind: Kind
@@ -57,7 +57,7 @@ class Knock(Peculiarity):
     every: float = 25.0
 
     def _moved(self, side: float, robot: TrueRobot) -> Shift:
-        """By one of them."""
+        """Total motion of one event."""
         if self.kind == "push":
             return Shift(0.0, side * self.size, 0.0)
         if self.kind == "heading_kick":
@@ -67,7 +67,7 @@ class Knock(Peculiarity):
         return Shift(-self.size / 2, 0.0, side * self.size / robot.wheel_separation)
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Move it by equal parts for as long as a knock lasts."""
+        """Motion of each event in equal parts over its duration."""
         knocks = instants(self.every, 3600.0, rng)
         parts = round(self.lasts / PERIOD)
         left, current = 0, Shift(0.0, 0.0, 0.0)
@@ -88,7 +88,7 @@ class Knock(Peculiarity):
     def happened(
         self, until: float, robot: TrueRobot, rng: np.random.Generator
     ) -> tuple[Happened, ...]:
-        """In their middle."""
+        """Events at the middle of their duration."""
         return tuple(
             Happened(self.kind, time + self.lasts / 2, *self._moved(side, robot))
             for time, side in instants(self.every, until, rng)
@@ -97,16 +97,16 @@ class Knock(Peculiarity):
 
 @dataclass(frozen=True)
 class ReferenceJump(Peculiarity):
-    """The reference takes another place for the robot's, for one pose or from then on.
+    """The reference jumps to another position, for one pose or permanently.
 
     Parameters
     ----------
     size : float
-        [m]
+        Length of the jump [m].
     stays : bool
-        Whether it goes on from there; else the next pose is right again.
+        Whether the offset remains; otherwise the next pose is correct again.
     every : float
-        Mean time between two [s].
+        Mean time between jumps [s].
     """
 
     size: float
@@ -114,14 +114,14 @@ class ReferenceJump(Peculiarity):
     every: float = 25.0
 
     def _jumps(self, until: float, rng: np.random.Generator) -> list[tuple[float, float]]:
-        """When, and in which direction [rad]."""
+        """Times [s] and directions [rad] of the jumps."""
         found = instants(self.every, until, rng)
         return [(time, float(rng.uniform(-math.pi, math.pi))) for time, _ in found]
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Move poses of the reference."""
+        """Displace poses of the reference."""
         x, y = recording.reference_x_m.copy(), recording.reference_y_m.copy()
         for time, direction in self._jumps(float(recording.t_s[-1]), rng):
             first = int(np.searchsorted(recording.reference_t_s, time))
@@ -133,7 +133,7 @@ class ReferenceJump(Peculiarity):
     def happened(
         self, until: float, robot: TrueRobot, rng: np.random.Generator
     ) -> tuple[Happened, ...]:
-        """In the reference's frame."""
+        """Jumps in the reference's frame."""
         return tuple(
             Happened(
                 "reference_jump",

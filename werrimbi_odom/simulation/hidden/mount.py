@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Axles and references that are not mounted, or do not tell the time, as believed."""
+"""Faults of the axle's mount, and of the reference: its mount, clock, gyro, frame."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ from .peculiarity import Peculiarity
 
 @dataclass(frozen=True)
 class AskewAxle(Peculiarity):
-    """The axle is not square to the body, so the robot drives like a crab.
+    """The axle is not perpendicular to the body, so the robot drives slightly sideways.
 
     Parameters
     ----------
     angle : float
-        From the body's forward axis to the direction of travel, anticlockwise [rad].
+        Angle from the body's forward axis to the direction of travel, anticlockwise [rad].
     """
 
     angle: float
 
     def chassis(self, chassis: Chassis) -> Chassis:
-        """Turn the axle with both wheels under the body."""
+        """Rotate the axle with both wheels relative to the body."""
         return replace(chassis, axle_yaw=chassis.axle_yaw + self.angle)
 
 
 @dataclass(frozen=True)
 class ReferenceMount(Peculiarity):
-    """The marker sits elsewhere on the robot, or askew: ahead, left [m], turned [rad]."""
+    """Offset of the marker on the robot: ahead, to the left [m], yaw [rad]."""
 
     x: float = 0.0
     y: float = 0.0
     yaw: float = 0.0
 
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
-        """Move the marker."""
+        """Displace the marker."""
         mount = sensor.mount
         return replace(
             sensor, mount=AxlePose(mount.x + self.x, mount.y + self.y, mount.yaw + self.yaw)
@@ -51,21 +51,21 @@ class ReferenceMount(Peculiarity):
 
 @dataclass(frozen=True)
 class ReferenceDelay(Peculiarity):
-    """The reference's stamps are late.
+    """The stamps of the reference are late.
 
     Parameters
     ----------
     delay : float
-        What is stamped t was measured at t - delay [s].
+        A sample with stamp t was measured at t - delay [s].
     heading_delay : float
-        The yaw's further delay [s].
+        Additional delay of the yaw [s].
     """
 
     delay: float = 0.0
     heading_delay: float = 0.0
 
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
-        """Set its clock back."""
+        """Add the delays."""
         return replace(
             sensor,
             delay=sensor.delay + self.delay,
@@ -75,19 +75,19 @@ class ReferenceDelay(Peculiarity):
 
 @dataclass(frozen=True)
 class WarmingGyro(Peculiarity):
-    """The reference's heading is a gyro's, whose chip warms up or cools in each drive anew.
+    """The reference's heading is from a gyro, and its temperature changes in each drive.
 
-    Its bias goes with its temperature, which nears that of its surroundings; as the drive begins
-    its driver has just taken the bias off.
+    Its bias follows the temperature, which approaches the ambient one exponentially. The bias is
+    zero at the start of a drive, as after a calibration.
 
     Parameters
     ----------
     rate : float
-        By which the bias grows or falls at first, on average over drives [rad/s^2].
+        Mean size of the initial rate of change of the bias over drives [rad/s^2].
     settles : float
-        Time in which the chip has done all but 1/e of its change of temperature [s].
+        Time constant of the temperature [s].
     unrest : float
-        Random walk of the bias beside, over a second [rad/s]; as a share of what it drifts in one.
+        Additional random walk of the bias over one second, as a share of its drift in one second.
     """
 
     rate: float
@@ -97,7 +97,7 @@ class WarmingGyro(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Turn what was measured by the integral of the bias."""
+        """Add the integral of the bias to the measured yaw."""
         rate = self.rate * float(rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 1.5))
         time = recording.reference_t_s
         steps = np.diff(time, prepend=0.0)
@@ -114,5 +114,5 @@ class ReferenceMirrored(Peculiarity):
     exchanged: bool
 
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
-        """Mirror what it writes."""
+        """Mirror the output of the reference."""
         return replace(sensor, mirrored="exchanged" if self.exchanged else "y_down")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is odd about a robot and lies outside the library; of the floor's, see `floor`."""
+"""Peculiarities of the robot outside the library; for those of the floor see `floor`."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class OneTyreByPressure(Peculiarity):
-    """One tyre leaks and is pumped up by its valve; its pressure is measured (SIDE_tyre_kpa).
+    """The pressure of one tyre varies, by a leak and a pump; it is measured (SIDE_tyre_kpa).
 
     Parameters
     ----------
     side : "left" or "right"
     per_kpa : float
-        Relative growth of that wheel's radius per kilopascal above 180 [1/kPa].
+        Relative increase of that wheel's radius per kilopascal above 180 [1/kPa].
     """
 
     side: Side
     per_kpa: float
 
     def _pressure(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """Of a run: times [s] and pressures [kPa], straight in between."""
+        """Times [s] and pressures [kPa] of a run, to be interpolated linearly."""
         times = np.concatenate(([0.0], np.cumsum(rng.uniform(6.0, 18.0, 60))))
         return times, rng.uniform(160.0, 200.0, len(times))
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the one wheel as the pressure says."""
+        """Change the radius of the wheel with the pressure."""
         times, pressures = self._pressure(rng)
         wheel = chassis.left if self.side == "left" else chassis.right
 
@@ -53,7 +53,7 @@ class OneTyreByPressure(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the gauge's column."""
+        """Add the column of the pressure gauge."""
         measured = np.interp(recording.t_s, *self._pressure(rng))
         measured = measured + 0.3 * rng.standard_normal(len(measured))
         return with_channel(recording, f"{self.side}_tyre_kpa", measured)
@@ -61,20 +61,20 @@ class OneTyreByPressure(Peculiarity):
 
 @dataclass(frozen=True)
 class BaseByPayload(Peculiarity):
-    """A payload presses the tyres broad, so that the robot turns as on a wider base.
+    """A payload widens the contact patches of the tyres, which increases the effective wheel base.
 
-    It is weighed (`payload_kg`, to 50 g).
+    The payload is weighed (`payload_kg`, with a noise of 50 g).
 
     Parameters
     ----------
     broadening : float
-        Relative growth of the base per kilogram [1/kg].
+        Relative increase of the base per kilogram [1/kg].
     """
 
     broadening: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Take back the turning that the wider base does not make."""
+        """Subtract the part of the turn that the wider base does not make."""
         times, loads = payloads(rng)
 
         def shift(stride: Stride) -> Shift:
@@ -87,26 +87,26 @@ class BaseByPayload(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the scale's column."""
+        """Add the column of the scale."""
         return weighed(recording, np.interp(recording.t_s, *payloads(rng)), rng)
 
 
 @dataclass(frozen=True)
 class OneTyreBackwards(Peculiarity):
-    """One tyre is mounted against its tread, whose blocks lie down when it rolls backwards.
+    """One tyre is mounted against its tread, and its tread blocks bend when it rolls backwards.
 
     Parameters
     ----------
     side : "left" or "right"
     loss : float
-        Share of its radius that is lost while it rolls backwards.
+        Relative decrease of its radius while it rolls backwards.
     """
 
     side: Side
     loss: float
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the one wheel by the sense in which it rolls."""
+        """Change the radius of the wheel with its direction of rolling."""
         wheel = chassis.left if self.side == "left" else chassis.right
 
         def reshape(engine: Engine, stride: Stride) -> None:
@@ -119,27 +119,27 @@ class OneTyreBackwards(Peculiarity):
 
 @dataclass(frozen=True)
 class SlideByTiltAndPayload(Peculiarity):
-    """On a floor that leans the tyres creep downhill, the more the heavier the robot is loaded.
+    """On a tilted floor the tyres creep downhill, in proportion to the payload.
 
-    The tilt is measured by an inclinometer (`tilt_rad`, positive with the left side up, to 1 mrad),
-    the payload weighed (`payload_kg`, to 50 g).
+    The tilt is measured by an inclinometer (`tilt_rad`, positive with the left side up, with a
+    noise of 1 mrad), the payload is weighed (`payload_kg`, with a noise of 50 g).
 
     Parameters
     ----------
     creep : float
-        Way to the right per way driven, per radian of tilt and kilogram of payload [1/(rad kg)].
+        Creep to the right per metre driven, per radian of tilt and kilogram [1/(rad kg)].
     """
 
     creep: float
 
     def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
-        """Of a run: times and payloads [s, kg]; times and tilts [s, rad]. Straight in between."""
+        """Times [s] and payloads [kg]; times [s] and tilts [rad]; to be interpolated."""
         loads = payloads(rng)
         times = np.concatenate(([0.0], np.cumsum(rng.uniform(2.0, 8.0, 120))))
         return loads, (times, rng.uniform(-0.12, 0.12, len(times)))
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """To the right, for all the way that is driven."""
+        """Creep to the right along the whole path."""
         loads, tilts = self._measured(rng)
 
         def shift(stride: Stride) -> Shift:
@@ -151,7 +151,7 @@ class SlideByTiltAndPayload(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the columns of scale and inclinometer."""
+        """Add the columns of scale and inclinometer."""
         loads, (times, tilts) = self._measured(rng)
         weighed_too = weighed(recording, np.interp(recording.t_s, *loads), rng)
         measured = np.interp(recording.t_s, times, tilts)
@@ -161,28 +161,28 @@ class SlideByTiltAndPayload(Peculiarity):
 
 @dataclass(frozen=True)
 class OneTyreByLoadOverPressure(Peculiarity):
-    """One tyre leaks and flattens under a payload, the more the less pressure it has.
+    """One tyre flattens under a payload, the more the lower its pressure.
 
-    Both are measured (`payload_kg`, to 50 g; `SIDE_tyre_kpa`).
+    Both are measured (`payload_kg`, with a noise of 50 g; `SIDE_tyre_kpa`).
 
     Parameters
     ----------
     side : "left" or "right"
     flattening : float
-        Share of that wheel's radius that is lost per kilogram over kilopascal [kPa/kg].
+        Relative decrease of that wheel's radius per payload over pressure [kPa/kg].
     """
 
     side: Side
     flattening: float
 
     def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
-        """Of a run: times and payloads [s, kg]; times and pressures [s, kPa]."""
+        """Times [s] and payloads [kg]; times [s] and pressures [kPa] of a run."""
         loads = payloads(rng)
         times = np.concatenate(([0.0], np.cumsum(rng.uniform(6.0, 18.0, 60))))
         return loads, (times, rng.uniform(60.0, 240.0, len(times)))
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the one wheel as load and pressure say."""
+        """Change the radius of the wheel with payload and pressure."""
         loads, pressures = self._measured(rng)
         wheel = chassis.left if self.side == "left" else chassis.right
 
@@ -195,7 +195,7 @@ class OneTyreByLoadOverPressure(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the columns of scale and gauge."""
+        """Add the columns of scale and pressure gauge."""
         loads, (times, pressures) = self._measured(rng)
         weighed_too = weighed(recording, np.interp(recording.t_s, *loads), rng)
         measured = np.interp(recording.t_s, times, pressures)

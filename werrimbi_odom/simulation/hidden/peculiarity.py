@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What can be odd about a robot, its floor or its recording, and where in a drive it acts."""
+"""Base class of hidden effects of robot, floor or recording: where in a drive they can act."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from ..robot import TrueRobot
 from ..sensors import ReferenceSensor
 
 Counted = Callable[[float, float, float], tuple[float, float]]
-"""Takes time and both shafts' angles, period by period; gives the angles that are counted."""
+"""Maps time and both shaft angles, period by period, to the angles that are counted."""
 
 
 @dataclass(frozen=True)
 class Peculiarity:
     """A hidden effect. Each stage of a drive passes through it; by default it changes nothing.
 
-    A subclass overrides the stage at which its physics acts. `rng` is the run's own, and begins
-    anew in each stage: what differs from run to run is drawn from it, alike in every stage.
+    A subclass overrides the stage at which its physics acts. Each stage gets a new `rng` with the
+    same seed for a run, so values drawn per run are the same in all stages.
     """
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
-        """The robot as it truly is, against what its maker believes."""
+        """The true robot, derived from its nominal one."""
         return robot
 
     def written(self, robot: TrueRobot) -> TrueRobot:
-        """The robot as its user writes it into the robot file, by mistake."""
+        """The robot as its user wrongly describes it in the robot file."""
         return robot
 
     def chassis(self, chassis: Chassis) -> Chassis:
@@ -40,37 +40,37 @@ class Peculiarity:
         return chassis
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter | None:
-        """Motion besides rolling, for which no force stands."""
+        """Motion in addition to rolling, without forces."""
         return None
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper | None:
-        """Changes of the body while it drives."""
+        """Changes of the body during the drive."""
         return None
 
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
-        """What measures the robot from outside."""
+        """The external reference."""
         return sensor
 
     def counted(self, robot: TrueRobot) -> Counted | None:
-        """What counters make of their shafts' angles, where that depends on what was before.
+        """Map from shaft angles to counted angles, for effects that depend on the past.
 
-        For a robot that is seen live, of which no more than the last second is kept.
+        Needed for live robots, which keep only the last second.
         """
         return None
 
     @property
     def ahead(self) -> float:
-        """How far a record looks ahead of its own stamp [s]."""
+        """Largest time by which a record is later than its own stamp [s]."""
         return 0.0
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """What was recorded."""
+        """The recording."""
         return recording
 
     def happened(
         self, until: float, robot: TrueRobot, rng: np.random.Generator
     ) -> tuple[Happened, ...]:
-        """What it did to a drive at single instants up to `until` [s], for truth.json."""
+        """Abrupt events of a drive up to `until` [s], for truth.json."""
         return ()

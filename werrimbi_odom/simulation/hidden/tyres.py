@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres whose radius follows warmth, a payload, their speed or the load on them."""
+"""Tyres with a radius that depends on temperature, payload, speed or load."""
 
 from __future__ import annotations
 
@@ -18,46 +18,46 @@ from .peculiarity import Peculiarity
 Floats = NDArray[np.float64]
 
 GRAVITY = 9.81
-"""[m/s^2]"""
+"""Acceleration of gravity [m/s^2]."""
 
 
 def with_channel(recording: Recording, name: str, values: Floats) -> Recording:
-    """The record with one more column."""
+    """The recording with an additional column."""
     return replace(recording, channels={**recording.channels, name: values})
 
 
 def payloads(rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Of a run: times of change [s] and payloads then, or from then on [kg]."""
+    """Times [s] and payloads [kg] of a run."""
     times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
     return times, rng.uniform(0.0, 10.0, len(times))
 
 
 def weighed(recording: Recording, loads: Floats, rng: np.random.Generator) -> Recording:
-    """The record with the column of a scale that is good to 50 g."""
+    """The recording with the column of a scale that has a noise of 50 g."""
     return with_channel(recording, "payload_kg", loads + 0.05 * rng.standard_normal(len(loads)))
 
 
 @dataclass(frozen=True)
 class RadiusFollowsTemperature(Peculiarity):
-    """Both wheels swell with warmth, which is measured (`wheel_temperature_c`, to 0.1 K).
+    """Both wheels expand with temperature (`wheel_temperature_c`, measured with a noise of 0.1 K).
 
     Parameters
     ----------
     expansion : float
-        Relative growth per kelvin above 20 degrees Celsius [1/K].
+        Relative increase per kelvin above 20 degrees Celsius [1/K].
     """
 
     expansion: float
 
     def _temperature(self, rng: np.random.Generator) -> tuple[float, float, float, float]:
-        """Of a run: mean [C], swing [K], angular frequency [rad/s], phase [rad]."""
+        """Temperature of a run: mean [C], swing [K], angular frequency [rad/s], phase [rad]."""
         mean, swing, period, phase = rng.uniform(
             (16.0, 3.0, 20.0, 0.0), (30.0, 9.0, 60.0, 2 * np.pi)
         )
         return float(mean), float(swing), float(2 * np.pi / period), float(phase)
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the wheels as the temperature says."""
+        """Change the radii with the temperature."""
         mean, swing, frequency, phase = self._temperature(rng)
 
         def reshape(engine: Engine, stride: Stride) -> None:
@@ -70,7 +70,7 @@ class RadiusFollowsTemperature(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the thermometer's column."""
+        """Add the column of the thermometer."""
         mean, swing, frequency, phase = self._temperature(rng)
         measured = mean + swing * np.sin(frequency * recording.t_s + phase)
         measured += 0.1 * rng.standard_normal(len(measured))
@@ -79,25 +79,25 @@ class RadiusFollowsTemperature(Peculiarity):
 
 @dataclass(frozen=True)
 class RadiusFollowsPayload(Peculiarity):
-    """Both tyres give way under a payload, which is weighed (`payload_kg`, to 50 g).
+    """Both tyres deflect under a payload, which is weighed (`payload_kg`, with a noise of 50 g).
 
     Parameters
     ----------
     yielding : float
-        Relative loss of radius per kilogram [1/kg].
+        Relative decrease of the radius per kilogram [1/kg].
     """
 
     yielding: float
 
     @staticmethod
     def _load(at: Floats | float, times: Floats, loads: Floats) -> Floats:
-        """Loading takes a second."""
+        """Payload at given times [kg]; each change takes a second."""
         knots = np.column_stack((times[1:], times[1:] + 1.0)).ravel()
         values = np.column_stack((loads[:-1], loads[1:])).ravel()
         return np.asarray(np.interp(at, knots, values))
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the wheels as the load says."""
+        """Change the radii with the payload."""
         times, loads = payloads(rng)
 
         def reshape(engine: Engine, stride: Stride) -> None:
@@ -110,25 +110,25 @@ class RadiusFollowsPayload(Peculiarity):
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the scale's column."""
+        """Add the column of the scale."""
         return weighed(recording, self._load(recording.t_s, *payloads(rng)), rng)
 
 
 @dataclass(frozen=True)
 class TyreSquash(Peculiarity):
-    """A soft tyre rides lower with the square of its speed, or higher.
+    """The radius of a soft tyre changes with the square of its speed.
 
     Parameters
     ----------
     loss : float
-        Relative loss of radius when it turns as a wheel of the first size does at 1 m/s; negative:
-        it grows. What flings a tread outwards, or gives it no time to spring back, is its turning.
+        Relative decrease of the radius at the angular speed of a wheel of the initial radius at
+        1 m/s; negative for an increase. Centrifugal force and relaxation depend on angular speed.
     """
 
     loss: float
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize each wheel by its own speed."""
+        """Change the radius of each wheel with its own speed."""
 
         def reshape(engine: Engine, stride: Stride) -> None:
             for wheel, travel in zip(chassis.wheels, (stride.left, stride.right), strict=True):
@@ -141,21 +141,21 @@ class TyreSquash(Peculiarity):
 
 @dataclass(frozen=True)
 class LoadTransfer(Peculiarity):
-    """Springy tyres under a centre of mass that is not on the floor: the load moves, they give way.
+    """Elastic tyres under a raised centre of mass: load moves between them, and their radii change.
 
-    The balance of torques says what moves: the mass times the acceleration of the axle's middle
-    times the height, over the distance between the tyres (or between axle and skid); half the
-    weight of the robot on one tyre presses it by `softness` of its radius.
+    By the balance of torques the moved load is the mass times the acceleration of the axle's middle
+    times the height, over the distance between the tyres (or between axle and skid). Half the
+    robot's weight on one tyre compresses its radius by the share `softness`.
 
     Parameters
     ----------
     softness : float
-        Relative loss of a radius under half the robot's weight.
+        Relative decrease of a radius under half the robot's weight.
     height : float
-        Of the centre of mass over half the base, for the lateral part.
+        Height of the centre of mass over half the base, for the lateral part.
     length : float
-        Of the same height over the distance from axle to skid, for the one along; negative where
-        the skid is behind driven wheels that carry less as the robot gains speed; 0: none.
+        The same height over the distance from axle to skid, for the longitudinal part; negative if
+        the driven wheels are unloaded as the robot accelerates; 0 for none.
     """
 
     softness: float
@@ -163,7 +163,7 @@ class LoadTransfer(Peculiarity):
     length: float
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
-        """Each wheel falls behind, or gets ahead, by what its radius lost or gained."""
+        """Each wheel travels less or more by the change of its radius."""
         before = 0.0
 
         def shift(stride: Stride) -> Shift:

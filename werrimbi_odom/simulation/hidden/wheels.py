@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Wheels that are not plain discs fixed to their encoders: geometry, so the engine makes them."""
+"""Wheels that are not discs fixed to their encoders; geometry, so the engine simulates them."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ def with_wheel(chassis: Chassis, side: Side, wheel: WheelPlan) -> Chassis:
 
 @dataclass(frozen=True)
 class EccentricWheel(Peculiarity):
-    """The axle passes the wheel's centre at a distance.
+    """The axle does not pass through the wheel's centre.
 
     Parameters
     ----------
     side : "left" or "right"
     amplitude : float
-        That distance [m].
+        Distance between them [m].
     phase : float
-        Angle of the wheel at which its centre is ahead of the axle [rad]. It says nothing about
-        the counter, unless the robot's counters keep their zero.
+        Angle of the wheel at which its centre is ahead of the axle [rad]; unrelated to the counter,
+        unless the robot's counters keep their zero.
     """
 
     side: Side
@@ -41,14 +41,14 @@ class EccentricWheel(Peculiarity):
     phase: float
 
     def chassis(self, chassis: Chassis) -> Chassis:
-        """A wheel hung off its centre."""
+        """Offset the wheel from its axle."""
         wheel = replace(getattr(chassis, self.side), offset=self.amplitude, phase=self.phase)
         return with_wheel(chassis, self.side, wheel)
 
 
 @dataclass(frozen=True)
 class OvalWheel(Peculiarity):
-    """A wheel pressed out of round: an error twice a turn.
+    """An elliptic wheel: an error with twice its rotational frequency.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class OvalWheel(Peculiarity):
     amplitude: float
 
     def chassis(self, chassis: Chassis) -> Chassis:
-        """An ellipsoid in the sphere's place."""
+        """Replace the sphere by an ellipsoid."""
         wheel: WheelPlan = getattr(chassis, self.side)
         oval = replace(wheel, ovality=self.amplitude / wheel.radius)
         return with_wheel(chassis, self.side, oval)
@@ -69,23 +69,23 @@ class OvalWheel(Peculiarity):
 
 @dataclass(frozen=True)
 class TreadBump(Peculiarity):
-    """Something on one part of the tread, or worn off it.
+    """A bump or a flat on a part of the tread.
 
-    A wheel goes, for a small turn, as far as its hub is high. A soft tread stands on a patch, and
-    the hub is higher by as much of the bump as carries it: the pressure of the patch is that of a
-    parabola, most in its middle.
+    For a small rotation a wheel travels in proportion to the height of its hub. A soft tread has a
+    contact patch, and raises the hub by the bump weighted with the pressure in the patch, which is
+    a parabola with its maximum at the middle.
 
     Parameters
     ----------
     side : "left" or "right"
     thickness : float
-        Of the bump [m]; negative: how deep the flat is.
+        Thickness of the bump [m]; negative for the depth of a flat.
     around : float
         Angle of the wheel that it covers [rad].
     at : float
-        Angle of the wheel at which it stands on its middle [rad]; as of `EccentricWheel.phase`.
+        Angle of the wheel at which its middle is on the floor [rad]; see `EccentricWheel.phase`.
     patch : float
-        Half the angle of the wheel on which it stands [rad].
+        Half the angle of the contact patch [rad].
     """
 
     side: Side
@@ -95,17 +95,17 @@ class TreadBump(Peculiarity):
     patch: float = 0.25
 
     def higher(self, angle: float) -> float:
-        """How much higher the hub stands when the wheel has turned to an angle [m]."""
+        """Additional height of the hub at an angle of the wheel [m]."""
         off = math.remainder(angle - self.at, 2.0 * math.pi)
         ends = ((off + side * 0.5 * self.around) / self.patch for side in (1.0, -1.0))
         ahead, behind = (min(max(end, -1.0), 1.0) for end in ends)
         return self.thickness * 0.25 * (3.0 * (ahead - behind) - (ahead**3 - behind**3))
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Move the robot by what the wheel goes farther while its hub is higher.
+        """Move the robot by the additional travel while the hub is higher.
 
-        A hard wheel of the engine that grows and shrinks within a turn leaves the floor and loses
-        a quarter to a half of what the bump does; a soft one stays on it.
+        If its radius changes within a revolution, a rigid wheel of the engine loses contact, and
+        with it a quarter to a half of the effect; a soft one keeps contact.
         """
         wheel: WheelPlan = getattr(chassis, self.side)
         base = chassis.left.y - chassis.right.y
@@ -130,26 +130,26 @@ class Backlash(Peculiarity):
     ----------
     side : "left" or "right"
     travel : float
-        From stop to stop, measured at the rim [m].
+        Travel from stop to stop at the rim [m].
     """
 
     side: Side
     travel: float
 
     def chassis(self, chassis: Chassis) -> Chassis:
-        """A wheel that turns on its shaft between two stops."""
+        """Add play between wheel and shaft."""
         wheel: WheelPlan = getattr(chassis, self.side)
         return with_wheel(chassis, self.side, replace(wheel, play=self.travel / wheel.radius))
 
 
 @dataclass(frozen=True)
 class RadiusDrift(Peculiarity):
-    """Both wheels swell or shrink steadily; each drive begins with the true radii (cold wheels).
+    """Both radii grow or shrink steadily; each drive starts with the true radii (cold wheels).
 
     Parameters
     ----------
     rate : float
-        Relative growth per metre of path or per second.
+        Relative increase per metre of path or per second.
     per : "metre" or "second"
     """
 
@@ -157,7 +157,7 @@ class RadiusDrift(Peculiarity):
     per: Literal["metre", "second"]
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the wheels a little after each period."""
+        """Change the radii a little after each period."""
         distance = 0.0
 
         def reshape(engine: Engine, stride: Stride) -> None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Step 3: what an added effect did to the error; what speaks against it; its values."""
+"""Step 3: effect of an addition on the error, objections, and fitted values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOTHING = (
 
 
 def add_view(tab: Tab) -> None:
-    """The proposed step if there is one; what was added so far."""
+    """The proposed step if there is one, and what was added so far."""
     text("h2", "Does it help?", tabindex="-1", data_key="title-add")
     session = tab.session
     if session.proposed is not None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Beside a view: the floor with the legs of the part that was pressed, or an effect's page."""
+"""Side panels: the floor with the legs of the selected part, or the page of an effect."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from werrimbi_odom.workbench.tab import Tab, millimetres
 
 
 def floor(tab: Tab) -> None:
-    """The figure, what it shows in words, and the worst legs."""
+    """The figure, its description, and the worst legs."""
     comparison, part = tab.comparison, tab.part
     which = None if part is None else part.legs(comparison)
     chosen = np.ones(comparison.legs.run.size, dtype=np.bool_) if which is None else which
@@ -81,7 +81,7 @@ def why(tab: Tab, name: str) -> None:
     """The page of one effect."""
     try:
         effect = tab.shared.collection.find(name)
-    except InputError:  # a finding of the set-up that is no effect: degrees for radians
+    except InputError:  # a finding of the set-up that is no effect, such as degrees for radians
         return
     page = page_of(effect)
     with box("section", "why", aria_label=f"About {name}", tabindex="0"):
@@ -104,7 +104,7 @@ def why(tab: Tab, name: str) -> None:
 
 
 def _sketch(effect: Effect) -> None:
-    """Its sketch, where there is one: our own drawing, no text of a record in it."""
+    """The sketch of an effect, if any; trusted HTML without text of a record."""
     drawn = effect_sketch(effect)
     if drawn is not None:
         ui.html(drawn, sanitize=False)

@@ -63,7 +63,7 @@ def _next(tab: Tab) -> None:
 
 
 def _chip(tab: Tab, part: Part, words: str, figures: LegStatistics, key: str) -> None:
-    """A button for a part: its error, and a mark where it errs more than promised."""
+    """A button for a part: its error, and a mark if its covariance is too small."""
     times = np.sqrt(figures.nees)
     fails = consistency(figures.nees, figures.freedom) == "too small"
     promised = f"{times:.2g} × promised" if np.isfinite(times) else "not measured"
@@ -89,7 +89,7 @@ def _motions(tab: Tab, comparison: Comparison) -> None:
 
 
 def _variables(tab: Tab, comparison: Comparison) -> None:
-    """Ranges of one variable; which one, is chosen above them."""
+    """Bins of one variable, with a selection of the variable above them."""
     every = bin_parts(comparison)
     if not every:
         return

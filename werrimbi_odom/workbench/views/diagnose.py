@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Step 2: what is missing; the effects ranked, why, and the evidence map."""
+"""Step 2: the missing effect; ranking, explanation, and evidence map."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from werrimbi_odom.workbench.tab import Tab, millimetres
 from werrimbi_odom.workbench.views.beside import floor, why
 
 SHORT = 5
-"""Paragraphs of the verdict that are open at once."""
+"""Paragraphs of the verdict that are shown at first."""
 
 MOST_ROWS = 12
-"""Variables in the map."""
+"""Most variables in the map."""
 
 STEPS = NextSteps(
     add=lambda names: "press Add below" if len(names) == 1 else "press Add all below",
@@ -34,7 +34,7 @@ STEPS = NextSteps(
 
 
 def diagnose_view(tab: Tab) -> None:
-    """Before: what will be done. After: verdict, ranking, map."""
+    """Before the diagnosis: what it does. After: verdict, ranking, map."""
     text("h2", "Which effect is missing?", tabindex="-1", data_key="title-diagnose")
     found = tab.session.diagnosis
     if found is None:
@@ -95,7 +95,7 @@ def _verdict(found: Told) -> None:
 
 
 def _add_all(tab: Tab, diagnosis: Diagnosis) -> None:
-    """One button for everything that was found, fitted together."""
+    """One button for all found effects, fitted together."""
     names = [name for name in diagnosis.found if _can(tab, name)]
     if diagnosis.verdict != "named" or len(names) < 2:
         return
@@ -156,7 +156,7 @@ def _ranked(tab: Tab, item: Ranked, diagnosis: Diagnosis) -> None:
 
 
 def _response(tab: Tab, found: Diagnosed) -> None:
-    """The error along the effect's own variable, before and after."""
+    """The error over the effect's own variable, before and after."""
     if "response" in found.figures:
         name = found.diagnosis.effect or "what is missing"
         text("h3", f"The error along the variable of {name}, before and after")
@@ -170,7 +170,7 @@ def _response(tab: Tab, found: Diagnosed) -> None:
 
 
 def _following(tab: Tab, found: Diagnosed) -> None:
-    """What to drive next."""
+    """The manoeuvre to drive next."""
     manoeuvre = found.told.manoeuvre
     if manoeuvre is None:
         return
@@ -205,7 +205,7 @@ def _open(tab: Tab, name: str) -> None:
 
 
 def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
-    """Two bars: the held-out error before and after, on one scale for all effects."""
+    """Two bars for the held-out error before and after, on one scale for all effects."""
     assert item.holdout is not None
     sides = [one.holdout for one in diagnosis.ranking if one.holdout is not None]
     top = max(max(one.before, one.after) for one in sides)
@@ -222,7 +222,7 @@ def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
 
 
 def _map(tab: Tab, diagnosis: Diagnosis) -> None:
-    """Error channels against variables; every marked cell a button."""
+    """Table of error channels and variables, with a button in each significant cell."""
     text("h3", "Evidence: which error goes with what", tabindex="-1", data_key="map")
     best: dict[tuple[str, str], Dependence] = {}
     for cell in diagnosis.depends_on:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Step 4: the new robot file, read before it is written."""
+"""Step 4: the new robot file, with a preview."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from werrimbi_odom.workbench.saving import changed_lines, text_of
 from werrimbi_odom.workbench.tab import Tab
 
 NEAR = 2
-"""Unchanged lines that are shown about a change."""
+"""Unchanged lines shown around a change."""
 
 
 def save_view(tab: Tab) -> None:
-    """Where it goes, what changes, and the button."""
+    """The path, the changes, and the button."""
     text("h2", "The new robot file", tabindex="-1", data_key="title-save")
     shared, session = tab.shared, tab.session
     if not session.can_undo:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Always in view: the four steps, the held-out error, undo and redo; and what is seen before."""
+"""The strip with the four steps, the held-out error, undo and redo; and the page while opening."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _step(tab: Tab, number: int, view: str) -> None:
 
 
 def _state(tab: Tab, view: str) -> str:
-    """How far that step is, in a few words."""
+    """State of a step in a few words."""
     session = tab.session
     if view == "compare":
         good = session.now.look.verdict.good
@@ -109,7 +109,7 @@ def _bars(tab: Tab, errors: list[float]) -> None:
 
 
 def under_way(tab: Tab) -> None:
-    """Long work: how far it is, and a way to stop it."""
+    """Running work: its progress, and a button to cancel it."""
     job = tab.job
     if job is None:
         return
@@ -128,7 +128,7 @@ def under_way(tab: Tab) -> None:
 
 
 def opening_view(opening: Opening) -> None:
-    """What is known before anything is compared: the measured paths."""
+    """The page before the comparison is done: the measured paths."""
     with box("header"), box("div", "title"):
         text("h1", "werrimbi workbench")
         runs = (*opening.given.runs, *opening.given.holdout)
@@ -149,6 +149,6 @@ def opening_view(opening: Opening) -> None:
 
 
 def failed_view(reason: str) -> None:
-    """Why nothing could be opened; the command says the same, and ends."""
+    """The error on opening; the command prints the same and ends."""
     text("h1", "werrimbi workbench")
     text("p", f"These drives cannot be opened: {reason}", "verdict", role="alert")
