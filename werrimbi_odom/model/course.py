@@ -38,8 +38,8 @@ from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 _BLOCK = 8192  # steps per block: their arrays stay in the cache
 
 Lost = Mapping[int, WheelTravel[float]]
-"""Variance of travel that no counter saw [m²], by the index of the step before which it was lost.
-"""
+"""Variance of travel that no counter saw [m²], by the index of the step before which it was
+lost."""
 
 
 class PathInPieces(NamedTuple):

@@ -17,8 +17,8 @@ import numpy as np
 from werrimbi_odom.model.pose import Floats
 
 REMEMBERED = 1000
-"""Number of messages that define the usual interval. Speeds are forgotten after at most twice that.
-"""
+"""Number of messages that define the usual interval. Speeds are forgotten after at most twice
+that."""
 USUAL_AT_FIRST = 0.1
 """Assumed interval before the first message [s]."""
 PAUSE = 1.0

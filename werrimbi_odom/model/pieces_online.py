@@ -109,8 +109,8 @@ class PieceSums(NamedTuple):
     chord: Chord[float] = Chord(1.0, 1.0, 0.0)
     """Chord of that twist, with the heading at the start."""
     left_low: float = 0.0
-    """Smallest travel of the left wheel so far [m]; then its largest, and both of the right wheel.
-    """
+    """Smallest travel of the left wheel so far [m]; then its largest, and both of the right
+    wheel."""
     left_high: float = 0.0
     right_low: float = 0.0
     right_high: float = 0.0

@@ -94,8 +94,8 @@ class _Cutter:
         self.x, self.y, self.yaw = x, y, yaw
         self.steps = np.stack([*travel, *motion])
         self.sums = np.empty_like(self.steps)
-        """Sums from the piece's start to the end of each step; overwritten where pieces are recut.
-        """
+        """Sums from the piece's start to the end of each step; overwritten where pieces are
+        recut."""
         self.starts: list[int] = []
         self._travelled: list[float] = []  # travel u before each piece
         self._wheels = [_Wheel(steps, rule.flicker) for steps in travel]
@@ -247,9 +247,10 @@ class _Wheel:
         soon = np.minimum(turns + _SOON, travel.size) - 1
         lasting = np.abs(position[soon] - position[turns - 1]) > flicker
         self._turns: list[int] = [*turns.tolist(), travel.size]
-        """Steps against the motion before, flicker or reversal; the last is behind the run."""
+        """Steps against the previous direction, flicker or reversal; the last entry lies behind the
+        run."""
         self._reversals: list[int] = [*turns[lasting].tolist(), travel.size]
-        """Those that are no mere flicker, as far as is soon seen."""
+        """Those that are probably not flicker, as far as the next steps show."""
         self._next_turn = 0
         self._span = 0.0, 0.0
 

@@ -26,8 +26,8 @@ GYRO_SCALE = 0.03
 """Relative error of a turn from the gyro's scale or a slightly wrong base: data sheets of cheap
 gyros state 2 to 3 %. A base that is worse is found by `diagnose`, not here."""
 GYRO_NOISE = 0.005
-"""Standard deviation of one reading [rad/s]: of cheap gyros at 100 Hz, 0.5 mrad/s per root hertz.
-"""
+"""Standard deviation of one reading [rad/s]: of cheap gyros at 100 Hz, 0.5 mrad/s per root
+hertz."""
 SURE = 4.0
 """Threshold in standard deviations of that noise: 6 of 100,000 windows exceed four, and the
 allowances for bias and scale, which are seldom used up, come on top."""
