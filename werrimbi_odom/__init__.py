@@ -2,23 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wheel odometry that knows how wrong it is, and can tell its user why.
 
-Ticks become wheel travel, travel passes through the physical effects that the robot's model holds
-and becomes motion pieces (line, arc, spin), and pieces become a pose with the closed-form
-covariance of Chong and Kleeman (ICRA 1997). Legs of a drive compare the prediction with a
-reference; what is left over tells which physical effect is missing.
+Ticks become wheel travel. Travel passes through the physical effects in the robot's model and
+becomes motion pieces (line, arc, spin). Pieces become a pose with the closed-form covariance of
+Chong and Kleeman (ICRA 1997). Legs of a drive compare the prediction with a reference; the
+residuals show which physical effect is missing.
 
-Words of this code
-------------------
+Terms
+-----
 tick, counter
     One count of a wheel encoder, and its cumulative reading.
 run, drive
     One recording: ticks and, usually, a reference.
 reference
-    What was measured independently of the wheels: motion capture, laser, tape, localiser, gyro.
+    Measurements independent of the wheels: motion capture, laser, tape, localiser, gyro.
 leg
     A stretch of a drive, 1 m by default, over which prediction and reference are compared.
 effect
-    A physical law with a few parameters that changes travel, motion or measurement. At its null
+    A physical model with a few parameters that changes travel, motion or measurement. At its null
     values it does nothing.
 verb
     A command of `werrimbi`, and the function of the same name in `api`.
@@ -86,7 +86,7 @@ _WHERE = {
     "reference_effect": "model.effect",
     "InputError": "errors",
 }
-"""Where each name is; nothing is imported before it is used, so that the node stays light."""
+"""Module of each name; imported at first use, so that the node stays light."""
 
 __all__ = [
     "EFFECTS",
