@@ -215,7 +215,7 @@ def wheel_effect(
     channels: tuple[str, ...] = (),
     one_of_channels: tuple[str, ...] = (),
     sketch: Sketch | None = None,
-    pose: bool = False,  # obsolete: the quantities that a law reads are now recorded while it runs
+    pose: bool = False,  # obsolete: what an effect reads is now recorded while it runs
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""

@@ -171,7 +171,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._counts["without odometry"] += len(self._waiting)
         self._waiting.clear()
 
-    # ------------------------------------------------------------------------- out
+    # ------------------------------------------------------------------------- publications
 
     def _publish_error(self, leg: LegError) -> None:
         x, y, yaw = leg.error.tolist()

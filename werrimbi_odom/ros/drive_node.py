@@ -102,7 +102,7 @@ class DriveNode(Node):  # type: ignore[misc]
             f"{full_name(self)}/start, and shows the path on {full_name(self)}/path"
         )
 
-    # ------------------------------------------------------------------------- what comes in
+    # ------------------------------------------------------------------------- subscriptions
 
     def _on_odometry(self, message: Any) -> None:
         driver, now = self._driver, time.monotonic()
@@ -146,7 +146,7 @@ class DriveNode(Node):  # type: ignore[misc]
         self._records.look()
         self._show(again=False)
 
-    # ------------------------------------------------------------------------- asked for
+    # ------------------------------------------------------------------------- services
 
     def _on_start(self, _: Any, response: Any) -> Any:
         asked = time.monotonic()
@@ -206,7 +206,7 @@ class DriveNode(Node):  # type: ignore[misc]
                 time.sleep(TICK)
         self._records.close()
 
-    # ------------------------------------------------------------------------- out
+    # ------------------------------------------------------------------------- publications
 
     def _send(self, command: Command | None) -> None:
         if command is None:

@@ -102,7 +102,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self.create_timer(STATUS_PERIOD, self._report, clock=steady)
         self._say_hello()
 
-    # ------------------------------------------------------------------------- a reading
+    # ------------------------------------------------------------------------- readings
 
     def _take(self, stamp: Stamp, left: float, right: float) -> None:
         """Process a message, from two counters to odometry."""

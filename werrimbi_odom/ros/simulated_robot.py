@@ -152,7 +152,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         self._asked = speed, yaw_rate
         self._commanded = self._robot.time
 
-    # ------------------------------------------------------------------------- out
+    # ------------------------------------------------------------------------- publications
 
     def _publish_clock(self, time: float, _: float) -> None:
         self._clock_out.publish(ClockMessage(clock=self._stamp(time)))
@@ -281,7 +281,7 @@ class _Due:
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop; returns the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return run(SimulatedRobot, "simulated_robot", args)
 
 

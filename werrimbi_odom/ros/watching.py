@@ -128,7 +128,7 @@ class Watching(NoWatching):
     def _take(self, topic: int, data: bytes) -> None:
         self._kept.take(topic, self._node.get_clock().now().nanoseconds, data)
 
-    # ------------------------------------------------------------------------- looking
+    # ------------------------------------------------------------------------- diagnosis
 
     def look(self) -> list[DiagnosticStatus]:
         """Called once a second: advance the diagnosis, and return its status."""
@@ -207,7 +207,7 @@ class Watching(NoWatching):
         self._looking = None
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    # ------------------------------------------------------------------------- asked for
+    # ------------------------------------------------------------------------- services
 
     def _service(self) -> str:
         return f"{self._node.get_fully_qualified_name()}/write_robot_file"
