@@ -139,7 +139,7 @@ def add(
     effect
         One or several: names ("castor_kick", or "castor_kick,track_width"), or effects themselves.
     force
-        Accept even an effect without significant benefit.
+        Accept an effect despite objections.
 
     Returns
     -------
@@ -149,7 +149,7 @@ def add(
     Raises
     ------
     InputError
-        If the drives are not usable, or an effect has no significant benefit.
+        If the drives are not usable, or there is an objection to an effect.
     """
     given = recordings_of(robot, runs, holdout, **options)
     result = added(given, effects_of(effect, given), show)
@@ -197,7 +197,7 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
 
 
 def refuse_unearned(added: Added, insist: str) -> None:
-    """Check that every effect has a significant benefit.
+    """Raise if there is an objection to any of the effects.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def refuse_unearned(added: Added, insist: str) -> None:
     Raises
     ------
     InputError
-        If one has none: the objection, and what can be added without it.
+        The objections, and the effects that can be added without them.
     """
     if added.objection is None:
         return

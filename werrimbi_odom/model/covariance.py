@@ -30,7 +30,7 @@ Entry = TypeVar("Entry")  # a Number: mypy takes no methods on a tuple of a rest
 
 
 class PoseCovariance(NamedTuple, Generic[Entry]):
-    """Covariance of the errors (δx, δy, δyaw) of a pose, in the frame of the pose itself.
+    """Covariance of the errors (δx, δy, δyaw) of a pose, in the frame in which it is given.
 
     For a draw e ~ N(0, P) the true pose is (x + e_x, y + e_y, yaw + e_yaw). Units are m², m·rad and
     rad²; the order is that of the columns of `odom.csv`.
@@ -106,8 +106,8 @@ def twist_noise(
 ) -> TwistCovariance:
     """Covariance of the mean twist of a step.
 
-    A counter reading has a uniform error of one count, so the difference of two readings has a
-    variance of 1/6 count², in addition to the wheel's noise (equation 4).
+    The error of a counter reading is uniform over one count, so the difference of two readings has
+    a variance of 1/6 count², in addition to the wheel's noise (equation 4).
 
     Parameters
     ----------

@@ -59,8 +59,7 @@ class Parameter:
     def combined(self, one: float, more: float) -> float:
         """Combine two successive values of the parameter: factors multiply, others add.
 
-        A parameter with null value 1 is a factor. An angle without bounds is wrapped to half a
-        turn.
+        A parameter with null value 1 is a factor. An angle that may take any direction is wrapped.
         """
         if self.null == 1.0:
             return one * more

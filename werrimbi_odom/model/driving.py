@@ -43,7 +43,7 @@ class Driving:
         self._memory = DriveMemory(flicker_of(self.robot)) if acts(self.robot) else None
 
     def begin(self, left: float, right: float, channels: Channels | None = None) -> None:
-        """Set the counters of the first message, from which wheel angles are counted."""
+        """Set the counters of the first message, which define the wheels' angles."""
         if self._memory is not None:
             self._memory.left_angle = left * _left_angle(self.robot)
             self._memory.right_angle = right * _right_angle(self.robot)

@@ -55,7 +55,7 @@ class PieceRule(NamedTuple):
     """The conditions in metres of wheel travel, for one robot and tolerance."""
 
     quantum: float
-    """Two counts of the coarser wheel [m], which on a tight arc may determine both."""
+    """One count of each wheel [m], both taken as the coarser one's."""
     lead: float
     """Largest lead or lag of a wheel relative to its share of the travel, beyond the quantum."""
     path: float

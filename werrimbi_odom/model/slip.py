@@ -5,8 +5,8 @@
 The paper's wheel noise is that of rolling and does not cover slip. A slipping wheel biases the
 heading: the wheels turn and the body does not. Where gyro and wheels disagree by more than the
 errors of both, the difference accumulated since then is taken as one standard deviation of the
-heading. The travel that one wheel must have missed for it is taken as that of the distance along
-the path.
+heading. If one wheel slipped, the axle's midpoint missed half of its lost travel; this is the
+standard deviation along the path.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Odometry against a reference, live: the error, and whether the covariance is consistent with it.
 
-  ros2 run werrimbi_odom compare_node --ros-args -r reference:=/vrpn/robot/pose
+    ros2 run werrimbi_odom compare_node --ros-args -r reference:=/vrpn/robot/pose
 
 `CompareNode._compare` processes a reference pose; everything else is set-up and reporting.
 """

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drives a manoeuvre through cmd_vel, in closed loop on the odometry, within user-given limits.
 
-  ros2 run werrimbi_odom drive_node --ros-args -p manoeuvre:=square -p area_radius:=4.0
-  ros2 service call /drive_node/start std_srvs/srv/Trigger
+    ros2 run werrimbi_odom drive_node --ros-args -p manoeuvre:=square -p area_radius:=4.0
+    ros2 service call /drive_node/start std_srvs/srv/Trigger
 
 All decisions are made by `werrimbi_odom.driving.driver.Driver`: when to move, and when to stop.
 """

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The main node: counters in, odometry with its covariance out.
 
-  odom_node --ros-args --params-file robot.yaml
+    odom_node --ros-args --params-file robot.yaml
 
 `OdomNode._take` processes a message; everything else is set-up and reporting.
 """

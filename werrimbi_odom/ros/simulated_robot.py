@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A robot in the physics engine as a ROS node: commands in, sensor data out.
 
-  ros2 run werrimbi_odom simulated_robot --ros-args -p hide:=castor_kick
+    ros2 run werrimbi_odom simulated_robot --ros-args -p hide:=castor_kick
 
 `SimulatedRobot._advance` advances the simulation; everything else is set-up and reporting.
 """
