@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Wheel odometry with a consistent covariance and a diagnosis of its systematic errors.
+"""Wheel odometry that knows how wrong it is, and can tell its user why.
 
-Encoder ticks become wheel travel. Travel passes through the physical effects of the robot's model
-and becomes motion pieces (line, arc, spin). Pieces become a pose with the closed-form covariance of
-Chong and Kleeman (ICRA 1997). Legs of a drive compare the prediction with a reference, and the
-errors show which physical effect is missing.
+Ticks become wheel travel. Travel passes through the physical effects in the robot's model and
+becomes motion pieces (line, arc, spin). Pieces become a pose with the closed-form covariance of
+Chong and Kleeman (ICRA 1997). Legs of a drive compare the prediction with a reference; the
+residuals show which physical effect is missing.
 
 Terms
 -----
@@ -14,29 +14,29 @@ tick, counter
 run, drive
     One recording: ticks and, usually, a reference.
 reference
-    An independent measurement: motion capture, laser, tape, localiser, gyro.
+    Measurements independent of the wheels: motion capture, laser, tape, localiser, gyro.
 leg
     A stretch of a drive, 1 m by default, over which prediction and reference are compared.
 effect
-    A physical model of one error source with a few parameters that changes travel, motion or
-    measurement. At its null values it is the identity.
+    A physical model with a few parameters that changes travel, motion or measurement. At its null
+    values it does nothing.
 verb
     A command of `werrimbi`, and the function of the same name in `api`.
 
 Reading order
 -------------
-1. `model.motion`, `model.covariance`: the equations of one motion piece.
+1. `model.motion`, `model.covariance`: the physics of one piece, in formulas.
 2. `model.odometer`: `Odometer.update` takes one tick message from counters to estimate.
 3. `model.trajectory`: the same for a recorded run, all rows at once.
 4. `effects`: one physical effect a file.
-5. `files`: robot files and recordings. `scans`: poses of a lidar, usable as a reference.
-6. `inference`: `legs` and `fitting`, then `comparison`; `diagnosis.diagnosis` has the search for
-   missing effects in one function.
-7. `report`: the result of a verb as one document for terminal, page and notebook.
+5. `files`: robot files and recordings. `scans`: poses of a lidar, which are one more reference.
+6. `inference`: `legs` and `fitting`, then `comparison`; `diagnosis.diagnosis` is the search for
+   what is missing, in one function.
+7. `report`: what a verb found, as one document for terminal, page and notebook.
 8. `api`: the verbs, for `import werrimbi_odom as wo`. `cli`, `workbench` and `fleet` are shells
    around them.
 9. `ros`: the nodes. `driving`: a manoeuvre within limits, for `ros.drive_node`.
-10. `simulation`: a robot in a physics engine. It is independent of the model, so tests are fair.
+10. `simulation`: a robot in a physics engine. It imports nothing of ours, so that tests are fair.
 
 Imports run one way: the core (`model`) needs numpy alone, and `make lint` checks the layers.
 """
@@ -86,7 +86,7 @@ _WHERE = {
     "reference_effect": "model.effect",
     "InputError": "errors",
 }
-"""Module of each name; imported on first use, so that the node stays light."""
+"""Module of each name; imported at first use, so that the node stays light."""
 
 __all__ = [
     "EFFECTS",

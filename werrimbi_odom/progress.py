@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Progress callback of long work: a bar, a page, or nothing."""
+"""Progress reports of long work: to a bar, a page, or nowhere."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 Show = Callable[[float, str], None]
-"""Called with the share done and a description of the current step."""
+"""Callback with the share done, and what is being done."""
 
 
 def silent(share: float, words: str) -> None:

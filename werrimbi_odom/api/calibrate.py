@@ -45,24 +45,24 @@ def calibrate_fit(
     holdout: Drives = (),
     **options: Unpack[Options],
 ) -> Result[Calibration]:
-    """Maximum likelihood of multipliers and k_L, k_R, with standard deviations.
+    """Estimate multipliers and k_L, k_R by maximum likelihood, with standard deviations.
 
     Parameters
     ----------
     holdout
-        Drives that report the error before and after, and take no part in the fit.
+        Drives for the error before and after; not used in the fit.
 
     Raises
     ------
     InputError
-        When the drives cannot be used; the message says why.
+        If the drives are not usable; the message gives the reason.
     """
     given = recordings_of(robot, runs, holdout, **options)
     return calibrated(given)
 
 
 def calibrated(given: Recordings) -> Result[Calibration]:
-    """`calibrate_fit` for what was read already."""
+    """`calibrate_fit` for recordings that are already read."""
     source = given.source
     given = replace(
         given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
@@ -111,7 +111,7 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
 def _left_out(
     given: Recordings, runs: Sequence[MatchedRun], result: Calibration
 ) -> tuple[LeftOut, ...]:
-    """Gaps of the drives, and the short legs on which the reference jumped."""
+    """Gaps of the drives, and short legs on which the reference jumped."""
     found: list[LeftOut] = []
     for run, matched, excluded in zip(given.runs, runs, result.excluded, strict=True):
         found += matched.record.left_out
@@ -126,7 +126,7 @@ def _left_out(
 
 
 def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
-    """Errors over legs before and after, as every verb has them; NaN where not measured."""
+    """Errors over legs before and after, with the keys of all verbs; NaN where not measured."""
     prepared = prepare(runs, given.source.robot, given.evaluation)
     before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
     return {
@@ -140,7 +140,7 @@ def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict
 
 
 def _told(figures: dict[str, Any]) -> str:
-    """Held-out errors in a line: of positions, or of headings where there are no others."""
+    """Held-out errors in one line: of positions, or of headings if only those were measured."""
     if math.isfinite(figures["before"]):
         return (
             f"held-out legs, before and after: "
@@ -164,23 +164,23 @@ def calibrate_noise(
     reference_sigma_xy: float = 0.0,
     reference_sigma_yaw: float = 0.0,
 ) -> Result[NoiseFit]:
-    """Noise of both wheels from drives out and back (the paper's section 5.2).
+    """Estimate the noise of both wheels from drives out and back (section 5.2 of the paper).
 
     Parameters
     ----------
     results
-        A table `ex_m,ey_m,eyaw_rad`, a row for each drive.
+        A table `ex_m,ey_m,eyaw_rad`, one row per drive.
     distance
-        One way [m].
+        One-way distance [m].
     turn_round
-        The robot turns round at the far end, and again at the start; else it drives backwards.
+        The robot turns round at the far end and at the start; otherwise it drives backwards.
     reference_sigma_xy, reference_sigma_yaw
-        Standard deviation of what was measured [m, rad].
+        Standard deviation of the measurements [m, rad].
 
     Raises
     ------
     InputError
-        When the table cannot be used; the message says where.
+        If the table is not usable; the message gives the place.
     """
     track = robot.robot.track
     options = {

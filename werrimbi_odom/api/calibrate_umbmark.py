@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The paper's section 3: base and radii from squares, by UMBmark."""
+"""UMBmark: base and radii from squares (section 3 of the paper)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Reading:
-    """How squares are read."""
+    """Options for reading squares."""
 
     side: float
     """[m]"""
@@ -51,7 +51,7 @@ class _Reading:
     reference_topic: str | None
     show: Show
     notes: list[str] = field(default_factory=list)
-    """What readers chose, in words."""
+    """Remarks of the readers."""
 
 
 def calibrate_umbmark(
@@ -64,7 +64,7 @@ def calibrate_umbmark(
     reference_topic: str | None = None,
     show: Show = silent,
 ) -> Result[Umbmark]:
-    """Base and radii from squares driven in both senses: UMBmark, the paper's section 3.
+    """Estimate base and radii from squares in both senses: UMBmark, section 3 of the paper.
 
     Parameters
     ----------
@@ -72,14 +72,14 @@ def calibrate_umbmark(
         A table `sense,x_m,y_m` (measured minus odometry at the end of each square), or recorded
         drives of one square each, with a reference.
     side
-        Of the squares [m].
+        Side of the squares [m].
     after
-        The same for squares driven with the new robot file: what the calibration gained.
+        The same for squares driven with the new robot file, to measure the improvement.
 
     Raises
     ------
     InputError
-        When a table or drive cannot be used; the message says where.
+        If a table or drive is not usable; the message gives the place.
     """
     old = robot.robot
     read = _Reading(side, ticks_topic, reference_topic, show)
@@ -123,7 +123,7 @@ def calibrate_umbmark(
 
 
 def before_after(robot: RobotFile, changes: dict[str, float]) -> dict[str, tuple[float, float]]:
-    """What a calibration changes, as the robot file has it and new."""
+    """Old and new values of a calibration."""
     return {
         name: (float(getattr(robot.robot, name)), value)
         for name, value in changes.items()
@@ -137,12 +137,12 @@ def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
 
 
 def _rounded(value: float) -> float:
-    """For the eye; a thousandth of what any tape could tell."""
+    """Round for display, far below the resolution of any tape."""
     return round(value, 9)
 
 
 def _squares(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Reading) -> Squares:
-    """From a table, or from recorded runs, whose odometry is worked out with `robot`."""
+    """Squares from a table, or from recorded runs with the odometry of `robot`."""
     tables = [path for path in paths if path.suffix.lower() == ".csv"]
     if not tables:
         return _recorded(paths, source, robot, read)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where no known effect explains the errors: one written from what they depend on."""
+"""Drafts a new effect from the dependence of the errors, where no known effect explains them."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Drafted(Result[Any]):
-    """A draft, and what it does to the error."""
+    """A draft, and its influence on the error."""
 
     found: Draft
 
     def write_package(self, folder: str | Path) -> list[Path]:
-        """Write a small package that `pip install` takes; returns its files.
+        """Write a small package that `pip install` accepts; return its files.
 
         Raises
         ------
         InputError
-            When it cannot be written.
+            If it cannot be written.
         """
         folder = Path(folder)
         try:
@@ -65,32 +65,32 @@ def draft(
     show: Show = silent,
     **options: Unpack[Options],
 ) -> Drafted:
-    """Where the verdict is unknown: an effect whose law is the dependence that the drives show.
+    """For the verdict "unknown": draft an effect from the dependence in the drives.
 
-    A law of one variable, or of two where the drives held out want the second beyond chance.
+    The effect depends on one variable, or on two if the second is significant on held-out drives.
 
     Parameters
     ----------
     force
-        Draft whatever the verdict is.
+        Draft for any verdict.
 
     Returns
     -------
     Drafted
-        `found.source` is the effect's file, `found.effect` the effect, to be read, and given to
-        `add`; `write_package(folder)` writes it.
+        `found.source` is the text of the effect's file, `found.effect` the effect itself, for
+        `add`. `write_package(folder)` writes a package.
     """
     given = recordings_of(robot, runs, holdout, **options)
     return drafted(given, "" if force else "force=True drafts", show)
 
 
 def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted:
-    """`draft` for what was read already.
+    """`draft` for recordings that are already read.
 
     Parameters
     ----------
     insist
-        What drafts whatever the verdict is, in words; "": that was asked for.
+        How to draft for any verdict, in words; "": already requested.
     """
     robot = given.robot
     diagnosis = search(

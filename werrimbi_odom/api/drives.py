@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Robot files and recorded drives, read from disk or taken as they are."""
+"""Robot files and recorded drives, from disk or already read."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
 
 Drives = Run | str | Path | Sequence[Run | str | Path]
-"""One drive or several, read already or to be read."""
+"""One drive or several, as paths or already read."""
 
 
 class Options(TypedDict, total=False):
-    """How drives are judged; what is left out is as the command line has it."""
+    """Options for evaluating drives; defaults as on the command line."""
 
     reference_kind: ReferenceKind | None
-    """"absolute": each pose of the reference has noise of its own; "incremental": it adds up;
-    "local_map": it also wanders slowly. Not given: incremental for a gyro, local_map for a
-    localiser (map -> odom -> base_link, AMCL), in a bag."""
+    """"absolute": independent noise per pose of the reference; "incremental": it accumulates;
+    "local_map": it also drifts slowly. Default: incremental for a gyro, local_map for a localiser
+    (map -> odom -> base_link, AMCL) in a bag."""
     leg: float
-    """Length of the legs that are judged [m]; 1 where it is not given."""
+    """Length of a leg [m]; default 1."""
     reference_sigma_xy: float | None
-    """The reference's noise in x and in y, where it is known [m]."""
+    """Noise of the reference in x and in y, if known [m]."""
     reference_sigma_yaw: float | None
-    """The same in heading [rad]."""
+    """Noise of the reference in heading, if known [rad]."""
     ticks_topic: str | None
-    """Topic of the ticks, of bags that are still to be read."""
+    """Topic of the ticks, in bags."""
     reference_topic: str | Sequence[str] | None
-    """The same of the reference."""
+    """Topic of the reference, in bags."""
     references: Sequence[str | Path]
-    """What holds the reference of each drive, then of each held-out one, where they do not: other
-    bags, or folders with reference.csv."""
+    """Separate references of each drive, then of each held-out one: other bags, or folders with
+    reference.csv."""
     effects: Sequence[str | Path]
-    """Files with effects of your own, which the robot file may name."""
+    """Files with your own effects, for use in the robot file."""
     force_reference: bool
-    """Take a reference that is made from the wheels."""
+    """Accept a reference that is computed from the wheels."""
 
 
 def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFile:
@@ -56,12 +56,12 @@ def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFil
     Parameters
     ----------
     effects
-        Files with effects of your own, which the robot file may name.
+        Files with your own effects, for use in the robot file.
 
     Raises
     ------
     InputError
-        When it cannot be used; the message says file, line and mend.
+        If it is not usable; the message gives file, line and remedy.
     """
     return read_robot_file(path, collection_of(effects) if effects else None)
 
@@ -81,18 +81,18 @@ def read_run(
     Parameters
     ----------
     ticks_topic, reference_topic
-        Where wheels and reference are, in a bag with several; two references are judged as one.
+        Topics of wheels and reference, in a bag with several; two references are merged.
     reference
-        What holds the reference of this drive, where `path` does not.
+        Separate recording of the reference of this drive.
     force
-        Take a localiser's correction for poses of the robot.
+        Accept a localiser's correction as poses of the robot.
     progress
-        Told the share that is read.
+        Callback for the share read.
 
     Raises
     ------
     InputError
-        When it cannot be used; the message says where and how to mend it.
+        If it is not usable; the message gives place and remedy.
     """
     return read_one(
         Path(path),
@@ -115,7 +115,7 @@ def collection_of(effects: Sequence[str | Path] = ()) -> Collection:
 def recordings_of(
     robot: RobotFile, runs: Drives, holdout: Drives = (), **options: Unpack[Options]
 ) -> Recordings:
-    """Everything that a verb needs, as the command line reads it."""
+    """Read and check all inputs of a verb, as the command line does."""
     if not isinstance(robot, RobotFile):
         raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
     how = how_of(**options)
@@ -129,7 +129,7 @@ def recordings_of(
 
 
 def how_of(**options: Unpack[Options]) -> DriveOptions:
-    """How drives are read and judged, as the command line has it."""
+    """Options for reading and evaluating drives, as on the command line."""
     unknown = sorted(set(options) - set(Options.__annotations__))
     if unknown:
         raise TypeError(
@@ -142,12 +142,12 @@ def how_of(**options: Unpack[Options]) -> DriveOptions:
 
 
 def refuse_circles(given: Recordings) -> list[str]:
-    """Whether the references measure the robot, and in words what there is to say of them.
+    """Check that the references are independent of the wheels; return remarks on them.
 
     Raises
     ------
     InputError
-        When one is made from the wheels, and is not asked for all the same.
+        If one is computed from the wheels, and this is not accepted by option.
     """
     from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`history`: drives of weeks or months in the order of their dates, and when a number changed.
+"""`history`: drives over weeks or months in order of date, and when a parameter changed.
 
-Each drive is read, fitted by itself, and forgotten but for a few numbers, which are kept by the
-content of its files: ten thousand drives need no more memory than one, and one more drive is read
-alone.
+Each drive is read, fitted separately, and reduced to a few numbers, which are cached by the content
+of its files. So ten thousand drives need no more memory than one, and for an additional drive only
+that drive is read.
 """
 
 from __future__ import annotations
@@ -44,21 +44,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DriveTask:
-    """A drive to look at; it can be sent to another process."""
+    """A drive to process; can be sent to another process."""
 
     run: Path
     robot: Path
     how: DriveOptions
-    """With what holds the reference of this drive alone."""
+    """With the reference of this drive only."""
     keep: Path | None
-    """File in which what it tells is kept."""
+    """Cache file for the result."""
 
 
 Looked = Dated | Unusable
-"""A drive that was looked at, with or without success."""
+"""A processed drive, successful or not."""
 
 Spread = Callable[[Sequence[DriveTask]], Iterable[Looked]]
-"""Does tasks, in any order."""
+"""Processes tasks, in any order."""
 
 
 def history(
@@ -71,23 +71,23 @@ def history(
     show: Show = silent,
     **options: Unpack[Options],
 ) -> Result[History]:
-    """How the numbers of a robot went over its drives, and when one changed.
+    """Estimate the parameters of a robot over its drives, and when they changed.
 
     Parameters
     ----------
     like
-        A sound robot of the same kind, or this one when it was sound: what is new against it.
+        A sound robot of the same kind, or this one when it was sound, for comparison.
     cache
-        Folder to keep what each drive tells, by the content of its files. None: nothing is kept.
+        Folder for the results of drives, by the content of their files. None: no cache.
     spread
-        Looks at drives, for many of them in several processes. None: one after the other.
+        Processes drives, for example in several processes. None: one after the other.
     show
-        Told the share done, and what is being done.
+        Callback for progress.
 
     Raises
     ------
     InputError
-        When no drive can be used; the message says why the first cannot.
+        If no drive is usable; the message gives the reason for the first.
     """
     return history_of(
         robot, runs, how_of(**options), like=like, cache=cache, spread=spread, show=show
@@ -104,7 +104,7 @@ def history_of(
     spread: Spread | None = None,
     show: Show = silent,
 ) -> Result[History]:
-    """`history` as the command line asks for it."""
+    """`history` for the command line."""
     given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
     if not given:
         raise InputError("no drives were given")
@@ -122,19 +122,19 @@ def history_of(
 
 
 def told_of_task(task: DriveTask) -> Looked:
-    """What a drive tells, kept for the next time."""
+    """Process a drive, and cache the result."""
     try:
         found = _looked_at(task.run, _source(task.robot, task.how.effects), task.how)
     except (InputError, OSError) as error:
         return unusable_task(task, str(error))
     if task.keep is not None:
-        with suppress(InputError), replacing(task.keep) as file:  # else it is looked at again
+        with suppress(InputError), replacing(task.keep) as file:  # else it is processed again
             json.dump(_plain(found.told), file)
     return found
 
 
 def unusable_task(task: DriveTask, why: str) -> Unusable:
-    """A drive that could not be looked at."""
+    """A drive that could not be processed."""
     return Unusable(task.run, " ".join(why.split()))
 
 
@@ -165,7 +165,7 @@ def _tasks(
         own = (path,) if reference is None else (path, reference)
         keep = None
         if folder is not None:
-            with suppress(OSError):  # what cannot be read is told when it is looked at
+            with suppress(OSError):  # unreadable files are reported when the drive is processed
                 keep = folder / f"{mark_of((*own, *how.effects), *words)}.json"
         found.append(DriveTask(path, robot.path, replace(how, references=own[1:]), keep))
     return found
@@ -248,4 +248,4 @@ def _kept(place: Path | None) -> DriveEstimate | None:
             *(values[name] for name in ("begin", "data", "way")),
         )
     except (OSError, ValueError, KeyError, TypeError):
-        return None  # not there, or spoilt: looked at anew
+        return None  # missing or damaged: processed again

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording holds and allows, and the command that comes next."""
+"""Contents of a recording, what it allows, and the next command."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def info(
     reference_topic: str | None = None,
     force: bool = False,
 ) -> Result[Info]:
-    """What recordings hold and allow, and the next command.
+    """Contents of recordings, what they allow, and the next command.
 
     Parameters
     ----------
@@ -59,16 +59,16 @@ def info(
     robot
         A robot file, or the parameter file of a diff_drive_controller.
     out
-        Where a first robot file is written.
+        Path for a first robot file.
     ticks_topic, reference_topic
-        What to look at, where not what seems best.
+        Topics to use; default: the most suitable ones.
     force
         Whether `out` may be overwritten.
 
     Raises
     ------
     InputError
-        When a recording cannot be read at all, or a robot file cannot be written.
+        If a recording is unreadable, or a robot file cannot be written.
     """
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
     found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
@@ -91,7 +91,7 @@ def _look(
         except InputError:
             first = of_controller(robot)
         if source is not None and "ticks_per_revolution" not in source.text:
-            with suppress(InputError):  # the controller's, of which one is made
+            with suppress(InputError):  # a controller's file, from which a robot file is made
                 source, first = None, of_controller(robot)
     held = []
     for path in paths:
@@ -134,7 +134,7 @@ def _of_bag(
     ticks_topic: str | None,
     reference_topic: str | None,
 ) -> tuple[Held, FirstRobot]:
-    """What a bag holds, and what it says of the robot."""
+    """Contents of a bag, and what it says about the robot."""
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
         contents = contents_of(opened, base)
@@ -162,7 +162,7 @@ def _topics(each: Wheels | Measured) -> list[str]:
 
 
 def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
-    """The one that is wished for, or that says most of those that are independent."""
+    """The requested reference, or the independent one that measures most."""
     if wish is not None:
         return next((each for each in references if each.name == wish), None)
     order = ("poses", "positions", "yaw")
@@ -172,7 +172,7 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
 
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
-    """Counts a turn by the steps of the wheels' angles, where joints tell them."""
+    """Counts per turn from the steps of the joint angles, if visible."""
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first
     turn = 2.0 * math.pi
@@ -197,12 +197,12 @@ def _read(
 
 
 def robot_file_of(first: FirstRobot) -> RobotFile:
-    """A robot file of what is known; where sizes are not, of any."""
+    """A robot file from the known values, with placeholders for unknown sizes."""
     return robot_file_of_text(first.text("what is known"), Path("robot.yaml"))
 
 
 def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
-    """When it stood, drove, was held and carried, and what will be left out."""
+    """When the robot stood, drove, was held and carried, and what will be excluded."""
     assert held.run is not None
     robot_file = source or robot_file_of(first)
     robot, limits = robot_file.robot, robot_file.limits

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The command that follows, for the same files and options: to be pasted as it is printed."""
+"""The next command for the same files and options, ready to paste."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ def next_command(
     holdout: bool = True,
     one_line: bool = False,
 ) -> str:
-    """A command over lines that a shell takes, indented.
+    """Shell command over several indented lines.
 
     Parameters
     ----------
     verb
-        The words behind `werrimbi`.
+        The words after `werrimbi`.
     given
-        What this verb was given.
+        Input of the current verb.
     robot, effects
-        The robot file, if it is another one than was given, and effects beside those given.
+        The robot file, if it differs from the input, and additional effects.
     out
-        For --out; "" for none.
+        Value of --out; "" for none.
     holdout
-        Whether the held-out drives go with it.
+        Whether to include the held-out drives.
     one_line
-        For the middle of a sentence.
+        For use within a sentence.
     """
     words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given.how)]
     if given.how.force_reference and any(run.circle for run in given.runs):
@@ -53,12 +53,12 @@ def next_command(
 
 
 def beside(robot: Path, word: str) -> str:
-    """A name for a new robot file, beside the one that was given."""
+    """Name for a new robot file, beside the given one."""
     return str(robot.with_name(f"{robot.stem}_{word}{robot.suffix}"))
 
 
 def _options(how: DriveOptions) -> Iterator[str]:
-    """Those that differ from their defaults."""
+    """Options that differ from their defaults."""
     plain = DriveOptions(reference_kind="absolute")
     for name in (
         "leg",
@@ -78,7 +78,7 @@ def _options(how: DriveOptions) -> Iterator[str]:
 
 
 def _paths(runs: Sequence[Run]) -> str:
-    """Paths as given; all of one folder as FOLDER/*."""
+    """Paths as given; a complete folder as FOLDER/*."""
     paths = list(dict.fromkeys(run.path for run in runs))
     folders = {path.parent for path in paths}
     if len(paths) > 1 and len(folders) == 1 and paths[0].exists():

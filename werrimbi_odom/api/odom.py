@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Dead reckoning of arrays, and of a recorded run from where its reference begins."""
+"""Dead reckoning of arrays, and of a recorded run from the start of its reference."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from werrimbi_odom.progress import Show, silent
 from werrimbi_odom.report.reckoning import Reckoning, document_of, reckoning_of
 
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
-_BLOCK = 32768  # rows that are text at once
+_BLOCK = 32768  # rows formatted at once
 Found = TypeVar("Found")
 
 
@@ -44,17 +44,17 @@ class Reckoned(Result[Any]):
     def write_rows(
         self, path: str | Path, *, as_reference: bool = False, show: Show = silent
     ) -> None:
-        """Write pose and covariance, a row for each row of ticks; an existing file is replaced.
+        """Write pose and covariance for each row of ticks; an existing file is replaced.
 
         Parameters
         ----------
         as_reference
-            What the reference is predicted to show, in place of the axle's midpoint.
+            Write the predicted measurement of the reference instead of the axle's midpoint.
 
         Raises
         ------
         InputError
-            When it cannot be written.
+            If the file cannot be written.
         """
         ticks, driven = self.found.run.ticks, self.found.driven
         with replacing(Path(path)) as file:
@@ -63,7 +63,7 @@ class Reckoned(Result[Any]):
 
 
 def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
-    """Dead reckoning of a run, started where the reference shows its first pose.
+    """Dead reckoning of a run, starting at the first pose of the reference.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     Raises
     ------
     InputError
-        When the run cannot be used; the message says why.
+        If the run is not usable; the message gives the reason.
     """
     recorded = run if isinstance(run, Run) else read_run(run, robot)
     complete, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot))
@@ -91,9 +91,9 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
 
 
 def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
-    """The result of some work on a run; what is wrong with the run names it."""
+    """Run some work on a run; an error names the run."""
     try:
-        with np.errstate(all="ignore"):  # absurd numbers are found in the end, and said once
+        with np.errstate(all="ignore"):  # absurd values are detected and reported once, at the end
             return work()
     except ValueError as error:
         raise InputError(f"{recorded.path}: {error}") from error
@@ -124,28 +124,28 @@ def _write_rows(
     for first in range(0, time.size, _BLOCK):
         rows = slice(first, first + _BLOCK)
         table = np.stack([time[rows], *(values[entry[rows]] for values in estimates)], axis=1)
-        # repr is the shortest text that reads back as the same number
+        # repr is the shortest text that parses to the same number
         file.writelines(",".join(map(repr, row)) + "\n" for row in table.tolist())
         show(first / time.size, "writing")
 
 
 def _half_open(yaw: Floats) -> Floats:
-    """The same directions in (-pi, pi]."""
+    """Wrap angles to (-pi, pi]."""
     wrapped = wrap_all(yaw)
     return np.minimum(np.where(wrapped <= -np.pi, wrapped + 2.0 * np.pi, wrapped), np.pi)
 
 
 class Odometry(NamedTuple):
-    """A pose and its covariance for each row of ticks, in the frame of the start."""
+    """Pose and covariance for each row of ticks, in the frame of the start."""
 
     x: Floats
     """[m], shape (n,)"""
     y: Floats
     """[m], shape (n,)"""
     yaw: Floats
-    """Not wrapped [rad], shape (n,)."""
+    """Unwrapped [rad], shape (n,)."""
     covariance: Floats
-    """Of (x, y, yaw) [m², m·rad, rad²], shape (n, 3, 3)."""
+    """Covariance of (x, y, yaw) [m², m·rad, rad²], shape (n, 3, 3)."""
 
 
 def odometry(
@@ -170,17 +170,17 @@ def odometry(
     start
         Pose at the first row: x [m], y [m], yaw [rad].
     channels
-        Further measured columns that an effect looks at, by name, shape (n,) each.
+        Further measured columns that an effect reads, by name, shape (n,) each.
 
     Returns
     -------
     Odometry
-        A row for each row of ticks; one that could not be used repeats the latest estimate.
+        One row per row of ticks; an unusable row repeats the latest estimate.
 
     Raises
     ------
     ValueError
-        When the arrays differ in length, or no row can be used.
+        If the arrays differ in length, or no row is usable.
     """
     time, of_left, of_right = (np.atleast_1d(np.asarray(part)) for part in (t, left, right))
     if not time.shape == of_left.shape == of_right.shape or time.ndim != 1:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a verb found, and its forms: words, JSON, figures, a page to mail, a view in a notebook."""
+"""Result of a verb, and its forms: words, JSON, figures, a report page, a notebook view."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class NewRobot:
-    """What a verb changes in a robot file."""
+    """Changes of a verb to a robot file."""
 
     source: RobotFile
     changes: dict[str, Any]
-    """New values by parameter."""
+    """New values by parameter name."""
     effects: Sequence[AppliedEffect] | None = None
-    """All effects of the new file; None: those that it holds stay."""
+    """All effects of the new file; None: unchanged."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Result(Generic[Found]):
-    """A finding that shows itself.
+    """Result of a verb, with its presentations.
 
     Attributes
     ----------
     found
-        The finding itself, with all its numbers (`werrimbi_odom.inference`).
+        The result itself, with all its numbers (`werrimbi_odom.inference`).
     """
 
     found: Found
@@ -48,13 +48,13 @@ class Result(Generic[Found]):
     new_robot: NewRobot | None = None
 
     def summary(self) -> str:
-        """The words and tables of the terminal."""
+        """Text and tables as in the terminal."""
         from werrimbi_odom.report.terminal import printed
 
         return printed(self.document())
 
     def to_dict(self) -> dict[str, Any]:
-        """What `--json` writes: numbers, words, lists, dictionaries; None: not known."""
+        """Content of `--json`: numbers, strings, lists, dictionaries; None: not known."""
         from werrimbi_odom.report.numbers import plain
 
         found = plain(self.figures_of_json())
@@ -62,7 +62,7 @@ class Result(Generic[Found]):
         return found
 
     def figures(self) -> dict[str, go.Figure]:
-        """The figures of the report, by name; of several to choose from each by NAME: CHOICE."""
+        """Figures of the report, by name; one of several alternatives is NAME: CHOICE."""
         return {
             f"{part.key}: {choice}" if choice and len(part.figures) > 1 else part.key: figure
             for part in self.document().draw()
@@ -70,31 +70,31 @@ class Result(Generic[Found]):
         }
 
     def write_report(self, path: str | Path, made: Mapping[str, str] | None = None) -> list[Path]:
-        """Write the report; returns the files.
+        """Write the report; return its files.
 
         Parameters
         ----------
         path
-            .html for a page, .pdf or .png for the main figures alone.
+            .html for a page, .pdf or .png for the main figures only.
         made
-            How it was made (a command, files, options), for the foot of the page.
+            Origin of the report (command, files, options), for the foot of the page.
 
         Raises
         ------
         InputError
-            When it cannot be written.
+            If it cannot be written.
         """
         from werrimbi_odom.report.save import save_report
 
         return save_report(replace(self.document(), made=made or {}), Path(path))
 
     def write_robot(self, path: str | Path, *, force: bool = False) -> RobotFile:
-        """Write the robot file with what was found, comments and order kept.
+        """Write the robot file with the results; comments and order are kept.
 
         Raises
         ------
         InputError
-            When this verb changes no robot, or the file exists and `force` is not set.
+            If this verb changes no robot file, or the file exists and `force` is not set.
         """
         from werrimbi_odom.files.robot_file import write_robot_file
 
@@ -110,7 +110,7 @@ class Result(Generic[Found]):
         return f"<{type(self.found).__name__}: {first}>"
 
     def _repr_html_(self) -> str:
-        """The report page, in a frame of its own, for a notebook."""
+        """Report page in an iframe, for a notebook."""
         from html import escape
 
         from werrimbi_odom.report.page import page_html

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The verbs of the loop: compare, diagnose, add; the same defaults as the command line."""
+"""The main verbs: compare, diagnose, add; defaults as on the command line."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def compare(
     show: Show = silent,
     **options: Unpack[Options],
 ) -> Result[Comparison]:
-    """Model against measurement: where it fails.
+    """Compare a model with measurements.
 
     Parameters
     ----------
@@ -41,14 +41,14 @@ def compare(
     runs
         Drives from `read_run`, or their paths.
     show
-        Told the share done, and what is being done.
+        Callback for progress.
     **options
-        How drives are judged: `reference_kind`, `leg`, `reference_sigma_xy`, ... (`Options`).
+        How drives are evaluated: `reference_kind`, `leg`, `reference_sigma_xy`, ... (`Options`).
 
     Raises
     ------
     InputError
-        When the drives cannot be used; the message says why.
+        If the drives are not usable; the message gives the reason.
     """
     given = recordings_of(robot, runs, (), **options)
     return compared(given, show)
@@ -57,12 +57,12 @@ def compare(
 def compared(
     given: Recordings, show: Show = silent, *, over: PreparedRuns | None = None
 ) -> Result[Comparison]:
-    """`compare` for what was read already.
+    """`compare` for recordings that are already read.
 
     Parameters
     ----------
     over
-        The drives cut before, so that before and after are over the same legs.
+        The drives already cut into legs, so that before and after use the same legs.
     """
     from werrimbi_odom.inference.comparison.compare import compare as judge
     from werrimbi_odom.inference.comparison.compare import judged
@@ -88,19 +88,19 @@ def diagnose(
     show: Show = silent,
     **options: Unpack[Options],
 ) -> Result[Told]:
-    """Which physical effect is missing; see `compare` for what it has in common.
+    """Find the missing physical effect; for common parameters see `compare`.
 
     Parameters
     ----------
     holdout
-        Drives that report alone. None given: parts of every drive are put aside for it.
+        Drives for evaluation only. If none are given, parts of every drive are held out.
     """
     given = recordings_of(robot, runs, holdout, **options)
     return diagnosed(given, show)
 
 
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
-    """`diagnose` for what was read already."""
+    """`diagnose` for recordings that are already read."""
     from werrimbi_odom.inference.manoeuvres.advice import told_of
     from werrimbi_odom.report.diagnosis.document import document_of
     from werrimbi_odom.report.diagnosis.tables import json_of
@@ -132,14 +132,14 @@ def add(
     show: Show = silent,
     **options: Unpack[Options],
 ) -> Result[Added]:
-    """Add physical effects to the model, fitted together with all calibration, and judge them.
+    """Add physical effects to the model, fitted with all calibration parameters; evaluate them.
 
     Parameters
     ----------
     effect
         One or several: names ("castor_kick", or "castor_kick,track_width"), or effects themselves.
     force
-        Take even an effect that does not earn its place.
+        Accept an effect despite objections.
 
     Returns
     -------
@@ -149,7 +149,7 @@ def add(
     Raises
     ------
     InputError
-        When the drives cannot be used, or an effect does not earn its place.
+        If the drives are not usable, or there is an objection to an effect.
     """
     given = recordings_of(robot, runs, holdout, **options)
     result = added(given, effects_of(effect, given), show)
@@ -159,12 +159,12 @@ def add(
 
 
 def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings) -> list[Effect]:
-    """Effects, those that are names found: "A,B" or several.
+    """Find effects by name: "A,B" or several; effects are passed through.
 
     Raises
     ------
     InputError
-        When a name is unknown, or given twice.
+        If a name is unknown, or given twice.
     """
     several: Sequence[str | Effect]
     if isinstance(wanted, str):
@@ -180,7 +180,7 @@ def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings)
 
 
 def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> Result[Added]:
-    """`add` for what was read already, whatever speaks against it."""
+    """`add` for recordings that are already read, without raising on objections."""
     from werrimbi_odom.inference.adding.adding import add_effects
     from werrimbi_odom.report.adding.document import document_of
     from werrimbi_odom.report.adding.words import json_of
@@ -197,17 +197,17 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
 
 
 def refuse_unearned(added: Added, insist: str) -> None:
-    """Whether every effect earns its place.
+    """Raise if there is an objection to any of the effects.
 
     Parameters
     ----------
     insist
-        What takes them all the same, in words.
+        How to add them regardless, in words.
 
     Raises
     ------
     InputError
-        When one does not: what speaks against it, and what can be added without it.
+        The objections, and the effects that can be added without them.
     """
     if added.objection is None:
         return

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The diagnosis of what compare_node has kept, in a process of its own that leaves others alone.
+"""Diagnosis of the messages stored by compare_node, in a separate low-priority process.
 
     python -m werrimbi_odom.api.watched FOLDER
 
-FOLDER has the messages and what is asked; what was found is put there too. Nothing here is of the
-node's own: drives are read, diagnosed and added to as by the command line.
+FOLDER contains the messages and the request; the result is written there too. Drives are read,
+diagnosed and added to as on the command line.
 """
 
 from __future__ import annotations
@@ -34,16 +34,17 @@ from werrimbi_odom.files.text_files import replacing
 MESSAGES, ASKED, FOUND, BETTER = "messages", "asked.json", "found.json", "better.yaml"
 """Files of the folder."""
 RECORDED = Path("RUN...")
-"""In the commands that are told, for what is kept is nowhere to be found afterwards."""
+"""Placeholder in the printed commands, as the stored data do not persist."""
 OF_NOW = "\n\nThe younger half of these drives alone:\n"
-"""Between what all of them say and what that half does, where the robot became another one."""
+"""Separates the words on all drives from those on the younger half, where the robot changed."""
 
 
 def found_in(folder: Path) -> dict[str, Any]:
-    """What is said of the drives that were kept, as JSON has it.
+    """Diagnose the stored drives; return the result as JSON data.
 
-    `headline` and `words` are those of the terminal, `error` says why there are none, `added` which
-    effects are in the new robot file, and `refused` why it is not written.
+    `headline` and `words` are those of the terminal; `error` is the reason if there are none;
+    `added` lists the effects of the new robot file, and `refused` is the reason why it is not
+    written.
     """
     asked = json.loads((folder / ASKED).read_text(encoding="utf-8"))
     options: Options = asked["options"] | asked["topics"]
@@ -81,10 +82,10 @@ def found_in(folder: Path) -> dict[str, Any]:
 def of_now(
     whole: Result[Any], robot: Any, drives: list[Run], options: Options
 ) -> tuple[Result[Any], list[Run]]:
-    """What the robot is now, and the drives that say so.
+    """Diagnosis of the robot's present state, and the drives used for it.
 
-    Where something set in, all of the drives are those of two robots, and no effect explains them;
-    the younger half is of one as soon as it is as old.
+    After an effect has set in, the drives together belong to two robots, and no effect explains
+    them. The younger half belongs to one robot as soon as the change is old enough.
     """
     told = whole.to_dict()
     if told["verdict"] == "unknown" or told["changes"]:
@@ -95,7 +96,7 @@ def of_now(
 
 
 def halves(run: Run) -> list[Run]:
-    """A drive as two, with as much travel in each: of two can be said what changed between them."""
+    """Split a drive into halves of equal travel, so that a change between them can be found."""
     ticks, reference = run.ticks, run.reference
     assert reference is not None
     steps = np.abs(np.diff(ticks.left)) + np.abs(np.diff(ticks.right))
@@ -117,7 +118,7 @@ def halves(run: Run) -> list[Run]:
 
 
 def _bag(folder: Path) -> Path:
-    """What was kept, as a bag that every verb reads."""
+    """Write the stored messages to a bag."""
     with (folder / MESSAGES).open("rb") as file:
         topics, messages = pickle.load(file)
     writer = BagWriter(folder / "bag")
@@ -129,8 +130,8 @@ def _bag(folder: Path) -> Path:
 
 
 def main() -> int:
-    """Look, and write what was found; always 0."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the node, which ends us
+    """Diagnose, and write the result; always return 0."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the node, which ends this process
     os.nice(10)
     folder = Path(sys.argv[1])
     found = found_in(folder)

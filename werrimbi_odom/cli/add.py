@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi add`: more physical effects in the model, fitted together, judged, written."""
+"""`werrimbi add`: fit physical effects, evaluate them, and write the extended robot file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, fit, judge, write; 0 on success."""
+    """Read, fit, evaluate, write; return 0."""
     from werrimbi_odom.api.next_command import next_command
     from werrimbi_odom.api.verbs import added, effects_of, refuse_unearned
     from werrimbi_odom.cli.progress import share_done

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi calibrate`: a robot file with better numbers in it, from drives and measurements."""
+"""`werrimbi calibrate`: a robot file with better parameters, from drives and measurements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HELP = "better numbers for the robot file, with error bars"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the three ways of calibrating and their options."""
+    """Declare the three kinds of calibration and their options."""
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     for kind, (says, add, _) in KINDS.items():
         below = kinds.add_parser(
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Calibrate; 0 on success."""
+    """Calibrate; return 0."""
     _, _, calibrate = KINDS[arguments.kind]
     result = calibrate(arguments)
     write_and_tell(arguments, result)
@@ -161,4 +161,4 @@ KINDS = {
     ),
     "fit": ("all of them from any driving with a reference", _add_fit_arguments, _fit),
 }
-"""What each way is good for, its options, and how it calibrates."""
+"""For each kind: its purpose, its options, and the function that calibrates."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi compare`: model against measurement; where it fails."""
+"""`werrimbi compare`: model against measurement."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, compare, tell; 0 on success."""
+    """Read, compare, report; return 0."""
     from werrimbi_odom.api.verbs import compared
 
     _, result = on_recordings(arguments, "comparing", compared)

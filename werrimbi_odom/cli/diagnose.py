@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi diagnose`: which physical effect is missing; of a fleet, see `diagnose_fleet`."""
+"""`werrimbi diagnose`: which physical effect is missing; for fleets see `diagnose_fleet`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, diagnose, tell; 0 on success."""
+    """Read, diagnose, report; return 0."""
     refuse_mixing(arguments)
     if arguments.fleet is not None:
         return run_fleet(arguments)
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _ask_for_robot_and_runs(arguments: argparse.Namespace) -> None:
-    """As argparse would, if a fleet did not bring its own."""
+    """Raise as argparse would; a fleet needs neither RUN nor --robot."""
     lacking = [] if arguments.runs else ["RUN"]
     lacking += [] if arguments.robot is not None else ["--robot"]
     if lacking:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi diagnose --fleet`: many robots in one table, on this machine or on a Dask cluster."""
+"""`werrimbi diagnose --fleet`: many robots in one table, locally or on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from werrimbi_odom.report.fleet import Fleet, Row
 
 _NARROW, _WIDE = 80, 140
-"""Columns that the table may have; 100 where there is no terminal."""
+"""Limits of the table's width in columns; 100 without a terminal."""
 
 
 def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
-    """--fleet, --jobs and --scheduler."""
+    """Declare --fleet, --jobs and --scheduler."""
     fleet = parser.add_argument_group("many robots at once (docs/fleet.md)")
     fleet.add_argument(
         "--fleet",
@@ -53,12 +53,12 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def refuse_mixing(arguments: argparse.Namespace) -> None:
-    """One robot or a fleet, processes or a cluster.
+    """Check: one robot or a fleet, processes or a cluster.
 
     Raises
     ------
     InputError
-        When options are given together that say different things.
+        If options contradict each other.
     """
     if arguments.fleet is None:
         for name in ("jobs", "scheduler"):
@@ -75,14 +75,14 @@ def refuse_mixing(arguments: argparse.Namespace) -> None:
 
 
 def run_fleet(arguments: argparse.Namespace) -> int:
-    """Diagnose all robots, tell; 0 on success.
+    """Diagnose all robots, report; return 0.
 
     Raises
     ------
     InputError
-        When the folder or the cluster cannot be used; what is done by then is told and written.
+        If the folder or the cluster is not usable; results so far are reported and written.
     KeyboardInterrupt
-        On Ctrl-C; what is done by then is told and written.
+        On Ctrl-C; results so far are reported and written.
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.recordings import Asked
@@ -90,7 +90,7 @@ def run_fleet(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.fleet.robot_task import Task, failed
 
     members = members_of(arguments.fleet)
-    read_effects(arguments)  # a mistake in them is no robot's
+    read_effects(arguments)  # an error in them is not specific to a robot
     how = how_of(arguments)
     tasks = [Task(each.name, Asked(each.robot, each.runs, each.holdout, how)) for each in members]
     rows, ready = [], []
@@ -118,7 +118,7 @@ def run_fleet(arguments: argparse.Namespace) -> int:
 
 
 def _spread(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[Row, None, None]:
-    """Rows as they come."""
+    """Yield rows as they arrive."""
     if arguments.scheduler is not None:
         from werrimbi_odom.fleet.cluster import on_cluster
 
@@ -148,7 +148,7 @@ def _fleet(rows: Sequence[Row], members: Sequence[Member]) -> Fleet:
 
 
 def _bytes(path: Path) -> bytes:
-    """Empty where it cannot be read, which the robot's row says."""
+    """Content of a file; empty if unreadable, which the robot's row reports."""
     try:
         return path.read_bytes()
     except OSError:
@@ -156,7 +156,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
-    """The files that were asked for, then words and table."""
+    """Write the requested files, then print words and table."""
     from werrimbi_odom.report.fleet import words_of
     from werrimbi_odom.report.fleet_page import fleet_table
     from werrimbi_odom.report.terminal import as_text

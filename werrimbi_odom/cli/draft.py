@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi draft`: where no known effect explains the errors, one written from the evidence."""
+"""`werrimbi draft`: draft a new effect where no known effect explains the errors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Diagnose, draft, try, write; 0 on success."""
+    """Diagnose, draft, test, write; return 0."""
     from werrimbi_odom.api.draft import drafted
 
     insist = "" if arguments.force else "--force drafts"
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _next(folder: Path, given: Recordings, name: str) -> str:
-    """The commands that try it, and that install it."""
+    """Commands to test and to install the draft."""
     from werrimbi_odom.api.next_command import beside, next_command
 
     file = folder / f"{name}.py"

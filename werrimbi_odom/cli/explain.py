@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi explain`: what an effect is physically, what it does, how to check it with a ruler."""
+"""`werrimbi explain`: physics, formula and signature of an effect, and how to check it by ruler."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print one page, or the list of all; 0 on success."""
+    """Print one page, or the list of all effects; return 0."""
     from werrimbi_odom.effects import all_effects
     from werrimbi_odom.effects.page import as_json
 
@@ -63,7 +63,7 @@ def _print_list(collection: Collection) -> None:
     try:
         from rich.table import Table
         from rich.text import Text
-    except ModuleNotFoundError:  # a robot may not have it
+    except ModuleNotFoundError:  # rich may not be installed on a robot
         for effect in collection.effects:
             print(f"{effect.name:26}{effect.stage:11}{effect.summary}")
         return

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi history`: how a robot's numbers went over weeks or months, and when one changed."""
+"""`werrimbi history`: a robot's parameters over weeks or months, and when one changed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 HELP = "how base, radii, mount and effects went over months of drives, and when one changed"
 
-_FEW = 6  # drives that are done sooner here than another process begins
+_FEW = 6  # drives that are processed faster than another process starts
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Look at the drives, put them together, tell; 0 on success."""
+    """Process the drives, combine and report them; return 0."""
     from werrimbi_odom.api.history import history_of
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.robot_file import read_robot_file
@@ -97,6 +97,6 @@ def _spread(tasks: Sequence[DriveTask], jobs: int) -> Iterator[Looked]:
 
 
 def _cache() -> Path:
-    """Where programs of this user keep what can be made again."""
+    """The user's cache folder."""
     default = Path.home() / ".cache" if sys.platform != "win32" else Path.home()
     return Path(os.environ.get("XDG_CACHE_HOME") or default) / "werrimbi_odom" / "history"

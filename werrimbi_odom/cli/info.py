@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi info`: what a recording holds and allows, and the command that comes next."""
+"""`werrimbi info`: contents of a recording, what it allows, and the next command."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Look, tell; 0 on success."""
+    """Analyse, report; return 0."""
     from werrimbi_odom.api.info import info
     from werrimbi_odom.cli.outputs import tell_written, write_json
     from werrimbi_odom.files.recordings import refuse_twice
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         result = look(out=arguments.out)
     except InputError:
-        if arguments.out is not None:  # what it holds is told, though no file can be written
+        if arguments.out is not None:  # contents are reported even if no file can be written
             print(look().summary())
         raise
     written = [each for each in (arguments.out, arguments.json) if each is not None]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The command `werrimbi`: one verb a module; what a user can mend is one line and exit code 2."""
+"""The command `werrimbi`: one module per verb; a user error is one line and exit code 2."""
 
 from __future__ import annotations
 
@@ -31,55 +31,55 @@ VERBS = (
     "simulate",
     "explain",
 )
-"""Each a module beside this one with HELP, `add_arguments(parser)` and `run(arguments)`, which
-gives 0 on success, and raises `InputError` for what a user can mend, with no file half written."""
+"""Each is a module in this folder with HELP, `add_arguments(parser)` and `run(arguments)`, which
+returns 0 on success, and raises `InputError` on user errors, with no file half written."""
 
 BAD_INPUT = 2
-INTERRUPTED = 130  # 128 + SIGINT, as shells say it
+INTERRUPTED = 130  # 128 + SIGINT, as in shells
 NO_READER = 141  # 128 + SIGPIPE
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, without the usage before it."""
+    """Prints errors in one line, without the usage."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(BAD_INPUT, f"{self.prog}: {_one_line(message)} (see {self.prog} --help)\n")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns its exit code.
+    """Run the command line; return its exit code.
 
     Parameters
     ----------
     argv : sequence of str, optional
-        What follows the command's name; by default what the process was given.
+        Arguments after the command's name; default: those of the process.
     """
-    # Before numpy is there, for our matrices are small: two threads of OpenBLAS wait for each other
-    # more than they work, the longer the busier the machine (the workbench, with its browser).
+    # Set before numpy is imported. The matrices are small: two OpenBLAS threads mostly wait for
+    # each other, the more so on a busy machine (the workbench, with its browser).
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     words = sys.argv[1:] if argv is None else list(argv)
     for stream in (sys.stdout, sys.stderr):
-        # A path need not be text, nor a terminal know every sign: such ones are spelt.
+        # Paths may not be valid text, and terminals may lack characters: these are escaped.
         if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
             stream.reconfigure(errors="backslashreplace")
     verb = "werrimbi"
     try:
         try:
             arguments = _parser(words).parse_args(words)
-        except SystemExit as end:  # argparse ends --help and bad usage so
+        except SystemExit as end:  # argparse ends --help and usage errors this way
             return end.code if isinstance(end.code, int) else BAD_INPUT
         verb = f"werrimbi {arguments.verb}"
         refuse_lacking(arguments)
         refuse_files(arguments)
         code = int(_module(arguments.verb).run(arguments))
-        sys.stdout.flush()  # here, where a broken pipe is still caught
+        sys.stdout.flush()  # here, where a broken pipe is still handled
         return code
-    except SystemExit as end:  # nothing of ours ends so; what was asked for has not been done
+    except SystemExit as end:  # not raised by this package; the work is not done
         problem = f"code that it ran ended it (SystemExit: {end.code})"
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        # The interpreter flushes stdout once more at its end; let it, into nothing.
+        # The interpreter flushes stdout once more at its end; redirect it to nothing.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NO_READER
     except InputError as error:
@@ -116,7 +116,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
                 epilog=epilog_of(name),
                 formatter_class=Formatter,
             )
-            if chosen == name:  # nobody else needs its options, nor what they cost to declare
+            if chosen == name:  # other verbs do not need their options, which cost time
                 module.add_arguments(below)
     return parser
 

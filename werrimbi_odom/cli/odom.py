@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi odom`: dead reckoning of a run, a row of pose and covariance for each of ticks."""
+"""`werrimbi odom`: dead reckoning of a run, with pose and covariance per row of ticks."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, reckon, write, tell; 0 on success."""
+    """Read, compute, write, report; return 0."""
     from werrimbi_odom.api.drives import read_robot, read_run
     from werrimbi_odom.api.odom import odom
     from werrimbi_odom.cli.progress import share_done
@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write(arguments: argparse.Namespace, result: Reckoned, show: Show) -> None:
-    """Both files, or neither."""
+    """Write both files, or neither."""
     with ExitStack() as files:
         if arguments.json is not None:
             from werrimbi_odom.files.text_files import replacing

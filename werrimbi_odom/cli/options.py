@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What several verbs share: options, each declared once, examples, and the reading of drives."""
+"""Shared by several verbs: options, each declared once, examples, and the reading of drives."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Found = TypeVar("Found")
 
 
 def number(kind: type[N], low: float, high: float, otherwise: str) -> Callable[[str], N]:
-    """What reads an option's number; `otherwise`: what to say of a text that is none in range."""
+    """Create a parser for an option's number; `otherwise`: message for other texts."""
 
     def read(text: str) -> N:
         with suppress(ValueError):
@@ -56,11 +56,11 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--report": _file("write a page with plots (.html), or the plots (.pdf, .png)"),
     "--force": {"action": "store_true", "help": "overwrite --out if it exists"},
 }
-"""As most verbs have them."""
+"""Options as most verbs use them."""
 
 
 def declare(parser: argparse.ArgumentParser, *names: str, **otherwise: Any) -> None:
-    """Give a verb some of these options, where wanted with other words."""
+    """Add some of these options to a verb, optionally with other settings."""
     for name in names:
         parser.add_argument(name, **{**OPTIONS[name], **otherwise})
 
@@ -72,18 +72,18 @@ def add_recording_arguments(
     required: bool = True,
     force: str = "",
 ) -> None:
-    """RUN..., --robot and how to read and judge them, --json and --report.
+    """Declare RUN..., --robot, the options for reading and evaluation, --json and --report.
 
     Parameters
     ----------
     holdout : bool
-        Offer --holdout too.
+        Include --holdout.
     report : bool
-        Offer --report.
+        Include --report.
     required : bool
-        Whether RUN and --robot must be given; where not, the verb asks for them itself.
+        Whether RUN and --robot are required; otherwise the verb checks this itself.
     force : str
-        What --force means to the verb beside what it means to all.
+        Additional meaning of --force for the verb.
     """
     declare(parser, "runs", nargs="+" if required else "*")
     if holdout:
@@ -143,12 +143,12 @@ def add_recording_arguments(
 
 
 def read_recordings(arguments: argparse.Namespace) -> Recordings:
-    """Read robot file, effects and runs; a bar on the terminal while it lasts.
+    """Read robot file, effects and runs, with a progress bar.
 
     Raises
     ------
     InputError
-        When something cannot be used, or a run is given twice.
+        If an input is not usable, or a run is given twice.
     """
     from werrimbi_odom.api.drives import refuse_circles
     from werrimbi_odom.cli.progress import share_done
@@ -177,7 +177,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
 def on_recordings(
     arguments: argparse.Namespace, words: str, work: Callable[[Recordings, Show], Found]
 ) -> tuple[Recordings, Found]:
-    """Read what was given and work on it, both under a bar; `words`: what the work is called."""
+    """Read the recordings and process them, both with a progress bar named `words`."""
     from werrimbi_odom.cli.progress import share_done
 
     given = read_recordings(arguments)
@@ -186,13 +186,13 @@ def on_recordings(
 
 
 def remark(source: RobotFile, *more: str) -> None:
-    """What is not used of a robot file, and more of that kind, on stderr."""
+    """Print what is not used of a robot file, and similar remarks, on stderr."""
     for words in (*(f"{source.path}: {each}" for each in source.remarks), *more):
         print(f"warning: {words}", file=sys.stderr)
 
 
 def how_of(arguments: argparse.Namespace) -> DriveOptions:
-    """The options that say how drives are read and judged."""
+    """Options for reading and evaluating drives."""
     from werrimbi_odom.files.recordings import DriveOptions
 
     topics = tuple(arguments.reference_topic or ())
@@ -210,12 +210,12 @@ def how_of(arguments: argparse.Namespace) -> DriveOptions:
 
 
 def read_effects(arguments: argparse.Namespace) -> Collection:
-    """All effects, those of --effects among them; warnings go to stderr.
+    """Find all effects, including those of --effects; warnings go to stderr.
 
     Raises
     ------
     InputError
-        When a file of --effects cannot be used.
+        If a file of --effects is not usable.
     """
     from werrimbi_odom.effects.collection import all_effects
 
@@ -248,16 +248,16 @@ EXAMPLES = {
     "simulate": ("simulate --out drives --hide random --seed 6", "simulate --list"),
     "explain": ("explain", "explain eccentric_left_wheel"),
 }
-"""Words behind `werrimbi`, by verb and kind."""
+"""Words after `werrimbi`, by verb and kind."""
 
 
 def epilog_of(verb: str) -> str:
-    """The examples of a verb, as they stand below its options."""
+    """Examples of a verb, for the end of its help."""
     return "\n".join(["example:", *(f"  werrimbi {words}" for words in EXAMPLES[verb])])
 
 
 class Formatter(argparse.HelpFormatter):
-    """Fills sentences; leaves examples as they are."""
+    """Wraps sentences; keeps the examples' line breaks."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         if text.startswith("example"):

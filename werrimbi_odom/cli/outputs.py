@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a verb reads and writes, looked at before it begins: for all verbs alike, by their options.
+"""Checks a verb's input and output files before it starts, for all verbs by their options.
 
-What could not be written at the end of long work is said at its beginning, and no file that is read
-is ever written over, not even with --force.
+An output that cannot be written is reported before long work and not after it. A file that is read
+is never overwritten, not even with --force.
 """
 
 from __future__ import annotations
@@ -28,22 +28,22 @@ if TYPE_CHECKING:
 READ = ("robot", "run", "runs", "holdout", "results", "after", "effects", "reference", "other")
 WRITTEN = ("out", "json", "report")
 FOLDERS = {"draft": "with --force", "simulate": "never"}
-"""Verbs whose --out is a folder, and when that may hold something already."""
+"""Verbs with a folder as --out, and when it may be non-empty."""
 REPLACED = ("odom",)
-"""Verbs whose --out is a table: it is replaced, as --json and --report are."""
+"""Verbs with a table as --out: it is replaced, as are --json and --report."""
 
 Place = str | tuple[int, int]
 
 
 def refuse_files(arguments: argparse.Namespace) -> None:
-    """Whether all that is to be written can be.
+    """Check that all outputs can be written.
 
     Raises
     ------
     InputError
-        When --out, --json or --report is (or leads to) a file that is read, or another output, or
-        cannot be written: a folder, in no folder, no permission, there already and not to be
-        overwritten, of an ending that no report has.
+        If --out, --json or --report is (or resolves to) an input or another output, or is not
+        writable: a folder, a missing parent folder, no permission, an existing file without
+        --force, an unknown file type for a report.
     """
     outputs = [(name, Path(value)) for name in WRITTEN if (value := getattr(arguments, name, None))]
     if not outputs:
@@ -68,7 +68,7 @@ def refuse_files(arguments: argparse.Namespace) -> None:
 
 
 def files_read(arguments: argparse.Namespace) -> Iterator[Path]:
-    """Files that a verb reads, and folders of which all files may be."""
+    """Files that a verb reads, and folders whose files it may read."""
     for name in READ:
         value = getattr(arguments, name, None) or ()
         yield from [value] if isinstance(value, Path) else value
@@ -80,7 +80,7 @@ def files_read(arguments: argparse.Namespace) -> Iterator[Path]:
 
 
 def _places(path: Path) -> Iterator[Place]:
-    """Where a path leads to in the end, by name and by number; of a folder, its files' too."""
+    """Resolved name and inode of a path; for a folder, also of its files."""
     from werrimbi_odom.files.text_files import place_of
 
     for each in (path, *(path.iterdir() if path.is_dir() else ())):
@@ -104,7 +104,7 @@ def _refuse_file(
         from werrimbi_odom.report.save import PICTURES, refuse_report
 
         refuse_report(path)
-        if path.suffix.lower() in PICTURES:  # a file for each figure: NAME.png, NAME-more.png
+        if path.suffix.lower() in PICTURES:  # one file per figure: NAME.png, NAME-more.png
             refuse_without("kaleido", option)
             for place, what in taken.items():
                 stem, kind = place_of(path.with_suffix("")), path.suffix
@@ -138,13 +138,13 @@ def _refuse_folder(
 
 
 def add_file_arguments(parser: argparse.ArgumentParser) -> None:
-    """--robot, --out, --json, --report and --force of a calibration."""
+    """Declare --robot, --out, --json, --report and --force of a calibration."""
     declare(parser, "--robot", help="robot file to start from")
     declare(parser, "--out", "--json", "--report", "--force")
 
 
 def write_and_tell(arguments: argparse.Namespace, result: Result[Any]) -> None:
-    """Files first: whoever reads the words may stop reading them (`| head`)."""
+    """Write the files first: the reader of the text may stop early (`| head`)."""
     written: list[Path] = []
     try:
         written = _write_asked(arguments, result)
@@ -154,7 +154,7 @@ def write_and_tell(arguments: argparse.Namespace, result: Result[Any]) -> None:
 
 
 def _write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Path]:
-    """The new robot file, if there is one, then JSON and page that were asked for; returns them."""
+    """Write the new robot file, if any, then JSON and page if requested; return the paths."""
     written = []
     if result.new_robot is not None:
         result.write_robot(arguments.out, force=arguments.force)
@@ -168,18 +168,18 @@ def _write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Pat
 
 
 def tell_written(written: Sequence[Path]) -> None:
-    """A line of what was written; none where nothing was."""
+    """Print the written paths in one line, if any."""
     if written:
         print(f"\nwritten: {', '.join(map(str, written))}")
 
 
 def write_json(path: Path, figures: Mapping[str, Any]) -> None:
-    """Write figures for programs; what is not finite is null.
+    """Write figures as JSON; values that are not finite become null.
 
     Raises
     ------
     InputError
-        When the file cannot be written.
+        If the file cannot be written.
     """
     from werrimbi_odom.files.text_files import replacing
     from werrimbi_odom.report.numbers import plain

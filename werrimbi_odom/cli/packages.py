@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Python packages that not every robot has: which verb needs which, said before its work."""
+"""Optional Python packages: which verb needs which, checked before its work."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EXTRAS = {
     "distributed": "cluster",
     "mujoco": "simulation",
 }
-"""Of the packages that are not always there, the extra that brings each."""
+"""Extra of this package that installs each optional package."""
 
 _FITS = ("scipy",)
 NEEDED = {
@@ -35,38 +35,38 @@ NEEDED = {
     "workbench": (*_FITS, "plotly", "nicegui"),
     "simulate": ("mujoco",),
 }
-"""By verb; what an option needs besides is said where that option is looked at."""
+"""Packages by verb; those of an option are checked where the option is."""
 
 
 def refuse_lacking(arguments: argparse.Namespace) -> None:
-    """Whether everything that a verb will import is there.
+    """Check that all packages of a verb are installed.
 
     Raises
     ------
     InputError
-        When it is not; the message says how to get it.
+        If one is missing; the message says how to install it.
     """
     needed = NEEDED.get(arguments.verb, ())
-    for name in reversed(needed):  # the last is of the extra that brings the others too
+    for name in reversed(needed):  # the extra of the last one installs the others too
         refuse_without(name, arguments.verb)
     if getattr(arguments, "fleet", None) is not None:
         refuse_without("threadpoolctl", "--fleet")
 
 
 def refuse_without(name: str, who: str) -> None:
-    """Whether one package is there.
+    """Check that a package is installed.
 
     Raises
     ------
     InputError
-        When it is not.
+        If it is missing.
     """
     if importlib.util.find_spec(name) is None:
         raise InputError(lacking(name, who))
 
 
 def lacking(name: str, who: str) -> str:
-    """What to say where a package is not there."""
+    """Message about a missing package."""
     extra = EXTRAS.get(name.partition(".")[0])
     wanted = f"'werrimbi_odom[{extra}]'" if extra else name
     return f"{who} needs the Python package {name}: pip install {wanted}"

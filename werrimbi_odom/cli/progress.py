@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bar on the terminal while something takes its time; elsewhere a line now and then."""
+"""A progress bar on a terminal; elsewhere an occasional line."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from importlib.util import find_spec
 from werrimbi_odom.progress import Show
 
 EVERY = 30.0
-"""Seconds from line to line where nobody looks at a bar."""
+"""Interval between lines without a terminal [s]."""
 
 
 @contextmanager
 def share_done(words: str) -> Iterator[Show]:
-    """A bar on stderr, to be told the share done and what is being done.
+    """Show a progress bar on stderr; yields a callback for the share done and the current work.
 
-    Where stderr is no terminal (a log, a service), a line when the work has taken long, and again.
+    Without a terminal (a log, a service), a line is printed after `EVERY` seconds, repeatedly.
     """
     if not sys.stderr.isatty() or find_spec("rich") is None:
         yield _now_and_then(words)
@@ -34,7 +34,7 @@ def share_done(words: str) -> Iterator[Show]:
 
 
 def _now_and_then(title: str) -> Show:
-    """Tells a line on stderr each time that `EVERY` seconds have gone by."""
+    """Create a callback that prints a line on stderr every `EVERY` seconds."""
     told = time.monotonic()
 
     def show(share: float, words: str) -> None:

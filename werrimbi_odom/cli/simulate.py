@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi simulate`: drives of a robot in a physics engine, with an effect hidden in it."""
+"""`werrimbi simulate`: drives of a robot in a physics engine, with a hidden effect."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the session; 0 on success."""
+    """Write the session; return 0."""
     from werrimbi_odom import simulation
 
     if arguments.list:
@@ -126,7 +126,7 @@ def _in_the_field(
     seed: int,
     folder: Path,
 ) -> dict[str, object]:
-    """Write a drive as a bag; what of it nobody told the robot."""
+    """Write a drive as a bag; return its ground truth, for truth.json."""
     from werrimbi_odom import simulation
 
     number = zlib.crc32(folder.name.encode() + folder.parent.name.encode())
@@ -138,7 +138,7 @@ def _in_the_field(
 
 
 def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:
-    """What was asked for with --hide, its strengths drawn where they were not given."""
+    """Effects of --hide; strengths that are not given are drawn at random."""
     from werrimbi_odom.simulation import StrengthError, UnknownEffectError, wished
 
     hidden = []
@@ -172,7 +172,7 @@ def _truth(hidden: Sequence[Hidden], seed: int, robot: object) -> dict[str, obje
 
 @contextmanager
 def _new_folder(out: Path) -> Iterator[Path]:
-    """A folder beside `out` to fill; it becomes `out` when all went well, and vanishes if not."""
+    """Yield a temporary folder beside `out`; it is renamed to `out` on success, else deleted."""
     target = out.absolute()
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -183,7 +183,7 @@ def _new_folder(out: Path) -> Iterator[Path]:
         yield folder
         umask = os.umask(0)
         os.umask(umask)
-        folder.chmod(0o777 & ~umask)  # mkdtemp's folders are for their owner alone
+        folder.chmod(0o777 & ~umask)  # mkdtemp's folders are private to their owner
         folder.replace(target)
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror}") from error

@@ -40,12 +40,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, compare, serve until interrupted; 0 then."""
+    """Read, compare, serve until interrupted; return 0."""
     from werrimbi_odom.workbench.job import Job, Open
 
     job = Job(Open())
-    job.start()  # before all else, so that it imports while the drives are read
-    # It would keep a folder .nicegui where the command is run, and ask the network for a relay.
+    job.start()  # first, so that it imports while the drives are read
+    # Otherwise NiceGUI creates a folder .nicegui where the command runs, and looks for Redis.
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
     os.environ.pop("NICEGUI_REDIS_URL", None)
     try:
@@ -68,12 +68,12 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.json is not None:
             _tell(arguments.json, address, shared)
 
-    serve(opening, at, ready, opened)  # server and page come up while the drives are compared
+    serve(opening, at, ready, opened)  # server and page start while the drives are compared
     return 0
 
 
 def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Opening:
-    """What is to be opened and compared once, for all who look."""
+    """The comparison to open first, shared by all clients."""
     from werrimbi_odom.workbench.saving import Target, beside
     from werrimbi_odom.workbench.tab import Opening
 
@@ -83,7 +83,7 @@ def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Open
 
 
 def _tell(path: Path, address: str, shared: Shared) -> None:
-    """For programs: where the page is, and the error that it begins with."""
+    """Write the page's address and its first errors as JSON, for programs."""
     found = {
         "address": address,
         "out": str(shared.target.path),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bag (a rosbag2 folder, a single .mcap, .db3 or ROS 1 .bag) opened for reading, without ROS."""
+"""Opens a bag (a rosbag2 folder, a single .mcap, .db3 or ROS 1 .bag) for reading, without ROS."""
 
 from __future__ import annotations
 
@@ -21,16 +21,17 @@ _BEGIN = (b"\x89MCAP0", b"SQLite format 3", b"#ROSBAG V")
 
 
 class Topic(NamedTuple):
-    """A topic of a bag that has messages."""
+    """A topic of a bag, with at least one message."""
 
     name: str
     kind: str
-    """Message type, as in `sensor_msgs/msg/JointState`; of several, all of them, and nobody's."""
+    """Message type, as in `sensor_msgs/msg/JointState`; if there are several, all of them
+    joined."""
     messages: int
 
 
 def topic_in_words(topic: Topic) -> str:
-    """Its name and its type."""
+    """Name and type of a topic."""
     return f"{topic.name} ({topic.kind})"
 
 
@@ -39,7 +40,7 @@ class BagMessage(NamedTuple):
 
     topic: str
     received: int
-    """When the recorder got it [ns]."""
+    """Time of recording [ns]."""
     content: Any
 
 
@@ -50,22 +51,22 @@ class Bag:
     path: Path
     topics: tuple[Topic, ...]
     damage: tuple[str, ...]
-    """What of it is spoilt and was got over, in words for the user."""
+    """Damage that was worked around, in words for the user."""
     _raw: Callable[[Sequence[str]], Iterator[Raw]]
     _types: Types
 
     def messages(self, topics: Sequence[str]) -> Iterator[BagMessage]:
-        """Messages of some topics, in the order in which they were received.
+        """Yield the messages of some topics, in order of recording.
 
         Raises
         ------
         InputError
-            When a message cannot be read.
+            If a message cannot be read.
         """
         try:
             for raw in self._raw(topics):
                 yield BagMessage(raw.topic, raw.received, self._read(raw))
-        except Exception as error:  # a damaged bag raises anything, from struct to zstd
+        except Exception as error:  # a damaged bag may raise anything, from struct to zstd
             raise _unreadable(self.path, error) from error
 
     def _read(self, raw: Raw) -> Any:
@@ -79,7 +80,7 @@ class Bag:
             ) from error
 
     def firsts(self, topics: Sequence[str]) -> dict[str, Any]:
-        """First message of each of some topics, by its name; of those that can be read."""
+        """First readable message of each topic, by topic name."""
         found = {}
         for topic in topics:
             with suppress(InputError):
@@ -91,14 +92,14 @@ class Bag:
 
 @contextmanager
 def opened_bag(path: Path) -> Iterator[Bag]:
-    """Open a bag, and close it at the end.
+    """Open a bag; it is closed at the end.
 
-    One that was cut off is read up to there, which its `damage` says.
+    A truncated bag is read up to the cut, and its `damage` says so.
 
     Raises
     ------
     InputError
-        When rosbags is not installed, or the bag cannot be opened.
+        If rosbags is not installed, or the bag cannot be opened.
     """
     try:
         from rosbags.rosbag1 import Reader as Reader1
@@ -152,7 +153,7 @@ def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
 
 
 def _scanned(path: Path, ros1: bool) -> Bag | None:
-    """A bag that was cut off, read up to there; None where nothing of it can be read."""
+    """Read a truncated bag up to the cut; None if nothing is readable."""
     files = _files(path)
     counts: Counter[tuple[str, str]] = Counter()
     definitions: dict[str, str] = {}
@@ -173,7 +174,7 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
 
 
 def _is_cut_off(path: Path) -> bool:
-    """Whether a file of a bag is spoilt, or metadata were never written; not if these are."""
+    """Whether a file of a bag is damaged or its metadata were never written."""
     from rosbags.rosbag2 import Reader
 
     if not path.is_dir() or not (path / "metadata.yaml").exists():
@@ -188,7 +189,7 @@ def _is_cut_off(path: Path) -> bool:
 
 
 def _files(path: Path) -> list[Path]:
-    """Files of a bag, in the order in which they were recorded."""
+    """Files of a bag, in order of recording."""
     if not path.is_dir():
         return [path]
     found = [each for each in path.iterdir() if each.suffix in SUFFIXES]
@@ -196,9 +197,9 @@ def _files(path: Path) -> list[Path]:
 
 
 def _refuse_repeated(folder: Path) -> None:
-    """A file that the metadata name a thousand times would be read a thousand times.
+    """Raise if the metadata name a file repeatedly: it would be read as often.
 
-    What else is wrong with the metadata, rosbags says.
+    Other faults of the metadata are reported by rosbags.
     """
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
@@ -222,7 +223,7 @@ def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
     hint = "a recording cut off in mid-file: `mcap recover`, or `ros2 bag reindex`"
-    with suppress(OSError), path.open("rb") as file:  # a folder is none
+    with suppress(OSError), path.open("rb") as file:  # a folder cannot be opened
         if not file.read(16).startswith(_BEGIN):
             hint = "it does not begin as an MCAP, SQLite or ROS 1 bag does"
     return InputError(f"{path} cannot be read as a bag: {_in_a_line(error)} ({hint})")
@@ -233,12 +234,12 @@ def _in_a_line(error: Exception) -> str:
 
 
 def stamp_of(message: BagMessage, header: Any = None) -> float:
-    """Stamp of the header [s]; where that is zero, when the message was received."""
+    """Stamp of the header [s]; the time of recording if that is zero."""
     stamp = (message.content if header is None else header).header.stamp
     nanoseconds = stamp.sec * 10**9 + stamp.nanosec
     return float((nanoseconds or message.received) / 1e9)
 
 
 def left_out_words(left_out: Counter[str]) -> list[str]:
-    """How many messages were left out, and why."""
+    """Numbers of skipped messages, with the reason."""
     return [f"left out: {count} messages {why}" for why, count in left_out.items() if count]

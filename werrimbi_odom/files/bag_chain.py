@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Chains of transforms, composed: poses of map -> odom -> base_link, and where a sensor sits.
+"""Composes chains of transforms: poses of map -> odom -> base_link, and the pose of a sensor.
 
-Poses are composed where they were measured; a sensor sits where transforms that do not change say.
+Poses are composed at the times of measurement; the pose of a sensor comes from constant transforms.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ class _Moved(NamedTuple):
 
 
 class ChainCollector:
-    """Takes messages with transforms, one at a time, and gives the poses at the end.
+    """Collects transforms, and computes the poses at the end.
 
-    A localiser tells where the odometry's start is on its map, now and then; between two such
-    corrections the chain goes on as the wheels do. So it is composed at the stamps at which what
-    was measured changes, and there alone.
+    A localiser corrects the odometry's origin on its map from time to time; between two corrections
+    the chain moves as the wheels do. So the chain is composed only at the stamps at which a
+    measured transform changes.
     """
 
     def __init__(self, path: Path, chain: Chain) -> None:
@@ -52,13 +52,13 @@ class ChainCollector:
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """Whose messages it takes."""
+        """Topics of the messages to collect."""
         return tuple(
             dict.fromkeys((self._chain.topic, *(edge.topic for edge in self._chain.steps)))
         )
 
     def take(self, message: BagMessage) -> None:
-        """Take a message of one of the topics."""
+        """Add a message of one of the topics."""
         for each in message.content.transforms:
             found = self._found.get((frame(each.header.frame_id), frame(each.child_frame_id)))
             if found is not None:
@@ -67,12 +67,12 @@ class ChainCollector:
                 found.extend((time, where.x, where.y, where.z, turn.x, turn.y, turn.z, turn.w))
 
     def reference(self) -> Collected:
-        """The reference, and in words the frames it is about.
+        """The reference, and its frames in words.
 
         Raises
         ------
         InputError
-            When the transforms were never there at one time.
+            If the transforms were never available at the same time.
         """
         moved = [self._moved(edge) for edge in self._chain.steps]
         time = self._stamps(moved)
@@ -92,8 +92,8 @@ class ChainCollector:
         if measured and len(moved) > len(measured):
             names = " and ".join(f"{each.parent} -> {each.child}" for each in measured)
             told += f", composed at each change of {names}"
-            # A localiser corrects itself little by little: its error at one correction is much
-            # that of the one before.
+            # A localiser corrects itself gradually, so its errors at successive corrections are
+            # correlated.
             kind = "local_map"
         x, y = where[:, 0].copy(), where[:, 1].copy()
         return Collected(Reference(time, x, y, yaw, kind=kind), told)
@@ -110,13 +110,13 @@ class ChainCollector:
         return _Moved(table[:, 0], table[:, 1:4], Rotation.from_quat(table[:, 4:]))
 
     def _stamps(self, moved: list[_Moved]) -> Floats:
-        """When the chain was measured [s]: of what changes most seldom, its changes."""
+        """Times of measurement [s]: the changes of the transform that changes least often."""
         steps = self._chain.steps
         chosen = self._chain.measures or [each for each in steps if not each.static] or steps
         told = (each for edge, each in zip(steps, moved, strict=True) if edge in chosen)
         each = min(told, key=lambda each: each.time.size)
         if len(self._chain.measures) == sum(not edge.static for edge in steps):
-            return each.time  # nothing of the wheels is in it
+            return each.time  # the chain does not involve the wheels
         values = np.concatenate([each.where, each.turn.as_matrix()[:, :, 0]], axis=1)
         new: NDArray[np.bool_] = np.ones(each.time.size, dtype=np.bool_)
         new[1:] = (np.abs(np.diff(values, axis=0)) > MOVED).any(axis=1)
@@ -126,7 +126,7 @@ class ChainCollector:
 def _composed(
     steps: Iterable[tuple[Floats, Rotation]], backwards: Sequence[bool]
 ) -> tuple[Floats, Rotation, Floats]:
-    """Where the last frame of a chain is in the first, (n, 3), how it is turned, and its yaw."""
+    """Position (n, 3), rotation and yaw of the last frame of a chain in its first."""
     where, turn = np.zeros((1, 3)), None
     for (step, rotated), back in zip(steps, backwards, strict=True):
         if back:
@@ -140,7 +140,7 @@ def _composed(
 
 
 def _at(moved: _Moved, time: Floats) -> tuple[Floats, Any]:
-    """Translation (n, 3) and rotation at some instants, between those that are known."""
+    """Interpolate translation (n, 3) and rotation at some instants."""
     from scipy.spatial.transform import Rotation, Slerp
 
     if moved.time.size == 1:
@@ -151,22 +151,22 @@ def _at(moved: _Moved, time: Floats) -> tuple[Floats, Any]:
 
 
 LEVEL = 0.985
-"""Cosine of 10 degrees. A lidar that is tilted by more sees walls 1.5 % too far away, and the floor
-within 6 m if it sits 1 m high."""
+"""Cosine of 10 degrees. A lidar with a larger tilt measures walls 1.5 % too far away, and at a
+height of 1 m sees the floor within 6 m."""
 
 
 class Mount(NamedTuple):
-    """A level sensor on the robot's base: ahead, left [m], turned [rad]."""
+    """Pose of a level sensor on the robot's base: ahead, left [m], rotation [rad]."""
 
     x: float
     y: float
     yaw: float
     inverted: bool
-    """It hangs upside down: what it sees to its left is to the right."""
+    """Mounted upside down, so left and right are swapped."""
 
 
 def mounting_chain(edges: Sequence[Edge], base: str, sensor: str) -> Chain | None:
-    """Fixed transforms from the robot's base to a sensor's frame; None where none lead there."""
+    """Constant transforms from the robot's base to a sensor's frame; None if there are none."""
     fixed = [edge for edge in edges if edge.static or not edge.changes]
     frames = dict.fromkeys([base, *(f for edge in fixed for f in (edge.parent, edge.child))])
     bases = [each for each in frames if each == base or is_base(each)]
@@ -178,7 +178,7 @@ def mounting_chain(edges: Sequence[Edge], base: str, sensor: str) -> Chain | Non
 
 
 class MountingCollector:
-    """Takes messages with transforms, and gives where the sensor sits at the end."""
+    """Collects transforms, and computes the mounting pose of the sensor at the end."""
 
     def __init__(self, steps: Chain) -> None:
         self._chain = steps
@@ -186,18 +186,18 @@ class MountingCollector:
         self.topics = tuple(dict.fromkeys(edge.topic for edge in steps.steps))
 
     def take(self, message: BagMessage) -> None:
-        """Take a message of one of the topics."""
+        """Add a message of one of the topics."""
         for each in message.content.transforms:
             key = frame(each.header.frame_id), frame(each.child_frame_id)
             self._found[key] = each.transform
 
     def mount(self, place: str) -> Mount:
-        """Where the sensor sits.
+        """Pose of the sensor on the base.
 
         Raises
         ------
         InputError
-            When it does not lie level, or a transform is none.
+            If it is not level, or a transform is invalid.
         """
         from scipy.spatial.transform import Rotation
 

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a bag holds: what tells the wheels, and what measures the robot, independent of them or not.
+"""What a bag contains: wheel data, and references, independent of the wheels or not.
 
-`contents_of(bag)` reads a bag once and gives `Contents`: `wheels` (each a `Wheels`: what may be
-given to --ticks-topic) and `references` (each a `Measured`: what may be given to --reference-topic,
-with what it measures, its frames, whether it is independent of the wheels, and why). Nothing is
-judged from numbers here: whether poses follow the wheels too closely to be measured is asked where
-they are compared.
+`contents_of(bag)` reads a bag once and returns `Contents`: `wheels` (each a `Wheels`: a possible
+--ticks-topic) and `references` (each a `Measured`: a possible --reference-topic, with what it
+measures, its frames, whether it is independent of the wheels, and why). Nothing is decided from
+numerical values here; whether poses follow the wheels too closely to be measurements is tested
+where they are compared.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_fro
 
 Measures = Literal["poses", "positions", "yaw"]
 Gives = Literal["counts", "positions", "velocities", "odometry"]
-"""Of wheels: counters, angles of joints, speeds of joints alone, or the firmware's own poses."""
+"""Kinds of wheel data: counters, joint angles, joint speeds only, or the firmware's own poses."""
 
 IMU = "sensor_msgs/msg/Imu"
 SCAN = "sensor_msgs/msg/LaserScan"
@@ -37,12 +37,12 @@ PAIRS = {
     "std_msgs/msg/Int16": 16,
     "duckietown_msgs/msg/WheelEncoderStamped": 32,
 }
-"""Counters of one wheel, with the width at which they wrap; 0: they never do."""
+"""Message types with the counter of one wheel, and its wrap width; 0: it never wraps."""
 MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
 ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int16MultiArray": 16}
-"""The same of both wheels, as values without names."""
+"""The same for both wheels, as values without names."""
 FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
-"""They may hold counters too, but mostly commands: read where they are asked for."""
+"""They may hold counters but usually hold commands; read on request only."""
 POSES = {
     ODOMETRY: "poses",
     "geometry_msgs/msg/PoseStamped": "poses",
@@ -53,75 +53,75 @@ POSES = {
     IMU: "yaw",
     SCAN: "poses",
 }
-"""Messages that measure the robot, transforms of many frames apart."""
+"""Message types that measure the robot, except transforms of many frames."""
 
 
 @dataclass(frozen=True)
 class Wheels:
-    """A topic, or two, that tell how the wheels turned."""
+    """A topic, or two, with wheel data."""
 
     name: str
-    """What is given to --ticks-topic: TOPIC, or LEFT,RIGHT."""
+    """Value for --ticks-topic: TOPIC, or LEFT,RIGHT."""
     kind: str
     """Message type, as in `sensor_msgs/msg/JointState`."""
     messages: int
     gives: Gives
     joints: tuple[str, ...] = ()
-    """Names of the joints, of a JointState."""
+    """Names of the joints in a JointState."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Something in a bag that measures the robot, or seems to."""
+    """A topic or chain of transforms that measures the robot, or seems to."""
 
     name: str
-    """What is given to --reference-topic: TOPIC, or /tf:PARENT:CHILD."""
+    """Value for --reference-topic: TOPIC, or /tf:PARENT:CHILD."""
     kind: str
     messages: int
-    """Of a chain of transforms: those of the transform that measures."""
+    """For a chain of transforms, the number of messages of the measured transform."""
     measures: Measures
     parent: str
-    """Frame that it is told in; "" where it says none."""
+    """Frame in which it is given; "" if not stated."""
     child: str
-    """Frame that it is about; "" where it says none."""
+    """Frame that it describes; "" if not stated."""
     independent: bool
-    """Whether, by name and frames, it does not come from the wheels."""
+    """Whether it is independent of the wheels, by name and frames."""
     why: str
-    """Why it is independent, or why not: the end of a sentence."""
+    """Reason for `independent`: the end of a sentence."""
     chain: Chain | None = None
-    """Of transforms: what is composed."""
+    """Transforms to compose."""
 
 
 @dataclass(frozen=True)
 class Contents:
-    """What a bag holds."""
+    """Contents of a bag."""
 
     path: Path
     topics: tuple[Topic, ...]
-    """All that have messages."""
+    """All topics with messages."""
     wheels: tuple[Wheels, ...]
-    """What can be read as wheels; the firmware's odometry last."""
+    """Sources of wheel data; the firmware's odometry last."""
     references: tuple[Measured, ...]
-    """What measures the robot or seems to, independent ones first."""
+    """References, real or apparent; independent ones first."""
     edges: tuple[Edge, ...]
     """All transforms between frames."""
 
     @property
     def independent(self) -> tuple[Measured, ...]:
-        """References that do not come from the wheels."""
+        """References that are independent of the wheels."""
         return tuple(each for each in self.references if each.independent)
 
 
 def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
-    """What an open bag holds.
+    """Analyse an open bag.
 
     Parameters
     ----------
     base
-        The robot's frame, as `base_frame_id` of its file; "" for what is called a base.
+        The robot's frame, as `base_frame_id` of its file; "" to detect it by name.
     choosing
-        Whether a reference is still to be chosen: those that the odometry has a hand in are last
-        then, and to tell them takes another pass over their messages.
+        Whether a reference still has to be chosen. References that contain odometry are then placed
+        last; detecting them takes another pass over their messages.
     """
     edges = EdgeCollector()
     names = [each.name for each in bag.topics if each.kind in TRANSFORMS]
@@ -149,7 +149,8 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         replace(each, why=f"{each.why}; {made_of[each.name]}") if each.name in made_of else each
         for each in references
     ]
-    # Scans last, for a localiser has made poses of them; stable: else in the bag's order.
+    # Scans last, since a localiser may have made poses of them. The sort is stable: otherwise the
+    # bag's order.
     references.sort(
         key=lambda each: (not each.independent, each.kind == SCAN, each.name in made_of)
     )

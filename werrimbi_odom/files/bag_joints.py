@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Wheels from JointState messages: angles, counts, or speeds, integrated; several on a side."""
+"""Wheels from JointState messages: angles, counts, or integrated speeds; several per side."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ UNTURNED = "the angles begin anew at each turn; they are unwrapped"
 
 
 class JointsCollector:
-    """Wheels among the joints of a robot."""
+    """Collects the wheels among the joints of a robot."""
 
     def __init__(self, path: Path, topic: str, robot_file: RobotFile) -> None:
         self._place = f"{path}: {topic}"
@@ -43,7 +43,7 @@ class JointsCollector:
         self._left_out: Counter[str] = Counter()
 
     def take(self, message: BagMessage) -> None:
-        """Take a message."""
+        """Add a message."""
         content = message.content
         if content.name != self._names or not self._places:
             self._names = list(content.name)
@@ -62,7 +62,7 @@ class JointsCollector:
             self._speeds.add(stamp_of(message), content.velocity, self._places)
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """All of them, and in words what was left out."""
+        """All ticks, and the skipped messages in words."""
         time, positions = self._angles.arrays(len(self._wheels))
         words = left_out_words(self._left_out)
         if self._speeds_tell(positions):
@@ -78,7 +78,7 @@ class JointsCollector:
         return Ticks(time, left, right), words
 
     def _speeds_tell(self, positions: Floats) -> bool:
-        """Whether there are speeds, and no angles or none that ever change."""
+        """Whether to use speeds: there are some, and angles are absent or constant."""
         speeds = self._speeds.arrays(len(self._wheels))[1]
         if speeds.size == 0 or positions.shape[0] > speeds.shape[0]:
             return False
@@ -116,39 +116,39 @@ class _Rows:
         self._values.extend(float(values[place]) for place in places)
 
     def arrays(self, wheels: int) -> tuple[Floats, Floats]:
-        """Shapes (n,) and (n, wheels)."""
+        """Arrays of shapes (n,) and (n, wheels)."""
         return np.array(self._time), np.array(self._values).reshape(-1, wheels)
 
 
 def _begin_anew(angles: Floats) -> bool:
-    """Whether angles stay within a turn and leap by most of one: a driver that says them so."""
+    """Whether angles stay within a turn and jump by most of one, as some drivers publish them."""
     with np.errstate(invalid="ignore"):
         within = np.nanmax(np.abs(angles), initial=0.0) <= 2.0 * math.pi + 1e-6
         return bool(within and (np.abs(np.diff(angles, axis=0)) > 1.5 * math.pi).any())
 
 
 def wheel_names(robot_file: RobotFile, side: str) -> tuple[str, ...]:
-    """Joints of a side."""
+    """Joint names of a side."""
     return tuple(robot_file.values[f"{side}_wheel_names"])  # type: ignore[arg-type]
 
 
 def side_counts(counts: Floats, per_revolution: float, bits: int) -> Floats:
-    """Mean counter of a side's wheels, each wrapped and reset on its own.
+    """Mean counter of a side's wheels, with wraps and resets handled per wheel.
 
     Parameters
     ----------
     counts : ndarray, shape (n, wheels)
     per_revolution : float
-        Counts of one turn.
+        Counts per turn.
     bits : int
-        Width at which the counters wrap; 0: they do not.
+        Width at which the counters wrap; 0: they do not wrap.
 
     Returns
     -------
     ndarray, shape (n,)
-        NaN where any wheel's count is not finite. A wheel that alone falls to near zero (its
-        driver was restarted) is taken to have rolled like the others; where all of them fall the
-        mean falls too, for the encoder model to judge.
+        NaN where any wheel's count is not finite. If a single wheel falls to near zero (its driver
+        restarted), it is assumed to have rolled like the others. If all of them fall, the mean
+        falls too, and the encoder model detects the reset.
     """
     if counts.shape[1] == 1:
         return counts[:, 0]
@@ -169,8 +169,8 @@ def _counted_on(counts: Floats, per_revolution: float, bits: int) -> Floats:
         rolled = np.where(fell, np.nan, steps)[some_fell]
         mean = np.nanmean(rolled, axis=1, keepdims=True)
         steps[some_fell] = np.where(np.isnan(rolled), mean, rolled)
-    # What the counters hide, summed since all of them last fell: zero, exactly, where nothing odd
-    # happened, which sums of steps would not be.
+    # Offset of the counters due to wraps and resets, summed since all wheels last fell. It is
+    # exactly zero without such events; a sum of steps would have rounding errors.
     hidden = np.zeros_like(counts)
     np.cumsum(np.where(all_fell[:, None], 0.0, steps - raw), axis=0, out=hidden[1:])
     since = np.maximum.accumulate(np.append(0, np.arange(1, len(counts)) * all_fell))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Poses from the scans of a lidar, matched as they are read: no scan is kept."""
+"""Poses from a lidar, by matching scans as they are read; no scan is stored."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ WHY: dict[Flag, str] = {
     "unsettled": "two places fitted alike",
     "fast": "a place farther away than a robot drives",
 }
-"""Why a scan is matched with none, as the end of a sentence."""
+"""Reasons why a scan is not matched, as the end of a sentence."""
 
 _ORDERS: dict[Order, str] = {
     "first to last": "from the first to the last",
@@ -37,10 +37,10 @@ _ORDERS: dict[Order, str] = {
 
 
 class LidarCollector:
-    """Takes messages of scans, and of transforms, and gives the poses of the base at the end."""
+    """Collects scans and transforms, and computes the poses of the base at the end."""
 
     def __init__(self, path: Path, source: Measured, mounting: Chain | None) -> None:
-        """Chain `mounting` leads from the robot's base to the lidar; None where none is told."""
+        """Chain `mounting` leads from the robot's base to the lidar; None if unknown."""
         self._place = f"{path}: {source.name}"
         self._name = source.name
         self._frame = source.child
@@ -51,7 +51,7 @@ class LidarCollector:
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
 
     def take(self, message: BagMessage) -> None:
-        """Take a message of one of the topics."""
+        """Add a message of one of the topics."""
         if message.topic != self._name:
             assert self._mounting is not None
             self._mounting.take(message)
@@ -70,12 +70,12 @@ class LidarCollector:
         self._matcher.take(sweep)
 
     def reference(self) -> Collected:
-        """The reference, in words what it is, and where it is cut.
+        """The reference, its description in words, and where it is cut.
 
         Raises
         ------
         InputError
-            When the scans do not hold where the robot was.
+            If the scans do not determine the robot's path.
         """
         found = self._matcher.path()
         if found.time.size == 0:
@@ -92,8 +92,8 @@ class LidarCollector:
                 f"{'all at one instant' if self._matcher.at_once else 'the other way round'}"
             )
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
-        # Not local_map: in a room the map walks by less than a match errs (docs/scans.md), and a
-        # wander that is fitted takes what a lidar mounted askew does for its own.
+        # Not local_map: in a room the map drifts by less than the error of a match (docs/scans.md),
+        # and a fitted drift would absorb the effect of a misaligned lidar.
         reference = Reference(
             found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute", own_axes=True
         )
@@ -118,12 +118,12 @@ def _beside(length: float, one: str, other: str) -> str:
 
 
 def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
-    """Poses of the base (n, 3), begun at the origin, and their sigmas (n,), from the lidar's."""
+    """Poses of the base (n, 3), starting at the origin, and their sigmas (n,), from the lidar's."""
     x, y, yaw = found.poses.T
     if mount.inverted:
         y, yaw = -y, -yaw
     sits = mount.x + 1j * mount.y
-    lever = sits * np.exp(1j * yaw)  # both begin at zero: the base has turned as the lidar has
+    lever = sits * np.exp(1j * yaw)  # both yaws start at zero: the base turns as the lidar does
     base = sits + (x + 1j * y) * np.exp(1j * mount.yaw) - lever
     variance = np.diagonal(found.covariances, axis1=1, axis2=2)
     sigma_yaw = np.sqrt(variance[:, 2])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Wheels from a driver that publishes nothing but its odometry, turned back into wheel travel."""
+"""Wheel travel reconstructed from odometry, for drivers that publish nothing else."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FROM_TWIST = "its poses never change, so its twist was integrated"
 
 
 class OdometryTurnedBack:
-    """The wheels that would have made some odometry."""
+    """Collects odometry, and computes the wheel counts that would produce it."""
 
     def __init__(self, path: Path, topic: str, robot_file: RobotFile) -> None:
         self._place = f"{path}: {topic}"
@@ -36,7 +36,7 @@ class OdometryTurnedBack:
         self._twists = array("d")
 
     def take(self, message: BagMessage) -> None:
-        """Take a message."""
+        """Add a message."""
         content = message.content
         self._time.append(stamp_of(message))
         self._poses.extend(planar(content.pose.pose.position, content.pose.pose.orientation))
@@ -44,7 +44,7 @@ class OdometryTurnedBack:
         self._twists.extend((float(twist.linear.x), float(twist.angular.z)))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """Counts of both wheels, from zero, and in words how they were made."""
+        """Counts of both wheels, from zero, and the method in words."""
         time = np.array(self._time)
         x, y, yaw = np.array(self._poses).reshape(-1, 3).T
         speed, rate = np.array(self._twists).reshape(-1, 2).T
@@ -71,9 +71,9 @@ class OdometryTurnedBack:
 
 
 def _driven(x: Floats, y: Floats, yaw: Floats) -> tuple[Floats, Floats]:
-    """Way of the axle's midpoint, backwards negative, and turn up to each pose.
+    """Cumulative path of the axle's midpoint, backwards negative, and turn at each pose.
 
-    Between two poses the robot drove an arc, whose length its chord and its turn tell.
+    Between two poses the robot drove an arc; its length follows from chord and turn.
     """
     steps = np.diff(x) + 1j * np.diff(y)
     turns: NDArray[np.float64] = np.angle(np.exp(1j * np.diff(yaw)))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference from the messages of a bag: poses, transforms, fixes, or a gyro, integrated."""
+"""A reference from the messages of a bag: poses, transforms, fixes, or an integrated gyro."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ NAN = math.nan
 
 
 LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
-"""What localisers publish."""
+"""Message type of localisers."""
 
 
 class _Row(NamedTuple):
     frames: tuple[str, str]
-    """Parent and child."""
+    """Parent and child frame."""
     values: tuple[float, float, float, float, float, float]
     """Stamp, x, y, yaw, and the two sigmas."""
 
@@ -42,12 +42,12 @@ def kinds_in_words() -> str:
 
 
 class ReferenceCollector:
-    """Takes messages, one at a time, and gives the reference at the end."""
+    """Collects messages, and computes the reference at the end."""
 
     def __init__(
         self, path: Path, source: Measured, robot_file: RobotFile, child: str = ""
     ) -> None:
-        """Frame `child` is what the reference is about, where messages hold several."""
+        """`child` is the frame of interest, if messages contain several."""
         self._place = f"{path}: {source.name}"
         self._child = child
         self.topics = (source.name,)
@@ -58,7 +58,7 @@ class ReferenceCollector:
         self._forces = array("d")
 
     def take(self, message: BagMessage) -> None:
-        """Take a message of the source's topic."""
+        """Add a message of the source's topic."""
         if self._source.kind == IMU and message.content.linear_acceleration_covariance[0] != -1.0:
             force = message.content.linear_acceleration
             self._forces.extend((float(force.x), float(force.y), float(force.z)))
@@ -66,12 +66,12 @@ class ReferenceCollector:
             self._found.setdefault(row.frames, array("d")).extend(row.values)
 
     def reference(self) -> Collected:
-        """The reference, and in words the frames it is about.
+        """The reference, and its frames in words.
 
         Raises
         ------
         InputError
-            When nothing was measured, or several frames are there and none is named.
+            If nothing was measured, or there are several frames and none is named.
         """
         parent, child = self._frames()
         table, mounted = np.array(self._found[parent, child]).reshape(-1, 6), ""
@@ -89,9 +89,9 @@ class ReferenceCollector:
         told = f"{told}, {mounted}" if mounted else told
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
         if self._source.kind == LOCALISED and parent == "map":
-            kind = "local_map"  # AMCL, SLAM: what they err by wanders
+            kind = "local_map"  # AMCL, SLAM: their errors drift
         if self._source.kind == FIX:
-            kind = "local_map"  # air and echoes: what satellites err by lasts for a minute
+            kind = "local_map"  # atmosphere and multipath: errors persist for a minute
         return Collected(Reference(time, x, y, yaw, *sigmas, kind=kind), told)
 
     def _frames(self) -> tuple[str, str]:
@@ -109,15 +109,15 @@ class ReferenceCollector:
 
 
 def _yaw(q: Any) -> float:
-    """Heading of a quaternion; NaN where it is none."""
+    """Yaw of a quaternion; NaN if it is invalid."""
     squared = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w
-    if not 0.5 < squared < 2.0:  # not a rotation: (0, 0, 0, 0) says that nothing was measured
+    if not 0.5 < squared < 2.0:  # not a rotation: (0, 0, 0, 0) marks a missing measurement
         return NAN
     return math.atan2(2.0 * (q.w * q.z + q.x * q.y), squared - 2.0 * (q.y * q.y + q.z * q.z))
 
 
 def planar(point: Any, orientation: Any) -> tuple[float, float, float]:
-    """Pose on the floor; NaN where a part of it is not finite."""
+    """Pose on the floor; NaN where a component is not finite."""
     x, y = float(point.x), float(point.y)
     if not (math.isfinite(x) and math.isfinite(y)):
         x = y = NAN
@@ -131,7 +131,7 @@ def _of_pose(message: BagMessage) -> Iterator[_Row]:
 
 
 def _of_odometry(message: BagMessage) -> Iterator[_Row]:
-    """Its covariance is left alone: it grows along the way, and says nothing of a single pose."""
+    """The covariance is ignored: it grows along the path and does not describe a single pose."""
     content = message.content
     frames = (frame(content.header.frame_id), frame(content.child_frame_id))
     measured = planar(content.pose.pose.position, content.pose.pose.orientation)
@@ -148,7 +148,7 @@ def _of_pose_with_covariance(message: BagMessage) -> Iterator[_Row]:
 
 
 def _deviation(variance: float) -> float:
-    """Zero is how a publisher says that it does not know."""
+    """Standard deviation of a variance; publishers write zero for unknown."""
     return math.sqrt(variance) if 0.0 < variance < math.inf else NAN
 
 
@@ -163,9 +163,9 @@ def _transform(message: BagMessage, content: Any) -> _Row:
 
 
 def _of_imu(message: BagMessage) -> Iterator[_Row]:
-    """Rates about x, y and z stand in a pose's place until it is known which way is up."""
+    """Rates about x, y and z take the place of a pose until the vertical is known."""
     turning = message.content.angular_velocity
-    # Gyros of one axis leave the others unsaid.
+    # Single-axis gyros leave the other axes empty.
     x, y = (each if math.isfinite(each) else 0.0 for each in (float(turning.x), float(turning.y)))
     rates = x, y, float(turning.z)
     unknown = float(message.content.angular_velocity_covariance[0]) == -1.0
@@ -182,7 +182,7 @@ def _of_point(message: BagMessage) -> Iterator[_Row]:
 
 
 def _of_fix(message: BagMessage) -> Iterator[_Row]:
-    """Degrees and the altitude stand in the place of a pose until the first fix is known."""
+    """Degrees and altitude take the place of a pose until the first fix is known."""
     content = message.content
     degrees = float(content.latitude), float(content.longitude)
     if content.status.status < 0:  # STATUS_NO_FIX
@@ -207,20 +207,20 @@ _ROWS: dict[str, Callable[[BagMessage], Iterator[_Row]]] = {
 def east_and_north(
     place: str, latitude: Floats, longitude: Floats, altitude: Floats
 ) -> tuple[Floats, Floats]:
-    """Metres east and north of the first fix, in the plane that touches the ellipsoid below it.
+    """Project to metres east and north of the first fix, in the tangent plane of the ellipsoid.
 
     Parameters
     ----------
     place
-        Where the fixes are, for errors.
+        Location of the data, for error messages.
     latitude, longitude, altitude : ndarray, shape (n,)
-        WGS 84 [degrees, degrees, m]; NaN where there was no fix. Where the altitude alone is NaN
-        the first one that is known is taken.
+        WGS 84 [degrees, degrees, m]; NaN without a fix. If only the altitude is NaN, the first
+        known altitude is used.
 
     Raises
     ------
     InputError
-        When pyproj is not installed.
+        If pyproj is not installed.
     """
     fixed = np.isfinite(latitude) & np.isfinite(longitude)
     x, y = np.full(latitude.size, np.nan), np.full(latitude.size, np.nan)

@@ -45,7 +45,7 @@ KINDS = {
 
 
 def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Wheels:
-    """What is wished for, or the only one there is; the firmware's odometry where nothing else is.
+    """Choose the requested source, or the only one; the firmware's odometry as a last resort.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
     Raises
     ------
     InputError
-        When there is none, or several; the message lists them.
+        If there is none, or several; the message lists them.
     """
     if wish is not None:
         return wished_ticks(held, wish)
@@ -80,12 +80,12 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
 
 
 def wished_ticks(held: Contents, wish: str) -> Wheels:
-    """What is wished for: a topic, or LEFT,RIGHT for two.
+    """Find the requested source: a topic, or LEFT,RIGHT for two.
 
     Raises
     ------
     InputError
-        When it holds no ticks; the message lists what does.
+        If it contains no ticks; the message lists the sources.
     """
     wished = tuple("/" + name.strip().strip("/") for name in wish.split(","))
     found = [topic for name in wished for topic in held.topics if topic.name == name]
@@ -111,23 +111,23 @@ def _listed(sources: Sequence[Wheels]) -> str:
 
 
 class TicksCollector(Protocol):
-    """Takes messages, one at a time, and gives the ticks at the end."""
+    """Collects messages, and computes the ticks at the end."""
 
     def take(self, message: BagMessage) -> None:
-        """Take a message of one of the source's topics."""
+        """Add a message of one of the source's topics."""
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """All ticks, and in words what was left out.
+        """All ticks, and the skipped messages in words.
 
         Raises
         ------
         InputError
-            When no message could be used.
+            If no message was usable.
         """
 
 
 def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksCollector:
-    """The collector for a kind of source."""
+    """Create the collector for a kind of source."""
     if source.kind == JOINT_STATE:
         return JointsCollector(path, source.name, robot_file)
     if source.kind == ODOMETRY:
@@ -141,7 +141,7 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
 
 
 class _TwoCounts:
-    """Stamps, and what both counters showed."""
+    """Stamps, and the readings of both counters."""
 
     def __init__(self, place: str, bits: int = 0) -> None:
         self._place, self._bits = place, bits
@@ -161,19 +161,19 @@ class _TwoCounts:
 
 
 class CountersCollector(_TwoCounts):
-    """Both counters of a driver, in a message with a stamp."""
+    """Both counters of a driver, in one stamped message."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
         self._driver = DRIVERS[source.kind]
         super().__init__(f"{path}: {source.name}", _width(robot_file, self._driver.bits))
 
     def take(self, message: BagMessage) -> None:
-        """Take a message."""
+        """Add a message."""
         sides = (self._driver.left, self._driver.right)
         self._add(stamp_of(message), *(int(getattr(message.content, name)) for name in sides))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """All of them."""
+        """All ticks, and a remark on their scale."""
         told = "counts as the driver gives them: so many a turn as the robot file says"
         return self._ticks("it has no messages"), [told]
 
@@ -187,7 +187,7 @@ class MultiArrays(_TwoCounts):
         self._left_out: Counter[str] = Counter()
 
     def take(self, message: BagMessage) -> None:
-        """Take a message."""
+        """Add a message."""
         if len(message.content.data) != 2:
             self._left_out["not of two values, left and right"] += 1
             return
@@ -203,15 +203,15 @@ class MultiArrays(_TwoCounts):
         self._add(message.received / 1e9, *map(int, message.content.data))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """All of them, and in words what was left out."""
+        """All ticks, and the skipped messages in words."""
         ticks = self._ticks("no message has two values, left and right")
         return ticks, left_out_words(self._left_out)
 
 
 class Pairs(_TwoCounts):
-    """A topic for each wheel, paired as the node does it; see `Pairing`.
+    """One topic per wheel, paired as in the node; see `Pairing`.
 
-    Messages with stamps are paired by these: one topic may be delivered long after the other.
+    Stamped messages are paired by stamp, since one topic may be delivered long after the other.
     """
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
@@ -222,14 +222,14 @@ class Pairs(_TwoCounts):
         self._read_at, self._side, self._count = array("d"), array("b"), array("q")
 
     def take(self, message: BagMessage) -> None:
-        """Take a message."""
+        """Add a message."""
         stamped = hasattr(message.content, "header")
         self._read_at.append(stamp_of(message) if stamped else message.received / 1e9)
         self._side.append(message.topic != self._left)
         self._count.append(int(message.content.data))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """All of them, and in words what was left out."""
+        """All ticks, and the skipped messages in words."""
         pairing = Pairing(int(1e9 * self._window))
         for row in np.argsort(self._read_at, kind="stable").tolist():
             read_at, side = self._read_at[row], self._side[row]
@@ -242,7 +242,7 @@ class Pairs(_TwoCounts):
 
 
 def _width(robot_file: RobotFile, bits: int) -> int:
-    """Width at which to unwrap what cannot but wrap there; 0 where the robot file says one."""
+    """Wrap width to unwrap here; 0 if the robot file states one."""
     return 0 if robot_file.values["encoder_bits"] else bits
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bags that are written of messages as they came: rosbag2, MCAP, without `ros2 bag`."""
+"""Writes raw messages to a bag: rosbag2, MCAP, without `ros2 bag`."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from werrimbi_odom.errors import InputError
 
 @cache
 def known_types() -> Any:
-    """What rosbags knows of messages; the first call takes a second.
+    """Type store of rosbags; the first call takes a second.
 
     Raises
     ------
     InputError
-        When rosbags is not installed.
+        If rosbags is not installed.
     """
     try:
         from rosbags.typesys import Stores, get_typestore
@@ -28,17 +28,17 @@ def known_types() -> Any:
 
 
 class BagWriter:
-    """A bag that is being written.
+    """A bag being written.
 
     Parameters
     ----------
     folder : Path
-        Of the bag; must not exist.
+        Folder of the bag; must not exist.
 
     Raises
     ------
     InputError
-        When rosbags is not installed, or the folder cannot be written.
+        If rosbags is not installed, or the folder cannot be written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -53,15 +53,15 @@ class BagWriter:
             raise InputError(f"record: {folder} cannot be written: {error}") from error
 
     def topic(self, name: str, kind: str) -> Any:
-        """What `write` wants for a topic; None where nobody knows its type of messages."""
+        """Handle of a topic for `write`; None if its message type is unknown."""
         if kind not in self._store.types:
             return None
         return self._writer.add_connection(name, kind, typestore=self._store)
 
     def write(self, topic: Any, received: int, message: bytes) -> None:
-        """Add a message as it came over the wire, and when that was [ns]."""
+        """Add a serialised message and its time of reception [ns]."""
         self._writer.write(topic, received, message)
 
     def close(self) -> None:
-        """Write what is still to be written."""
+        """Write pending messages."""
         self._writer.close()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a drive's path holds, as a hash of its content: the same bytes, the same hash."""
+"""Hash of the content of a drive: the same bytes give the same hash."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from werrimbi_odom.files.run_folder import REFERENCE, TICKS
 
 
 def files_of(path: Path) -> Iterator[Path]:
-    """What is read of a path."""
+    """Files that are read for a path."""
     if path.is_file():
         yield path
     elif path.is_dir():
@@ -28,12 +28,12 @@ def files_of(path: Path) -> Iterator[Path]:
 
 
 def mark_of(paths: Iterable[Path], *words: str) -> str:
-    """A mark of the files of some paths, and of some words.
+    """Hash the files of some paths, and some words.
 
     Raises
     ------
     OSError
-        When a file cannot be read.
+        If a file cannot be read.
     """
     digest = hashlib.sha256("\0".join(words).encode())
     for path in paths:
@@ -45,16 +45,16 @@ def mark_of(paths: Iterable[Path], *words: str) -> str:
 
 
 def written_at(path: Path) -> float:
-    """When a drive's files were last written, by the file system [s since 1970]; 0: no such file.
+    """Time at which a drive was written, by the file system [s since 1970]; 0 without files.
 
-    The first of them counts: what is added later does not make the drive younger.
+    The earliest file counts: files added later do not make the drive younger.
     """
     return min((file.stat().st_mtime for file in files_of(path)), default=0.0)
 
 
 @cache
 def code_mark() -> str:
-    """A mark of all our source files, by their names."""
+    """Hash of all source files of the package, with their names."""
     root = Path(str(files("werrimbi_odom")))
     total = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Counts of two wheels that come in messages of their own: which belong together."""
+"""Pairs the counts of two wheels that arrive in separate messages."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from dataclasses import dataclass
 class Pairing:
     """Pairs counts by arrival, each with the nearest of the other wheel within a window.
 
-    That is the one that waits, or, when the next one comes closer than that did, this. So a pairing
-    that began one message off, after a lost one, mends itself. What finds no partner is dropped,
-    and its motion is in the next one.
+    A count is paired with the other wheel's waiting one; a later count that is closer in time
+    replaces it. So pairing that is off by one message, after a lost one, corrects itself. A count
+    without a partner is dropped; the next one contains its motion.
 
     Parameters
     ----------
     window : int
-        Farthest that two counts of one reading may be apart [ns].
+        Largest time between the two counts of one reading [ns].
     """
 
     def __init__(self, window: int) -> None:
         self._window = window
         self._newest = [_Count(), _Count()]
         self.unpaired = 0
-        """Counts that found no partner."""
+        """Number of counts without a partner."""
         self.earlier = 0
-        """Counts that waited for theirs: each pair has one that came first."""
+        """Number of counts that waited for their partner: the earlier one of each pair."""
 
     @property
     def waiting(self) -> int:
-        """Counts that may still find one."""
+        """Number of counts that may still find a partner."""
         return sum(count.waits for count in self._newest)
 
     def take(self, side: int, value: int, arrival: int) -> tuple[int, int] | None:
-        """Take a count; the left and the right one where it has a partner.
+        """Add a count; return the left and the right count if it has a partner.
 
         Parameters
         ----------
@@ -58,13 +58,13 @@ class Pairing:
 
 @dataclass(slots=True)
 class _Count:
-    """A count of one wheel, and how far in time its partner was."""
+    """A count of one wheel, and the time distance of its partner."""
 
     value: int = 0
     arrival: int = -(10**18)
     """[ns]"""
     apart: float = math.inf
-    """[ns]; infinite while it has none."""
+    """[ns]; infinite without a partner."""
 
     @property
     def waits(self) -> bool:

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""References that the odometry has a hand in, or that are its copies, where the bag tells so.
+"""References that contain the odometry or copy it, as far as the bag shows it.
 
-A marker or a map is seen now and then, and nodes carry the pose on by the wheels in between, a
-message for each of the odometry; or move the points of a scan by it. Both are measured in part and
-cannot be refused; what was measured itself is the better reference. Others are the robot's own
-odometry under another name: the same poses, sent twice.
+If a marker or a map is observed only at times, nodes extrapolate the pose by the wheels in between,
+one message per odometry message; or they move the points of a scan by odometry. Such references are
+partly measurements and are not rejected, but the underlying measurement is the better reference.
+Others are the robot's own odometry under another name: the same poses, published twice.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from werrimbi_odom.files.bag_contents import Measured
 
 
-_MOSTLY = 0.9  # of the stamps; a sensor's own never are another node's to the nanosecond
+_MOSTLY = 0.9  # of the stamps; a sensor's own stamps never equal another node's to the nanosecond
 _FEWEST_STAMPS = 10
 
 
 def second_hand(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
-    """Of which references the odometry is a part, by name, and why: the end of a sentence."""
+    """References that contain odometry, by name, with the reason: the end of a sentence."""
     return _moved_scans(references) | _carried_on(bag, references)
 
 
@@ -69,7 +69,7 @@ def _moved_scans(references: Sequence[Measured]) -> dict[str, str]:
         for other in scans:
             made_of = other.rpartition("/")[2]
             longer = tail.startswith(f"{made_of}_") or tail.endswith(f"_{made_of}")
-            if longer and "filter" not in tail:  # which leaves points out, and moves none
+            if longer and "filter" not in tail:  # a filter removes points but moves none
                 found[name] = f"made of {other} by its name, and perhaps moved by the odometry"
     return found
 
@@ -85,20 +85,20 @@ _POSES = {
 }
 _FEWEST_POSES = 20
 _SAME = 2e-4
-"""Share of the extent of a path by which two paths, laid upon each other, may be apart (rms) to be
-one. Odometry drifts by a hundred times that from what was measured; sent between its own messages
-it is apart by some 1e-5."""
+"""Largest rms distance of two aligned paths that are one, as a share of their extent. Odometry
+drifts from a measured path by a hundred times that; odometry published between its own messages
+differs by some 1e-5."""
 _FARTHEST = 0.1
-"""Extent [m] of a path that tells; of less, odometry without drift may be as close."""
+"""Least extent of a path for this test [m]; over less, odometry without drift may be as close."""
 
 Path = NDArray[np.complex128]
 
 
 def copies(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
-    """Which references are copies of the robot's own odometry, by name, and of which topic.
+    """References that are copies of the robot's own odometry, by name, and the topic they copy.
 
-    Not those that name a sensor: what is published on /odom may itself be the sensor's, and which
-    it is their numbers say.
+    References with the name of a sensor are excluded: /odom may itself contain the sensor's poses,
+    and the values do not show which is the original.
     """
     there = [each for each in references if each.kind in _POSES and not each.chain]
     own = [each.name for each in there if each.kind == ODOMETRY and not each.independent]
@@ -107,7 +107,7 @@ def copies(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
         return {}
     kinds = {each.name: each.kind for each in there}
     rows: dict[str, array[float]] = {name: array("d") for name in (*own, *others)}
-    with suppress(InputError):  # of a message that cannot be read whoever reads the topic tells
+    with suppress(InputError):  # unreadable messages are reported when the topic is read
         for message in bag.messages([*own, *others]):
             place: Any = _POSES[kinds[message.topic]](message.content)
             rows[message.topic].extend((stamp_of(message), float(place.x), float(place.y)))
@@ -122,7 +122,7 @@ def copies(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
 
 
 def _is_same(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
-    """Whether two paths, shape (n, 3) of time and place each, are one but for where they lie."""
+    """Whether two paths, shape (n, 3) of time and position each, agree up to a rigid motion."""
     one, other = (each[np.isfinite(each).all(axis=1)] for each in (one, other))
     if len(one) < _FEWEST_POSES or len(other) < _FEWEST_POSES:
         return False

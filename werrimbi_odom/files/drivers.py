@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drivers that publish both wheels' counters in a message of their own, and message types.
 
-A line for each driver is all: a bag is read by it, `info` writes a first robot file by it. Older
-bags do not describe their messages, so that theirs are described here.
+Each driver is one entry: bags are read by it, and `info` writes a first robot file by it. Older
+bags do not contain message definitions, so those are included here.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 
 class CounterMessage(NamedTuple):
-    """What a message of a driver holds, of every robot that sends it."""
+    """Content of a driver's message, equal for all robots that send it."""
 
     left: str
     """Field with the left counter."""
@@ -21,13 +21,13 @@ class CounterMessage(NamedTuple):
     bits: int
     """Width at which the counters wrap."""
     ticks: float
-    """Counts in a turn of a wheel."""
+    """Counts per turn of a wheel."""
     definition: str
-    """Of the message, as its package has it."""
+    """Message definition, from its package."""
 
     @property
     def narrow(self) -> int:
-        """Width that a robot file must say, of counters that wrap as a robot drives; else 0."""
+        """Wrap width that a robot file must state, if counters wrap during a drive; else 0."""
         return self.bits if self.bits < 32 else 0
 
 
@@ -84,7 +84,7 @@ _CREATE = CounterMessage(
 )
 
 DUCKIETOWN = "std_msgs/Header header\nint32 data\nuint16 resolution\nuint8 type\n"
-"""Definition of its WheelEncoderStamped, one for each wheel; `resolution` is counts a turn."""
+"""Definition of WheelEncoderStamped, one per wheel; `resolution` is counts per turn."""
 
 DRIVERS = {
     "turtlebot3_msgs/msg/SensorState": _TURTLEBOT3,
@@ -100,17 +100,17 @@ DEFINITIONS = {
     "duckietown_msgs/msg/WheelEncoderStamped": DUCKIETOWN,
     "tf/msg/tfMessage": "geometry_msgs/TransformStamped[] transforms\n",
 }
-"""As their packages have them; a sqlite3 bag before ROS 2 Iron holds no definitions."""
+"""Definitions from the packages; sqlite3 bags before ROS 2 Iron contain none."""
 
 
 class Types:
-    """Reads messages of one bag."""
+    """Deserialises messages of one bag."""
 
     def __init__(self, ros1: bool, definitions: dict[str, str]) -> None:
-        """Standard types are those of ROS 2 Jazzy, or of ROS 1 Noetic.
+        """Use the standard types of ROS 2 Jazzy, or of ROS 1 Noetic.
 
-        Those that odometry needs have been the same in every distribution, so definitions in the
-        bag, which may be broken, are looked at for no others.
+        The types needed for odometry are the same in every distribution. Definitions in the bag,
+        which may be broken, are used only for other types.
         """
         from rosbags.typesys import Stores, get_typestore
 
@@ -119,7 +119,7 @@ class Types:
         self._definitions = definitions
 
     def read(self, data: Any, kind: str) -> Any:
-        """A message; raises what rosbags raises where it cannot be read."""
+        """Deserialise a message; raises the exception of rosbags if it is unreadable."""
         if kind not in self._store.types:
             self._register(kind)
         if self._ros1:
@@ -131,7 +131,7 @@ class Types:
 
         texts = (self._definitions.get(kind), DEFINITIONS.get(kind))
         for text in filter(None, texts):
-            with suppress(Exception):  # a definition that is broken raises anything
+            with suppress(Exception):  # a broken definition may raise anything
                 parse = get_types_from_idl if "module " in text else get_types_from_msg
                 found = parse(text) if parse is get_types_from_idl else parse(text, kind)
                 new = {name: each for name, each in found.items() if name not in self._store.types}

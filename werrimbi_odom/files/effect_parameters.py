@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The effects that a robot file names, and their blocks of parameters, as values.
+"""Effects named in a robot file, and the values of their parameters.
 
-The robot file spells a parameter of an effect as a line in a block; ROS hands it on with a dot,
-``eccentric_left_wheel.amplitude``. Both come here in the form with the dot.
+In the robot file, a parameter of an effect is a line in a block; in ROS its name has a dot,
+``eccentric_left_wheel.amplitude``. Both arrive here in the form with the dot.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 
 EFFECTS = "effects"
-"""Key of the list of their names."""
+"""Key of the list of effect names."""
 
 Find = Callable[[str], Effect]
-"""An effect by its name; InputError where there is none."""
+"""Find an effect by its name; InputError if unknown."""
 
 
 @dataclass
 class Named:
-    """Effects as they are read: their values come one by one."""
+    """Effects while their values are read."""
 
     effects: tuple[Effect, ...]
     _values: dict[str, dict[str, float]] = field(init=False)
@@ -36,12 +36,12 @@ class Named:
         self._values = {effect.name: {} for effect in self.effects}
 
     def take(self, key: str, value: object) -> None:
-        """Take the value of ``effect.parameter``.
+        """Add the value of ``effect.parameter``.
 
         Raises
         ------
         InputError
-            When there is no such parameter, or it cannot have that value.
+            If there is no such parameter, or the value is invalid for it.
         """
         name, _, parameter = key.partition(".")
         effect = self.listed(name)
@@ -58,7 +58,7 @@ class Named:
         Raises
         ------
         InputError
-            When the list of effects does not name it; the message says which it names.
+            If the list of effects does not contain it; the message says what to do.
         """
         for effect in self.effects:
             if effect.name == name:
@@ -73,7 +73,7 @@ class Named:
         )
 
     def refuse_value(self, name: str, value: object) -> InputError:
-        """What is wrong where a value stands in the place of an effect's block."""
+        """Error for a value in the place of an effect's block."""
         effect = self.listed(name)
         given = "nothing" if value is None else repr(value)
         if effect.is_mistake:
@@ -84,24 +84,24 @@ class Named:
         )
 
     def applied(self) -> tuple[AppliedEffect, ...]:
-        """With their values, in order of application; what was not given is null or unknown."""
+        """The effects in order, with their values; values not given are null or unknown."""
         return tuple(effect.using(**self._values[effect.name]) for effect in self.effects)
 
 
 def named_effects(names: object, find: Find | None = None) -> Named:
-    """The effects of a list of names.
+    """Read a list of effect names.
 
     Parameters
     ----------
     names : object
-        What stands behind ``effects:``; None where there is nothing.
+        Value of ``effects:``; None if it is empty.
     find : callable, optional
-        By default the library and installed packages.
+        Default: the library and installed packages.
 
     Raises
     ------
     InputError
-        When it is no list of names, or one is unknown or listed twice.
+        If it is not a list of names, or a name is unknown or repeated.
     """
     if names is None:
         return Named(())
@@ -121,7 +121,7 @@ def named_effects(names: object, find: Find | None = None) -> Named:
 
 
 def parameters_of(effect: Effect) -> tuple[NodeParameter, ...]:
-    """The parameters of an effect as a robot file has them, named with a dot."""
+    """Parameters of an effect as in a robot file, with dotted names."""
     return tuple(
         NodeParameter(
             f"{effect.name}.{name}",
@@ -136,7 +136,7 @@ def parameters_of(effect: Effect) -> tuple[NodeParameter, ...]:
 
 
 def is_effect_or_near(name: str) -> bool:
-    """Whether a key that is no parameter may be meant for an effect's block."""
+    """Whether an unknown key probably means an effect's block."""
     parameters = [item.name for item in PARAMETERS]
     effects = [effect.name for effect in LIBRARY]
     near = difflib.get_close_matches(name, [*parameters, *effects], n=1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How a model is evaluated on drives: one bundle for comparing, diagnosing, adding and fitting."""
+"""How a model is evaluated on drives: common options for compare, diagnose, add and fit."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from werrimbi_odom.model.encoder import EncoderLimits
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationOptions:
-    """Over which legs the relative pose error is taken, and what is known of the reference."""
+    """Length of the legs for the relative pose error, and properties of the reference."""
 
     reference_kind: ReferenceKind = "absolute"
-    """What the reference's noise is like: each pose's own, adding up, or that of a local map."""
+    """Noise of the reference: independent per pose, accumulating, or that of a local map."""
     leg: float = 1.0
-    """Length of a leg [m]; a quarter turn on the spot is one too."""
+    """Length of a leg [m]; a quarter turn on the spot is a leg too."""
     limits: EncoderLimits | None = None
-    """Which jumps of the counters are believed; None: as without any limit (`EncoderLimits()`)."""
+    """Limits for jumps of the counters; None: no limit (`EncoderLimits()`)."""
     sigma_xy: float | None = None
-    """The reference's noise in x and in y where it is known [m]; else as the record states it; else
-    it is estimated from differences of the reference itself, so that no error of the model hides in
-    it."""
+    """Noise of the reference in x and y, if known [m]; otherwise as stated in the record; otherwise
+    estimated from differences of the reference alone, so that it does not contain errors of the
+    model."""
     sigma_yaw: float | None = None
-    """The same in heading [rad]."""
+    """The same for heading [rad]."""
 
     @property
     def sigmas_known(self) -> tuple[bool, bool]:
-        """Whether the reference's noise is known, of position and of heading."""
+        """Whether the reference's noise is known, in position and in heading."""
         return self.sigma_xy is not None, self.sigma_yaw is not None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A first robot file from what a robot says of itself: its URDF, or its controller's parameters."""
+"""A first robot file from a robot's own description: its URDF or its controller's parameters."""
 
 from __future__ import annotations
 
@@ -20,44 +20,45 @@ from werrimbi_odom.files.wheel_joints import SIDES, TURN, is_no_wheel
 from werrimbi_odom.model.pose import Floats
 
 _LONGEST = 10_000_000
-"""Characters of a URDF; robots with all their sensors have a hundredth of it."""
+"""Largest size of a URDF [characters], a hundred times that of robots with all their sensors."""
 _UNKNOWN_TICKS = 4096.0
 _OFTEN, _BY_ONE, _NEIGHBOURS = 0.05, 0.1, 5
-"""Share of messages with another number of counts than the one before, and of those with one more
-or less, from which on angles are counted; or so many numbers of counts that differ by one."""
+"""Angles are quantised if the number of counts differs between successive messages in at least this
+share of them, and by one in this share of those; or if this many numbers of counts differ by
+one."""
 _AXLE = 0.9
-"""Cosine between a wheel's axis and the robot's y axis, from which on it rolls forwards."""
+"""Cosine between a wheel's axis and the robot's y axis, above which it rolls forwards."""
 
 
 @dataclass(frozen=True)
 class FirstRobot:
-    """What is known of a robot's wheels; None where nothing says it."""
+    """Parameters of a robot's wheels; None if unknown."""
 
     radius: float | None = None
     """[m]"""
     separation: float | None = None
     """[m]"""
     left: tuple[str, ...] = ()
-    """Joints of the wheels on the left."""
+    """Joints of the left wheels."""
     right: tuple[str, ...] = ()
     ticks: float | None = None
-    """Steps of a wheel's angle, or counts, in a turn."""
+    """Steps of a wheel's angle, or counts, per turn."""
     bits: int = 0
-    """Width at which the counters wrap; 0: they do not."""
+    """Width at which the counters wrap; 0: they do not wrap."""
     more: Mapping[str, float] | None = None
     """Multipliers of a controller."""
     reversed: tuple[str, ...] = ()
-    """Sides whose counters run backwards, as a controller's negative multiplier says."""
+    """Sides whose counters run backwards, from a controller's negative multiplier."""
     told: Mapping[str, str] | None = None
-    """Where each is from, in words."""
+    """Source of each value, in words."""
 
     @property
     def has_sizes(self) -> bool:
-        """Whether it is enough for a robot file."""
+        """Whether the sizes needed for a robot file are known."""
         return self.radius is not None and self.separation is not None
 
     def text(self, title: str) -> str:
-        """The robot file; sizes that are not known stand for themselves."""
+        """Text of the robot file, with placeholders for unknown sizes."""
         told = self.told or {}
 
         def line(name: str, value: object, word: str) -> str:
@@ -92,17 +93,17 @@ def _number(value: float) -> str:
 
 
 def of_urdf(text: str, joints: Sequence[str] = ()) -> FirstRobot:
-    """Radius, separation and joints of the driven wheels of a URDF.
+    """Radius, separation and joints of the driven wheels in a URDF.
 
     Parameters
     ----------
     joints
-        Names of the joints that are recorded; wheels that are not among them are none of ours.
+        Names of the recorded joints; other wheels are ignored.
     """
     if len(text) > _LONGEST or "<!ENTITY" in text:
         return FirstRobot()
     try:
-        robot = ElementTree.fromstring(text)  # no entities, as was looked for
+        robot = ElementTree.fromstring(text)  # without entities, as checked above
         wheels = [each for each in _wheels(robot) if not joints or each.joint in joints]
     except (ElementTree.ParseError, ValueError, KeyError, RecursionError):
         return FirstRobot()
@@ -152,7 +153,7 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_UrdfWheel]:
 
 
 def _has_stops(joint: ElementTree.Element) -> bool:
-    """Whether a joint stays within two turns, as an arm's does and no wheel's."""
+    """Whether a joint's range is at most two turns: that of an arm, not of a wheel."""
     limit = joint.find("limit")
     if joint.get("type") != "revolute" or limit is None:
         return False
@@ -166,7 +167,7 @@ def _whole(joint: ElementTree.Element) -> bool:
 
 
 def _pose_of(link: str | None, joints: Mapping[str | None, ElementTree.Element]) -> Floats:
-    """Pose of a link in the root's frame, (4, 4), all joints at zero."""
+    """Pose of a link in the root's frame, (4, 4), with all joints at zero."""
     pose = np.eye(4)
     seen: set[str | None] = set()
     while link in joints and link not in seen:
@@ -184,7 +185,7 @@ def _origin(element: ElementTree.Element | None) -> Floats:
     pose = np.eye(4)
     if element is not None:
         pose[:3, 3] = _three(element.get("xyz"), (0.0, 0.0, 0.0))
-        angles = _three(element.get("rpy"), (0.0, 0.0, 0.0))  # roll, pitch, yaw: fixed axes
+        angles = _three(element.get("rpy"), (0.0, 0.0, 0.0))  # roll, pitch, yaw about fixed axes
         pose[:3, :3] = Rotation.from_euler("xyz", angles).as_matrix()
     return pose
 
@@ -197,7 +198,7 @@ def _three(text: str | None, usual: tuple[float, float, float]) -> Floats:
 
 
 def _radius(link: ElementTree.Element | None) -> float | None:
-    """Of the link's cylinder or sphere; None where it is a mesh alone."""
+    """Radius of the link's cylinder or sphere; None if it is only a mesh."""
     for part in ("collision", "visual"):
         for shape in ("cylinder", "sphere"):
             for found in link.iterfind(f"{part}/geometry/{shape}") if link is not None else ():
@@ -216,12 +217,12 @@ _MULTIPLIERS = (
 
 
 def of_controller(path: Path) -> FirstRobot:
-    """Wheels of a diff_drive_controller, from a parameter file that may hold other nodes' too.
+    """Wheels of a diff_drive_controller, from a parameter file that may contain other nodes too.
 
     Raises
     ------
     InputError
-        When it cannot be read, or no node in it has a wheel separation and a radius.
+        If the file is unreadable, or no node has a wheel separation and a radius.
     """
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
@@ -275,7 +276,7 @@ def _names(value: Any) -> tuple[str, ...]:
 
 
 def with_driver(first: FirstRobot, kind: str) -> FirstRobot:
-    """What a driver's message says by its type."""
+    """Add what the message type of a driver determines."""
     driver = DRIVERS.get(kind)
     if driver is None:
         return first
@@ -284,12 +285,12 @@ def with_driver(first: FirstRobot, kind: str) -> FirstRobot:
 
 
 def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:
-    """The steps of the wheels' angles in a turn, where they are seen.
+    """Add the steps of the wheels' angles per turn, if they are visible.
 
     Parameters
     ----------
     angles
-        Of the left and the right wheel, shape (n,) each [rad].
+        Angles of the left and the right wheel, shape (n,) each [rad].
     """
     moved = [np.diff(each) for each in angles]
     steps = _steps_of_a_turn(np.abs(np.concatenate(moved)))
@@ -304,10 +305,10 @@ def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:
 
 
 def _is_counted(moved: Sequence[Floats], quantum: float) -> bool:
-    """Whether steps are those of a counter, and not those of a few speeds that a simulator holds.
+    """Whether steps come from a counter, and not from a few constant speeds of a simulator.
 
-    A wheel that turns evenly is counted one more or one less from message to message; over many
-    speeds, all numbers of counts occur.
+    At constant speed, the counts per message vary by one. Over many speeds, all numbers of counts
+    occur.
     """
     counts = [np.rint(each[np.isfinite(each)] / quantum) for each in moved]
     changes = np.concatenate([np.abs(np.diff(each)) for each in counts])

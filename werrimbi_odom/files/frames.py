@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of a recording's transforms, and the chains of them that lead to the robot's base."""
+"""Frames of recorded transforms, and the chains of transforms to the robot's base."""
 
 from __future__ import annotations
 
@@ -12,31 +12,30 @@ from typing import Any
 from werrimbi_odom.files.made_from_wheels import is_base, why_from_wheels
 
 KINDS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
-"""Messages that hold transforms, of ROS 2 and of older bags."""
+"""Message types with transforms, of ROS 2 and of older bags."""
 
 MOVED = 1e-9
-"""By which a transform must differ from its first one to have changed at all [m, and of a unit
-quaternion]: rounding."""
+"""Smallest change of a transform that is not rounding [m, and of a unit quaternion]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A transform that was published, from a parent frame to a child frame."""
+    """A published transform from a parent frame to a child frame."""
 
     parent: str
     child: str
     topic: str
     messages: int
     static: bool
-    """Published once, for good."""
+    """Published once, constant."""
     changes: bool
-    """Whether it ever was another than its first."""
+    """Whether it ever changed."""
     shifts: bool = True
-    """Whether the child ever was in another place than at first; a joint that turns never is."""
+    """Whether its translation ever changed; that of a rotating joint does not."""
 
     @property
     def made_from_wheels(self) -> str:
-        """Why it measures nothing of how the robot goes; "" where it may."""
+        """Reason why it does not measure the robot's motion; "" if it may."""
         if self.static:
             return ""
         if is_base(self.parent) and is_base(self.child):
@@ -46,23 +45,23 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Transforms that lead from one frame to another, one after the other."""
+    """Consecutive transforms from one frame to another."""
 
     steps: tuple[Edge, ...]
     backwards: tuple[bool, ...]
-    """Which of them are gone from child to parent."""
+    """Which of them are traversed from child to parent."""
     parent: str
     child: str
 
     @property
     def topic(self) -> str:
-        """Of its moving transforms."""
+        """Topic of its moving transforms."""
         moving = [each for each in self.steps if not each.static]
         return (moving or list(self.steps))[0].topic
 
     @property
     def measures(self) -> tuple[Edge, ...]:
-        """Its transforms that are no odometry and that change: what was measured."""
+        """Transforms that change and are not odometry: measurements."""
         return tuple(
             each
             for each in self.steps
@@ -71,7 +70,7 @@ class Chain:
 
     @property
     def made_from_wheels(self) -> str:
-        """Why nothing but the robot's own odometry is in it; "" where it measures something."""
+        """Reason why it contains only the robot's own odometry; "" if it measures something."""
         reasons = [each.made_from_wheels for each in self.steps if each.made_from_wheels]
         if self.measures or not reasons:
             return ""
@@ -81,7 +80,7 @@ class Chain:
         return reasons[0]
 
     def in_words(self) -> str:
-        """Its frames, from one to the next."""
+        """Its frames in order."""
         names = [self.parent]
         for step, back in zip(self.steps, self.backwards, strict=True):
             names.append(step.parent if back else step.child)
@@ -89,7 +88,7 @@ class Chain:
 
 
 class EdgeCollector:
-    """Takes the transforms of messages, one at a time, and gives the edges."""
+    """Collects transforms, and returns the edges."""
 
     def __init__(self) -> None:
         self._first: dict[tuple[str, str, str], tuple[float, ...]] = {}
@@ -98,7 +97,7 @@ class EdgeCollector:
         self._shifted: set[tuple[str, str, str]] = set()
 
     def take(self, topic: str, transforms: Sequence[Any]) -> None:
-        """Take what a message holds."""
+        """Add the transforms of a message."""
         for each in transforms:
             parent, child = frame(each.header.frame_id), frame(each.child_frame_id)
             key = (parent, child, topic)
@@ -115,7 +114,7 @@ class EdgeCollector:
                 self._shifted.add(key)
 
     def edges(self) -> tuple[Edge, ...]:
-        """All that were seen."""
+        """All edges."""
         return tuple(
             Edge(*key, count, is_static(key[2]), key in self._changed, key in self._shifted)
             for key, count in self._count.items()
@@ -123,17 +122,17 @@ class EdgeCollector:
 
 
 def frame(name: str) -> str:
-    """A frame's name without the slash that older ROS put before it."""
+    """Frame name without the leading slash of older ROS."""
     return str(name).strip("/")
 
 
 def is_static(topic: str) -> bool:
-    """Whether a topic holds transforms that do not change."""
+    """Whether a topic contains constant transforms."""
     return topic.rstrip("/").endswith("tf_static")
 
 
 def chain(edges: Sequence[Edge], parent: str, child: str) -> Chain | None:
-    """The shortest chain from one frame to another, forwards or backwards; None where none is."""
+    """Shortest chain from one frame to another, in either direction; None if there is none."""
     reached: dict[str, tuple[str, Edge, bool] | None] = {parent: None}
     waiting = deque([parent])
     while waiting and child not in reached:
@@ -157,19 +156,19 @@ def chain(edges: Sequence[Edge], parent: str, child: str) -> Chain | None:
 
 
 def chains_to_base(edges: Sequence[Edge], base: str = "") -> list[Chain]:
-    """Chains by which a robot's base is told from a fixed frame, the longest first.
+    """Chains from a fixed frame to the robot's base, the longest first.
 
     Parameters
     ----------
     base
-        Frame of the robot; "" for those that are called so (base_link, base_footprint).
+        Frame of the robot; "" for the usual names (base_link, base_footprint).
 
     Returns
     -------
     list of Chain
-        From every frame above the base, with a transform on the way that is not static. Where no
-        frame is called a base: the moving transforms, each by itself, but for the robot's own
-        joints, which a robot_state_publisher tells: they hang from its base, or turn in one place.
+        One from every frame above the base, with at least one transform that is not static. If no
+        frame has the name of a base: each moving transform alone, except the robot's own joints
+        from robot_state_publisher, which hang from its base or only rotate.
     """
     children = {edge.child for edge in edges}
     bases = [base] if base in children else sorted(filter(is_base, children), key=_as_usual)
@@ -177,7 +176,7 @@ def chains_to_base(edges: Sequence[Edge], base: str = "") -> list[Chain]:
     fixed = [edge for edge in edges if edge.static]
     for name in bases:
         if any(chain(fixed, each.child, name) for each in found):
-            continue  # fixed to a base that has its chains already
+            continue  # fixed to a base that already has chains
         above = [each for each in _above(edges, name) if not is_base(each)]
         chains = [chain(edges, parent, name) for parent in above]
         moving = [each for each in chains if each and not all(s.static for s in each.steps)]
@@ -195,12 +194,12 @@ def _on_the_robot(edges: Sequence[Edge], name: str) -> bool:
 
 
 def _as_usual(name: str) -> tuple[bool, str]:
-    """The usual name of a base first."""
+    """Sort key: the usual name of a base first."""
     return not name.endswith("base_link"), name
 
 
 def _above(edges: Sequence[Edge], name: str) -> list[str]:
-    """Frames that a frame hangs from, parents before their parents."""
+    """Ancestors of a frame, nearest first."""
     found: list[str] = []
     waiting = [name]
     while waiting:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The yaw rate of a gyro that may be mounted on its side."""
+"""Yaw rate of a gyro that may be mounted on its side."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ from numpy.typing import NDArray
 from werrimbi_odom.model.pose import Floats
 
 TILTED = math.radians(30.0)
-"""Angle between an IMU's z axis and the vertical, beyond which it is taken to be mounted on its
-side. Robots on wheels lean by less, and what is lost of a yaw rate at less is a gyro's scale, which
-is fitted. Upside down is not asked: too many drivers give the accelerometer the other sign."""
+"""Angle between an IMU's z axis and the vertical beyond which it is assumed to be mounted on its
+side. Wheeled robots tilt less, and a smaller angle only scales the yaw rate, which is fitted.
+Upside-down mounting is not detected: too many drivers invert the accelerometer's sign."""
 GRAVITY = (5.0, 15.0)
-"""Mean specific forces [m/s^2] that are the floor's: half of it to half as much again. Others are
-in other units, or nothing was measured."""
+"""Plausible range of the mean specific force [m/s^2]: half to one and a half times gravity. Other
+values have other units, or nothing was measured."""
 _FEWEST = 20
 _SIDES = ("x", "y", "z")
 
 
 def yaw_rate(rates: Floats, forces: NDArray[np.float64]) -> tuple[Floats, str]:
-    """Turning about what the accelerometer says is upwards.
+    """Rotation rate about the vertical, as given by the accelerometer.
 
     Parameters
     ----------
     rates : ndarray, shape (n, 3)
-        Of the gyro [rad/s].
+        Rates of the gyro [rad/s].
     forces : ndarray, shape (m, 3)
-        Of the accelerometer [m/s^2]; m may be 0.
+        Specific forces of the accelerometer [m/s^2]; m may be 0.
 
     Returns
     -------
     (yaw rate (n,), words)
-        About the z axis where that is upwards, or nothing tells; the words are the end of a
-        sentence, "" where there is nothing to say.
+        Rate about the z axis if that is vertical or the vertical is unknown. The words are the end
+        of a sentence; "" if there is nothing to say.
     """
     known = forces[np.isfinite(forces).all(axis=1)]
     if len(known) < _FEWEST:

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What by its name and its frames is the robot's own odometry, and so no measurement of it.
+"""Recognises by name and frames what is the robot's own odometry, and so no measurement of it.
 
-Names alone decide nothing: they are what is looked at; how closely such poses follow the wheels is
-asked beside them (inference.comparison.made_from_wheels).
+Names are not sufficient evidence; how closely such poses follow the wheels is tested in addition
+(inference.comparison.made_from_wheels).
 """
 
 from __future__ import annotations
@@ -17,29 +17,29 @@ realsense rf2o rtabmap rtk slam svo t265 tag tracker tracking true truth uwb vic
 vision visual vo vslam zed rovio okvis openvins scan reference qtm ground
 """
 SENSORS = frozenset(_SENSORS.split())
-"""Words of names whose poses come from a sensor that looks at the world."""
+"""Words in the names of poses from a sensor that observes the surroundings."""
 
 FILTERS = (
     *("filtered", "ekf", "ukf", "kalman", "_kf", "/kf"),
     *("combined", "fused", "robot_localization"),
 )
-"""Words of names of filters' outputs, which fuse the wheels."""
+"""Words in the names of filter outputs, which fuse the wheels."""
 
 NO_MEASUREMENT = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
-"""Words of topics with poses that somebody asked for, in RViz or in a program."""
+"""Words in topics of commanded or requested poses, from RViz or a program."""
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 
 def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
-    """Why poses are likely to be made from the wheels; "" where their names do not say so.
+    """Reason why poses are probably computed from the wheels; "" if names do not suggest it.
 
     Parameters
     ----------
     topic, kind
-        Where they were published; "" for a transform.
+        Topic and message type; "" for a transform.
     parent, child
-        Their frames, as far as they are told.
+        Their frames, as far as known.
     """
     if _words(topic, parent, child) & SENSORS:
         return ""
@@ -54,17 +54,17 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
 
 
 def names_a_sensor(topic: str) -> bool:
-    """Whether a topic's name says what looked at the robot; a simulator's name alone does not."""
+    """Whether a topic's name contains that of a sensor; a simulator's name does not count."""
     return bool(_words(topic) & (SENSORS - {"gazebo"}))
 
 
 def is_asked_for(topic: str) -> bool:
-    """Whether poses of a topic are where the robot should be, not where it is."""
+    """Whether poses of a topic are requested, not measured."""
     return any(word in topic.lower() for word in NO_MEASUREMENT)
 
 
 def is_base(frame: str) -> bool:
-    """Whether a frame is a robot's base by its name."""
+    """Whether a frame is a robot's base, by its name."""
     tail = frame.rpartition("/")[2].lower()
     return tail in ("base", "footprint", "chassis") or any(
         word in tail for word in ("base_link", "base_footprint", "baselink", "base_frame")
@@ -72,7 +72,7 @@ def is_base(frame: str) -> bool:
 
 
 def is_odometry_frame(frame: str) -> bool:
-    """Whether a frame is where odometry starts, by its name."""
+    """Whether a frame is the origin of odometry, by its name."""
     return "odom" in frame.rpartition("/")[2].lower()
 
 

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Two references of one drive as one: the positions of the one, the headings of the other.
+"""Merges two references of one drive: positions of one, headings of the other.
 
-A gyro tells turning far better than a localiser does, and drifts; a localiser tells where the robot
-is and roughly how it faces, and does not drift. So the gyro's heading is laid upon the localiser's
-(an angle and a steady drift, fitted to all of the drive) and stands in its place; its scale is told
-by all drives together. Positions and headings keep a noise and a delay of their own; the wheels
-take no part in this. A scan's heading is of the instant of its place, so the gyro is put on the
-clock of scans: else places that are late by their own would be a lever arm to steady driving.
+A gyro measures turns far more precisely than a localiser, but drifts. A localiser measures position
+and, roughly, heading without drift. So the gyro's heading is aligned with the localiser's (an
+offset and a constant drift, fitted over the drive) and replaces it. Its scale is estimated from all
+drives together. Positions and headings keep separate noise and delay; the wheels are not used. With
+scans, heading and position are simultaneous, so the gyro is moved to the scans' clock: otherwise a
+delay of the positions alone would look like a lever arm during steady driving.
 """
 
 from __future__ import annotations
@@ -23,41 +23,41 @@ from werrimbi_odom.files.run import GyroTurn, Reference
 from werrimbi_odom.model.pose import Floats
 
 FEWEST = 10
-"""Headings that both must have told: fewer do not tell an angle and a drift from noise."""
+"""Least number of common headings: fewer do not separate offset and drift from noise."""
 LASTING = 10.0
-"""For how long a localiser errs alike [s]; AMCL and SLAM correct themselves in 5 to 30."""
-_MEDIAN_TO_SIGMA = 1.4826  # of a normal scatter
+"""Correlation time of a localiser's errors [s]; AMCL and SLAM correct themselves in 5 to 30."""
+_MEDIAN_TO_SIGMA = 1.4826  # of a normal distribution
 SCALE_TOLD, SCALE_MOST = 4.0, 0.1
-"""Standard deviations beyond which a gyro's scale is told, and the most that a gyro's is off."""
+"""Significance of a gyro's scale in standard deviations, and its largest plausible error."""
 LATE_MOST = 0.5
-"""By how much a gyro and a lidar of one robot may be apart [s]: more is no driver's delay."""
+"""Largest plausible delay between the gyro and the lidar of a robot [s]."""
 _ROUNDS = 6
 
 
 def merged(
     place: str, first: Reference, second: Reference, cuts: Sequence[tuple[float, float]] = ()
 ) -> tuple[Reference, str]:
-    """Positions of what has them, with the headings of what has nothing else.
+    """Combine positions of one reference with the headings of the other.
 
     Parameters
     ----------
     place
-        Where they are, for errors.
+        Location of the data, for error messages.
     cuts
-        From the last pose of a piece to the first of the next [s], where the one with positions is
-        in pieces: the heading is laid upon each by itself, and drifts alike in all.
+        From the last pose of a segment to the first of the next [s], if the positions are in
+        segments. The heading is aligned with each segment separately, with a common drift.
 
     Returns
     -------
     reference
-        At the stamps of the positions; headings only while the gyro was heard.
+        At the stamps of the positions; headings only within the gyro's time span.
     told : str
-        What was laid upon what, in words.
+        Description of the alignment.
 
     Raises
     ------
     InputError
-        When they are not one with positions and headings and one with headings alone.
+        Unless one reference has positions and headings and the other only headings.
     """
     alone = [each for each in (first, second) if not each.has_position.any()]
     whole = [each for each in (first, second) if each.has_position.any()]
@@ -106,15 +106,15 @@ def merged(
 
 
 def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> list[Reference]:
-    """Gyros' headings with the scale that some drives together tell, where they do.
+    """Apply a common scale to the gyros' headings, if some drives together determine it.
 
-    It is one gyro in all drives, and one drive tells its scale no better than the other reference
-    wanders in it.
+    The gyro is the same in all drives. From a single drive, its scale is only as good as the other
+    reference's drift allows.
 
     Parameters
     ----------
     of
-        The drives that tell it; the others have no part in it.
+        Drives that determine the scale; the others are not used for it.
     """
     told = [each.gyro for each in of if each.gyro is not None]
     weights = np.array([each.std**-2 for each in told])
@@ -141,9 +141,9 @@ def _later(
     columns: Floats,
     both: NDArray[np.bool_],
 ) -> float:
-    """By how much the headings of poses are later than a gyro's [s]; 0 where it is not told.
+    """Delay of the headings of poses relative to a gyro's [s]; 0 if not significant.
 
-    By Gauss and Newton: one that is late by d shows d times the turn rate less.
+    By Gauss-Newton: with a delay d, a heading lags by d times the turn rate.
     """
     late, pieces, time = 0.0, pieces[both], poses.time[both]
     step = float(np.median(np.diff(time)))
@@ -164,11 +164,11 @@ def _later(
 def _gyro_turn(
     pieces: Floats, columns: Floats, gyro: Floats, apart: Floats, both: NDArray[np.bool_]
 ) -> tuple[Floats, GyroTurn, float]:
-    """What to take of each column; what the gyro turned, and by how much the other turned more.
+    """Coefficients of the columns; the gyro's turn, with its scale error; the drift [rad/s].
 
-    Both at once: of a scale that is left to itself the columns would take what a drive's sense of
-    turning makes of it, and not as much as is put right afterwards. And the drift [rad/s], of which
-    a scale that this drive tells has no part.
+    Columns and scale are fitted together. Otherwise the columns would absorb the part of a scale
+    error that follows the drive's mean turn direction, and more than is corrected later. The drift
+    excludes the part due to a scale that this drive determines.
     """
     clear = np.linalg.lstsq(columns[both], gyro[both], rcond=None)[0]
     turned = gyro - columns @ clear
@@ -176,7 +176,8 @@ def _gyro_turn(
     told = _laid(pieces, free, apart[both])
     left = np.unwrap(apart[both]) - free @ told
     noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
-    # A localiser errs alike for a while: as many headings tell as there are such whiles.
+    # A localiser's errors are correlated, so the number of independent headings is that of such
+    # intervals.
     count = max(float(np.ptp(columns[both, -1])) / LASTING, 1.0)
     spread = max(float(np.std(turned[both])), 1e-9)
     std = max(noise, 1e-6) / spread / np.sqrt(count)
@@ -186,9 +187,9 @@ def _gyro_turn(
 
 
 def _laid(pieces: Floats, columns: Floats, apart: Floats) -> Floats:
-    """What to take of each column to explain angles; jumps do not count (Huber).
+    """Coefficients of the columns that explain angles, robust to jumps (Huber).
 
-    The first columns are `pieces`: 1 in a piece, else 0.
+    The first columns are `pieces`: 1 within a segment, else 0.
     """
     from scipy.optimize import least_squares
 
@@ -208,7 +209,7 @@ def _laid(pieces: Floats, columns: Floats, apart: Floats) -> Floats:
 
 
 def _ascending(reference: Reference) -> tuple[Floats, Floats]:
-    """Stamps and unwrapped headings, those that are not later than the ones before left out."""
+    """Stamps and unwrapped headings, without those that are not later than earlier ones."""
     known = reference.has_yaw
     time, yaw = reference.time[known], reference.yaw[known]
     if time.size == 0:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Names of other drivers' parameter files, which a robot file may begin as, and what they are here.
+"""Parameter names of other drivers' files, from which a robot file may be made.
 
-diff_drive_controller (ros2_controllers) names the geometry as we do; the rest of its parameters are
-about commands, and mean nothing to odometry. TurtleBot3 names it otherwise. Neither says how many
-counts a turn has, for their wheels' positions come in radians.
+diff_drive_controller (ros2_controllers) uses the same names for the geometry; its other parameters
+concern commands and do not matter for odometry. TurtleBot3 uses other names. Neither has the counts
+per turn, since their wheel positions are in radians.
 """
 
 from __future__ import annotations
@@ -35,28 +35,28 @@ OF_DIFF_DRIVE = frozenset(
         "wheels_per_side",
     )
 )
-"""Its own names, over its versions; `linear` and `angular` are blocks."""
+"""Its own parameter names in all versions; `linear` and `angular` are blocks."""
 
 TURTLEBOT = "wheels"
-"""Block of TurtleBot3's file that holds the geometry."""
+"""Block of TurtleBot3's file with the geometry."""
 OF_TURTLEBOT = frozenset(("motors", "opencr", "sensors"))
 """Its other blocks."""
 _TURTLEBOT = {"separation": "wheel_separation", "radius": "wheel_radius"}
 
 
 def is_of_diff_drive(name: object) -> bool:
-    """Whether it is a parameter of that controller which is not needed here; also with dots."""
+    """Whether it is a parameter of that controller that is not needed here; also with dots."""
     return isinstance(name, str) and name.partition(".")[0] in OF_DIFF_DRIVE
 
 
 def remark_on(names: Iterable[str], whose: str = DIFF_DRIVE) -> tuple[str, ...]:
-    """What is said of names that are not needed; nothing where there are none."""
+    """Remark on names that are not needed; empty without any."""
     listed = ", ".join(names)
     return (f"of {whose}; not needed here: {listed}",) if listed else ()
 
 
 def translated(block: Mapping[Any, Any]) -> dict[str, Any]:
-    """What TurtleBot3's `wheels` holds, by our names; empty where it is not its file.
+    """Geometry from TurtleBot3's `wheels`, under our names; empty for other files.
 
     Parameters
     ----------

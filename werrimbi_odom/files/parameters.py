@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every parameter of the robot file, declared once: for the node, the command line and the docs."""
+"""All parameters of the robot file, for the node, the command line and the docs."""
 
 from __future__ import annotations
 
@@ -28,36 +28,36 @@ _KINDS: Mapping[type, Kind] = {
 
 TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
-"""Counts of a microradian, for wheel angles whose encoder is not known: no quantisation."""
+"""Counts of one microradian, for wheel angles from an unknown encoder: no quantisation."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeParameter:
-    """One parameter: its type, unit, range, and what a wrong value does."""
+    """One parameter: type, unit, range, and the effect of a wrong value."""
 
     name: str
     default: Value | None
-    """Tells the type, too; None: a number that the file must say."""
+    """Also defines the type; None: a number that the file must give."""
     says: str
     unit: str = ""
     minimum: float | None = None
     above: float | None = None
-    """Lower bound that is itself not allowed."""
+    """Exclusive lower bound."""
     maximum: float | None = None
     choices: tuple[str, ...] = ()
 
     @property
     def kind(self) -> Kind:
-        """The type of its values."""
+        """Type of its values."""
         return _KINDS[type(self.default)]
 
     def checked(self, value: object) -> Value:
-        """The value in this parameter's type.
+        """Convert a value to this parameter's type.
 
         Raises
         ------
         InputError
-            When the type or the range is wrong; the message names the parameter and the mend.
+            If type or range is wrong; the message names the parameter and the remedy.
         """
         if self.kind in ("float", "integer"):
             return self._checked_number(value)
@@ -265,17 +265,17 @@ PARAMETERS: tuple[NodeParameter, ...] = (
 
 
 def defaults() -> dict[str, Value]:
-    """Values of all parameters that need not be given."""
+    """Default values of all optional parameters."""
     return {item.name: item.default for item in PARAMETERS if item.default is not None}
 
 
 def find(name: str) -> NodeParameter:
-    """The parameter of a name.
+    """The parameter with this name.
 
     Raises
     ------
     InputError
-        For an unknown name; the message offers the known one that is near.
+        For an unknown name; the message suggests the closest known one.
     """
     for item in PARAMETERS:
         if item.name == name:
@@ -285,7 +285,7 @@ def find(name: str) -> NodeParameter:
 
 
 def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = ()) -> Robot:
-    """The robot that a complete set of checked values, and its effects, describe."""
+    """Robot described by a complete set of checked values, and its effects."""
     numbers = {item.name: values[item.name] for item in fields(Robot) if item.name in values}
     names = (values["left_wheel_names"], values["right_wheel_names"])
     many = max(len(each) for each in names)  # type: ignore[arg-type]
@@ -293,7 +293,7 @@ def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = (
 
 
 def tolerance_of(values: Mapping[str, Value]) -> PieceTolerance:
-    """When pieces end, of a complete set of checked values."""
+    """Piece tolerance from a complete set of checked values."""
     return PieceTolerance(
         path=float(values["piece_path_tolerance"]),  # type: ignore[arg-type]
         heading=float(values["piece_heading_tolerance"]),  # type: ignore[arg-type]
@@ -301,7 +301,7 @@ def tolerance_of(values: Mapping[str, Value]) -> PieceTolerance:
 
 
 def limits_of(values: Mapping[str, Value]) -> EncoderLimits:
-    """When counters are doubted, of a complete set of checked values."""
+    """Encoder limits from a complete set of checked values."""
     return EncoderLimits(
         max_wheel_speed=float(values["max_wheel_speed"]),  # type: ignore[arg-type]
         gap_duration=float(values["gap_duration"]),  # type: ignore[arg-type]
@@ -309,5 +309,5 @@ def limits_of(values: Mapping[str, Value]) -> EncoderLimits:
 
 
 def needs_no_ticks(values: Mapping[str, Value]) -> bool:
-    """Whether wheel positions come in radians, so that a count is but their resolution."""
+    """Whether wheel positions are in radians, so that counts per turn are only their resolution."""
     return values["input_type"] == "joint_state" and values["position_unit"] == "radians"

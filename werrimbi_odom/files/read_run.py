@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run from wherever it is: a folder with ticks.csv, a rosbag2 folder, a single bag file."""
+"""Reads a run of any kind: a folder with ticks.csv, a rosbag2 folder, a single bag file."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ def read_run(
     force: bool = False,
     progress: Progress | None = None,
 ) -> Run:
-    """Read a run; see `read_run_folder` and `read_run_bag`. Topics matter to bags alone.
+    """Read a run; see `read_run_folder` and `read_run_bag`. Topics apply to bags only.
 
     Parameters
     ----------
     reference : path, optional
-        What holds the reference of this drive, where the run does not: another bag, or a folder
-        with reference.csv.
+        Separate recording of the reference of this drive: another bag, or a folder with
+        reference.csv.
 
     Raises
     ------
     InputError
-        When there is no run at `path`, or it cannot be used; the message says what is wrong where.
+        If there is no run at `path`, or it is not usable; the message gives place and cause.
     """
     own = reference_topic if reference is None else NONE
 
@@ -87,12 +87,12 @@ def read_run(
 
 
 def bag_at(path: Path) -> Path | None:
-    """The bag of a run; None where it is a folder with ticks.csv.
+    """The bag of a run; None for a folder with ticks.csv.
 
     Raises
     ------
     InputError
-        When there is no run at `path`.
+        If there is no run at `path`.
     """
     found: Path | None = _of_kind(path, lambda folder: None, lambda bag: bag, TICKS)
     return found
@@ -106,7 +106,7 @@ def _reference_folder(folder: Path) -> FoundReference:
 def _of_kind(
     path: Path, of_folder: Callable[[Path], Any], of_bag: Callable[[Path], Any], table: str
 ) -> Any:
-    """What a folder with a table, or a bag, holds."""
+    """Content of a folder with a table, or of a bag."""
     try:
         if path.is_dir():
             if (path / table).exists():
@@ -127,7 +127,7 @@ def _bag_in(folder: Path) -> Path:
     if (folder / "metadata.yaml").exists():
         return folder
     files = sorted(each for each in folder.iterdir() if each.suffix in SUFFIXES)
-    if files:  # its recorder was killed before it wrote the metadata
+    if files:  # the recorder was killed before it wrote the metadata
         return files[0] if len(files) == 1 else folder
     hint = ""
     for below in (*sorted(folder.glob(f"*/{TICKS}")), *sorted(folder.glob("*/metadata.yaml"))):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One robot's files as they were asked for, and the reading of them."""
+"""The requested files of one robot, and their content."""
 
 from __future__ import annotations
 
@@ -23,34 +23,34 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
 BAG = "metadata.yaml"
-_NAMED = 8  # runs of a folder that are named before "..."
+_NAMED = 8  # runs of a folder named before "..."
 
 
 @dataclass(frozen=True, kw_only=True)
 class DriveOptions:
-    """How drives are read and judged: from Python, on the command line, and sent to a worker."""
+    """How drives are read and evaluated: from Python, on the command line, and in a worker."""
 
     reference_kind: ReferenceKind | None = None
-    """What the reference's noise is like; None: as who reads the drives knows it, or absolute."""
+    """Noise of the reference; None: as known to the reader of the drives, otherwise absolute."""
     leg: float = 1.0
     """Length of a leg [m]."""
     reference_sigma_xy: float | None = None
-    """Noise of the reference's position, if it is known [m]."""
+    """Noise of the reference's position, if known [m]."""
     reference_sigma_yaw: float | None = None
-    """The same of its heading [rad]."""
+    """Noise of its heading, if known [rad]."""
     ticks_topic: str | None = None
     reference_topic: Topics = None
     effects: tuple[Path, ...] = ()
-    """Files with effects of the user's own."""
+    """Files with the user's own effects."""
     references: tuple[Path, ...] = ()
-    """What holds the reference of each run and then of each held-out one; empty: they do."""
+    """References of the runs, then of the held-out ones, in order; empty: contained in the runs."""
     force_reference: bool = False
-    """Take a reference that is made from the wheels."""
+    """Accept a reference that is computed from the wheels."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """One robot's files."""
+    """The files of one robot."""
 
     robot: Path
     runs: tuple[Path, ...]
@@ -60,26 +60,26 @@ class Asked:
 
 @dataclass(frozen=True)
 class Recordings:
-    """Everything that was asked for, read."""
+    """Content of all requested files."""
 
     source: RobotFile
     collection: Collection
-    """Effects that a robot file may name, those of --effects among them."""
+    """Effects that a robot file may name, including those of --effects."""
     runs: tuple[Run, ...]
     holdout: tuple[Run, ...]
-    """Runs to judge on alone; empty where none were given."""
+    """Held-out runs, for evaluation only; may be empty."""
     how: DriveOptions
     fitted: Robot | None = None
-    """The robot to judge, where it is another one than the file's: more was fitted since."""
+    """Robot to evaluate, if it differs from the file's because more was fitted."""
 
     @property
     def robot(self) -> Robot:
-        """The robot to judge."""
+        """Robot to evaluate."""
         return self.fitted or self.source.robot
 
     @property
     def evaluation(self) -> EvaluationOptions:
-        """How a robot is judged on these runs."""
+        """Options for evaluating a robot on these runs."""
         how = self.how
         return EvaluationOptions(
             reference_kind=how.reference_kind or "absolute",
@@ -100,12 +100,12 @@ def read(
     Parameters
     ----------
     collection
-        What the robot file may name.
+        Effects that the robot file may name.
 
     Raises
     ------
     InputError
-        When something cannot be used.
+        If an input is not usable.
     """
     source = read_robot_file(asked.robot, effects=collection)
     return gathered(source, collection, asked.runs, asked.holdout, asked.how, show)
@@ -119,12 +119,12 @@ def gathered(
     how: DriveOptions,
     show: Show = silent,
 ) -> Recordings:
-    """Drives of a robot, those that are paths read.
+    """Collect the drives of a robot; paths are read.
 
     Raises
     ------
     InputError
-        When something cannot be used, or a drive is given twice.
+        If an input is not usable, or a drive is given twice.
     """
     drives = [*runs, *holdout]
     references: Sequence[Path | None] = how.references or [None] * len(drives)
@@ -155,7 +155,7 @@ def gathered(
 
 
 def _with_one_scale(runs: Sequence[Run], fitted: int) -> list[Run]:
-    """Headings that were a gyro's with the scale that the fitted drives tell together."""
+    """Apply the common gyro scale, estimated from the fitted drives, to merged headings."""
     references = [run.reference for run in runs]
     known = [each for each in references if each is not None]
     scaled = iter(with_one_scale(known, [each for each in references[:fitted] if each is not None]))
@@ -163,7 +163,7 @@ def _with_one_scale(runs: Sequence[Run], fitted: int) -> list[Run]:
 
 
 def _kind_of(runs: Sequence[Run]) -> ReferenceKind:
-    """What is known of the reference of any drive, else absolute."""
+    """Kind of the reference if known for any drive, otherwise absolute."""
     kinds = {run.reference.kind for run in runs if run.reference is not None}
     known: tuple[ReferenceKind, ...] = ("local_map", "incremental")
     return next((kind for kind in known if kind in kinds), "absolute")
@@ -191,12 +191,12 @@ def _read(path: Path, source: RobotFile, how: DriveOptions, reference: Path | No
 
 
 def refuse_twice(paths: Iterable[Path]) -> None:
-    """A drive that counts twice makes every figure surer than it is.
+    """Raise on a repeated drive, which would make every result too precise.
 
     Raises
     ------
     InputError
-        When two paths lead to the same drive.
+        If two paths lead to the same drive.
     """
     seen: set[str] = set()
     for path in paths:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which of a bag's topics is the reference: what was asked for, or the only independent one."""
+"""Chooses a bag's reference topic: the requested one, or the only independent one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from werrimbi_odom.files.frames import Chain, chain, frame, is_static
 from werrimbi_odom.files.made_from_wheels import is_odometry_frame
 
 NONE = "none"
-"""Said instead of a topic: use no reference."""
+"""Value in place of a topic: use no reference."""
 
 _OTHER_SCANS = {
     "sensor_msgs/msg/PointCloud2": "clouds of points; scans of one level plane are matched "
@@ -22,7 +22,7 @@ _OTHER_SCANS = {
     "sensor_msgs/msg/MultiEchoLaserScan": "several echoes a beam; laser_proc makes a "
     "sensor_msgs/LaserScan of the first or the strongest, which can be matched",
 }
-"""Lidars' messages that are not matched, and what makes of them what is."""
+"""Lidar message types that are not matched, and how to convert them."""
 
 
 class Chosen(NamedTuple):
@@ -30,30 +30,30 @@ class Chosen(NamedTuple):
 
     source: Measured
     child: str = ""
-    """Frame that was asked for, of messages that hold several; "" where none was."""
+    """Requested frame, for messages with several; "" if none."""
 
 
 def choose_reference(
     held: Contents, wheels: Wheels, wish: str | None, force: bool = False
 ) -> Chosen | None:
-    """The reference that is wished for, or the only independent one; None where there is none.
+    """Choose the requested reference, or the only independent one; None if there is none.
 
-    What is made from the wheels is taken where it is wished for or nothing else is there; whether
-    it may be used is judged by its numbers too, see `Measured.independent`.
+    A reference computed from the wheels is used if requested, or if there is no other. Whether it
+    is acceptable is also tested on its values; see `Measured.independent`.
 
     Parameters
     ----------
     wheels
-        What tells the wheels; it is no reference.
+        Source of wheel data, which is not a reference.
     wish : str, optional
         TOPIC, TOPIC:CHILD_FRAME, /tf:PARENT:CHILD, or `none`.
     force : bool
-        Take a localiser's correction for poses of the robot all the same.
+        Accept a localiser's correction as poses of the robot.
 
     Raises
     ------
     InputError
-        When the wish is not there, or there are several; the message lists them.
+        If the requested topic does not exist, or there are several; the message lists them.
     """
     if wish == NONE:
         return None
@@ -62,7 +62,7 @@ def choose_reference(
     if wish is not None:
         return _wished(held, there, wish, force)
     independent = [each for each in there if each.independent]
-    # Scans are matched where they are asked for, or where nothing else measures the robot.
+    # Scans are matched if requested, or if nothing else measures the robot.
     independent = [each for each in independent if each.kind != SCAN] or independent
     if len(independent) > 1:
         raise InputError(
@@ -71,18 +71,18 @@ def choose_reference(
         )
     if wheels.gives == "odometry":
         return Chosen(independent[0]) if independent else None
-    # Odometry by its name may be a simulator's truth: what it is, its numbers say.
+    # Odometry by its name may be a simulator's ground truth; its values will show.
     chosen = independent or [each for each in there if each.chain is None] or there
     return Chosen(chosen[0]) if chosen else None
 
 
 def listed(found: Sequence[Measured]) -> str:
-    """Names and types."""
+    """Names and types, as a list."""
     return ", ".join(f"{each.name} ({each.kind})" for each in found) or "none"
 
 
 def other_scans(held: Contents) -> list[tuple[str, str]]:
-    """Topics of lidars whose messages are not matched, each with what it holds, in words."""
+    """Lidar topics that are not matched, each with its content in words."""
     return [
         (each.name, _OTHER_SCANS[each.kind]) for each in held.topics if each.kind in _OTHER_SCANS
     ]
@@ -113,7 +113,7 @@ def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -
 
 
 def _transforms(held: Contents, topic: str, frames: Sequence[str], force: bool) -> Measured:
-    """A chain of transforms, by its two ends, by its last frame alone, or the one that is there."""
+    """A chain of transforms, by both ends, by its last frame alone, or the only one."""
     space = topic.rpartition("/")[0]
     edges = [
         each
@@ -152,7 +152,7 @@ def _transforms(held: Contents, topic: str, frames: Sequence[str], force: bool) 
 def _refuse_correction(
     held: Contents, topic: str, child: str, chains: Sequence[Measured], force: bool
 ) -> None:
-    """The odometry's start on a map is no pose of the robot."""
+    """Raise on the odometry's origin on a map, which is not a pose of the robot."""
     whole = [each for each in chains if each.chain and len(each.chain.steps) > 1]
     through = [
         each

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""RESULTS.csv: what was measured by hand, a row for each run; errors name line and column."""
+"""RESULTS.csv: manual measurements, one row per run; errors name line and column."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True)
 class ResultsTable:
-    """Rows of a table; `words` are empty where the table has no column of words."""
+    """Rows of a table; `words` is empty without a column of words."""
 
     numbers: Floats
     """Shape (n, columns)."""
@@ -35,19 +35,19 @@ def read_results(
 ) -> ResultsTable:
     """Read the named columns of a comma-separated table with a header line.
 
-    Other columns and empty lines are passed over, and so are lines that begin with `#`.
+    Other columns, empty lines, and lines that begin with `#` are ignored.
 
     Parameters
     ----------
     numbers : sequence of str
         Columns of finite numbers.
     word, choices
-        A column that holds one of some words, in any case.
+        A column with one of these words, in any case.
 
     Raises
     ------
     InputError
-        Naming file, line, column, and the mend.
+        Names file, line, column, and the remedy.
     """
     path = Path(path)
     wanted = [*([word] if word else []), *numbers]
@@ -81,14 +81,14 @@ def read_results(
 
 
 def _text(path: Path) -> str:
-    """The whole of a small text file."""
+    """Text of a small file."""
     return read_small_text(
         path, wanted="it must be a CSV file", too_large="that was not typed by hand"
     )
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Number and cells of every line that says something."""
+    """Number and cells of every line with content."""
     found = []
     reader = csv.reader(_text(path).splitlines(), skipinitialspace=True, strict=True)
     try:

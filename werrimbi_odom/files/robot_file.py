@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Robot files: ROS 2 parameter files that the node and the command line both read."""
+"""Robot files: ROS 2 parameter files, read by the node and the command line."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ from werrimbi_odom.model.robot import Robot
 NODE = "odom_node"
 PARAMETER_KEY = "ros__parameters"
 ROS_OWN = ("use_sim_time", "start_type_description_service", "qos_overrides")
-"""What every ROS node understands; allowed in the file, and no business of ours."""
+"""Parameters of every ROS node; allowed in the file and ignored."""
 
 _YES = ("y", "Y", "yes", "Yes", "YES", "on", "On", "ON")
 _NO = ("n", "N", "no", "No", "NO", "off", "Off", "OFF")
@@ -62,21 +62,21 @@ _NO = ("n", "N", "no", "No", "NO", "off", "Off", "OFF")
 
 @dataclass(frozen=True)
 class RobotFile:
-    """A robot file as it was read."""
+    """Content of a robot file."""
 
     path: Path
     node: str
-    """The top key: a node's name, or `/**` for any."""
+    """Top key: a node's name, or `/**` for any."""
     values: Mapping[str, Value]
-    """Every parameter, those that the file leaves out at their defaults."""
+    """All parameters; those not in the file have their defaults."""
     given: tuple[str, ...]
-    """Names of the parameters that the file gives, in its order."""
+    """Names of the parameters in the file, in its order."""
     text: str = field(repr=False)
-    """The file's text, so that it can be written anew with its comments."""
+    """Text of the file, for rewriting it with its comments."""
     effects: tuple[AppliedEffect, ...] = ()
     """Physical effects, in order of application."""
     remarks: tuple[str, ...] = ()
-    """What in it is not used, in words for the user."""
+    """Unused content, in words for the user."""
 
     @property
     def robot(self) -> Robot:
@@ -84,12 +84,12 @@ class RobotFile:
         return robot_of(self.values, self.effects)
 
     def refuse_counts(self, what: str | Path) -> None:
-        """Whether it says what a count is.
+        """Check that the counts per turn are known.
 
         Raises
         ------
         InputError
-            When positions in radians alone can be used with it, and `what` holds counts.
+            If only positions in radians can be used with this file, and `what` contains counts.
         """
         if self.values[TICKS[0]] == VIRTUAL_TICKS_PER_REVOLUTION:
             raise InputError(
@@ -99,12 +99,12 @@ class RobotFile:
 
     @property
     def tolerance(self) -> PieceTolerance:
-        """When pieces end."""
+        """Tolerances that end a piece."""
         return tolerance_of(self.values)
 
     @property
     def limits(self) -> EncoderLimits:
-        """When counters are doubted."""
+        """When counter readings are rejected."""
         return limits_of(self.values)
 
 
@@ -114,15 +114,15 @@ def read_robot_file(path: str | Path, effects: Collection | None = None) -> Robo
     Parameters
     ----------
     path : path
-        Of a YAML file in UTF-8, of at most a megabyte.
+        Path of a YAML file in UTF-8, at most one megabyte.
     effects : Collection, optional
-        Where the effects that it names are looked up; by default the library and installed
-        packages. A robot file never names code.
+        Collection in which effects are looked up; default: the library and installed packages. A
+        robot file never names code.
 
     Raises
     ------
     InputError
-        When it cannot be used; the message names file, line, parameter, and the mend.
+        If it is not usable; the message names file, line, parameter, and the remedy.
     """
     path = Path(path)
     return robot_file_of_text(read_text(path), path, None if effects is None else effects.find)
@@ -136,32 +136,31 @@ def write_robot_file(
     force: bool = False,
     effects: Sequence[AppliedEffect] | None = None,
 ) -> RobotFile:
-    """Write a robot file again with some values changed; its comments and order stay.
+    """Write a robot file with some values changed; comments and order are kept.
 
     Parameters
     ----------
     source : RobotFile
-        Need not be on disk any more: its text was kept.
+        Need not exist on disk any more: its text is stored.
     changes : mapping
-        New values by parameter name; parameters that the source does not give are added.
+        New values by parameter name; parameters missing in the source are added.
     out : path
         May be the source's own path, with `force`.
     force : bool
         Whether an existing `out` may be overwritten.
     effects : sequence of AppliedEffect, optional
-        All effects of the new file, in order of application; by default the source's. A parameter
-        that is unknown (each run has its own) is left out.
+        All effects of the new file, in order of application; default: those of the source. Unknown
+        parameters (per run) are omitted.
 
     Returns
     -------
     RobotFile
-        What was written.
+        The robot file as written.
 
     Raises
     ------
     InputError
-        When a change is not a value of its parameter, or `out` exists or cannot be written; then
-        nothing has been written.
+        If a new value is invalid, or `out` exists or is not writable; nothing is written then.
     """
     out = Path(out)
     if out.is_dir():
@@ -193,19 +192,19 @@ def new_text(
     changes: Mapping[str, Value],
     effects: Sequence[AppliedEffect] | None = None,
 ) -> str:
-    """The text that `write_robot_file` writes, for who wants to read it before.
+    """Text that `write_robot_file` would write, for a preview.
 
     Raises
     ------
     InputError
-        When a change is not a value of its parameter, or an effect's of its.
+        If a new value of a parameter or effect is invalid.
     """
     wanted = {name: find(name).checked(value) for name, value in changes.items()}
     for name in source.given:
-        if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
+        if find(name).kind == "float":  # ROS parameters are typed: 2000 is not a double
             wanted.setdefault(name, source.values[name])
     place = (source.node, PARAMETER_KEY)
-    for applied in effects or ():  # every value can be read back, or nothing is written
+    for applied in effects or ():  # every value must be readable again, else nothing is written
         for item in parameters_of(applied.effect):
             name = item.name.partition(".")[2]
             item.checked(applied.values.get(name, item.default))
@@ -216,7 +215,7 @@ def new_text(
 def _read_back(
     text: str, out: Path, source: RobotFile, effects: Sequence[AppliedEffect]
 ) -> RobotFile | None:
-    """What was written, as it will be read; None where it cannot be."""
+    """The new text as it will be read; None if it is unreadable."""
     collection = Collection(tuple(item.effect for item in (*effects, *source.effects)))
     try:
         return robot_file_of_text(text, out, collection.find)
@@ -225,7 +224,7 @@ def _read_back(
 
 
 def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:
-    """A robot file by its text, as `read_robot_file` has it; `path`: what errors call it."""
+    """Parse the text of a robot file; see `read_robot_file`. `path` is used in error messages."""
     node, block = _parameter_block(load(text, path), path)
     given: dict[str, Value] = {}
     wrong: list[tuple[int, str]] = []
@@ -253,7 +252,7 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
                 else:
                     of_turtlebot.append(name)
             elif _is_of_effect(name, raw, effects):
-                if effects is not None:  # else it is not known which of them are named
+                if effects is not None:  # otherwise it is unknown which effects are listed
                     _take_effect(effects, name, raw)
             else:
                 parameter = find(str(name))
@@ -286,9 +285,9 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
         raise InputError(f"{place}{'; '.join(told)}")
     try:
         robot_of(values)
-    except ValueError as error:  # of what values make together, each of which is well
+    except ValueError as error:  # a product of values is invalid, though each value is valid
         named = [name for name in re.findall(r"\w+", str(error)) if name in given]
-        # The value that is farthest from 1 is the one that was mistyped.
+        # The value farthest from 1 is the probable typo.
         worst = max(named, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
         raise InputError(f"{path}, line {line_of(block, worst)}: {error}") from None
     found = effects.applied()
@@ -297,7 +296,7 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
 
 
 def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedMap]:
-    """The node's name and the parameters below it."""
+    """Name of the node, and its parameters."""
     node = next(iter(content), None)
     if len(content) != 1:
         named = [name for name in content if isinstance(name, str) and name.strip("/") == NODE]
@@ -326,20 +325,20 @@ def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedM
 
 
 def _tells_of_wheels(below: object) -> bool:
-    """Whether a node among others, as in the file of a controller manager, has a base."""
+    """Whether one of several nodes, as in a controller manager's file, has a wheelbase."""
     block = below.get(PARAMETER_KEY) if isinstance(below, CommentedMap) else None
     return isinstance(block, CommentedMap) and bool({"wheel_separation", TURTLEBOT} & set(block))
 
 
 def _as_ros_reads(parameter: NodeParameter, raw: object) -> object:
-    """The value; for a truth value also in the words that ROS takes from YAML 1.1 (yes, off)."""
+    """Convert a value; booleans also from the words that ROS accepts from YAML 1.1 (yes, off)."""
     if parameter.kind == "boolean" and type(raw) is str:  # quoted texts are of another type
         return True if raw in _YES else False if raw in _NO else raw
     return plain(raw)
 
 
 class _InBlockError(InputError):
-    """Something is wrong within the block of an effect."""
+    """An error within the block of an effect."""
 
     def __init__(self, message: str, line: int) -> None:
         super().__init__(message)
@@ -347,7 +346,7 @@ class _InBlockError(InputError):
 
 
 def _is_of_effect(name: object, raw: object, effects: Named | None) -> bool:
-    """Whether a key tells of an effect: it names one, or holds a block that nothing else has."""
+    """Whether a key belongs to an effect: it names one, or has a block that nothing else has."""
     if not isinstance(name, str) or any(item.name == name for item in PARAMETERS):
         return False
     first = name.partition(".")[0]
@@ -356,7 +355,7 @@ def _is_of_effect(name: object, raw: object, effects: Named | None) -> bool:
 
 
 def _take_effect(effects: Named, name: str, raw: object) -> None:
-    """A block of parameters, or one of them spelt with a dot."""
+    """Read a block of parameters, or one parameter with a dotted name."""
     if "." in name:
         effects.take(name, plain(raw))
         return

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run: one recorded drive, wherever it was recorded."""
+"""A run: one recorded drive, from any kind of recording."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
 
 EXACT = 2.0**53
-"""Whole numbers below this are told apart by a float64."""
+"""A float64 represents all integers below this exactly."""
 
 ReferenceKind = Literal["absolute", "incremental", "local_map"]
-"""Poses each with noise of its own (motion capture); each told from the last one, so that noise
-adds up (a gyro); or on a map, with an error that wanders slowly as well (a localiser)."""
+"""absolute: independent noise per pose (motion capture); incremental: each pose relative to the
+last, so that noise accumulates (a gyro); local_map: absolute with an additional slowly drifting
+error (a localiser)."""
 Made = TypeVar("Made")
 
 
 def integrated(time: Floats, rates: Floats) -> Floats:
-    """Integral over time, (n, ...), by trapezia; stamps that do not go forward add nothing."""
+    """Integral over time, (n, ...), by the trapezoidal rule; non-increasing stamps add nothing."""
     lasted = np.diff(np.maximum.accumulate(time)).reshape(-1, *(1,) * (rates.ndim - 1))
     steps = 0.5 * (rates[1:] + rates[:-1]) * lasted
     return np.concatenate([np.zeros((1, *rates.shape[1:])), np.cumsum(steps, axis=0)])
@@ -34,12 +35,12 @@ def integrated(time: Floats, rates: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Ticks:
-    """What the encoders counted; arrays of shape (n,)."""
+    """Encoder counts; arrays of shape (n,)."""
 
     time: Floats
-    """Stamps, finite; they may go back where the record does [s]."""
+    """Stamps, finite [s]; they may decrease where the record does."""
     left: Counts
-    """Cumulative signed counts; int64 where all are whole, else float64 with NaN where missing."""
+    """Cumulative signed counts; int64 if all are integers, else float64 with NaN where missing."""
     right: Counts
     """The same for the right wheel."""
     channels: Mapping[str, Floats] = field(default_factory=dict)
@@ -47,7 +48,7 @@ class Ticks:
     _latest: list[tuple[object, ref[Any]]] = field(default_factory=list, init=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For another process: without what is remembered."""
+        """Pickle without the cache."""
         return Ticks, (self.time, self.left, self.right, self.channels)
 
     @property
@@ -56,7 +57,7 @@ class Ticks:
         return int(self.time.size)
 
     def latest(self, by: object, work: Callable[[], Made]) -> Made:
-        """What `work` makes of them, unless the same was made last, and somebody holds it still."""
+        """Result of `work`, cached for the last key `by` while it is referenced elsewhere."""
         last, held = self._latest[0] if self._latest else (None, None)
         made: Made | None = held() if held is not None and last == by else None
         if made is None:
@@ -66,40 +67,41 @@ class Ticks:
 
 
 class GyroTurn(NamedTuple):
-    """What a gyro showed whose headings were laid upon another reference's; see `merged`."""
+    """Turn of a gyro after its alignment with another reference; see `merged`."""
 
     turned: Floats
-    """Turning, clear of what an angle and a steady drift make of it, shape (m,) [rad]."""
+    """Turn without its part in offset and constant drift, shape (m,) [rad]."""
     scale: float
-    """Turning by the other over the gyro's, told by this drive alone."""
+    """Turn of the other reference over that of the gyro, estimated from this drive alone."""
     std: float
 
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """What was measured from outside; arrays of shape (m,), NaN where not measured."""
+    """Measured poses; arrays of shape (m,), NaN where not measured."""
 
     time: Floats
-    """Stamps in the ticks' clock, finite [s]."""
+    """Stamps on the ticks' clock, finite [s]."""
     x: Floats
     """[m]"""
     y: Floats
     """[m]"""
     yaw: Floats
-    """Wrapped or not, as it was recorded [rad]."""
+    """Wrapped or not, as recorded [rad]."""
     sigma_xy: Floats | None = None
-    """Standard deviation of x, and of y, where it is stated [m]."""
+    """Standard deviation of x and of y, if stated [m]."""
     sigma_yaw: Floats | None = None
-    """Standard deviation of yaw, where it is stated [rad]."""
+    """Standard deviation of yaw, if stated [rad]."""
     kind: ReferenceKind | None = field(default=None, kw_only=True)
-    """What its noise is like, where the reader knows; None where it does not."""
+    """Kind of its noise; None if unknown to the reader."""
     own_axes: bool = field(default=False, kw_only=True)
-    """Its axes begin anew with each drive, and where it was cut (scans without a map): then drives
-    have no direction and no place of the floor in common."""
+    """The coordinate frame differs between drives, and between segments after a cut (scans without
+    a map): drives have no common direction or position on the floor."""
     gyro: GyroTurn | None = field(default=None, kw_only=True)
-    """Where `yaw` is a gyro's, laid upon another reference's."""
+    """Given if `yaw` is that of a gyro, aligned with another reference."""
     stamped_together: bool = field(default=False, kw_only=True)
-    """Its stamps are late when the wheels' are; see `inference.legs.even_stamps`."""
+    """Its stamps are delayed together with those of the wheels; see
+    `inference.legs.even_stamps`."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -112,7 +114,7 @@ class Reference:
         return np.isfinite(self.yaw)
 
     def chosen(self, which: NDArray[np.bool_]) -> Reference:
-        """Some of the poses; `which` has shape (m,)."""
+        """Select poses; `which` has shape (m,)."""
         return Reference(
             self.time[which],
             self.x[which],
@@ -128,19 +130,19 @@ class Reference:
 
 
 Why = Literal["held", "carried", "gap", "counter", "reference"]
-"""held: wheels turn, the robot does not; carried: it moves, its wheels do not; gap: reference or
-ticks are silent while it drives; counter: it leapt; reference: it jumped."""
+"""held: wheels turn, the robot does not; carried: the robot moves, its wheels do not; gap:
+reference or ticks are silent during driving; counter: it jumped; reference: it jumped."""
 
 
 class NoDriving(NamedTuple):
-    """A stretch of a run that is no driving."""
+    """A stretch of a run that is not driving."""
 
     begin: float
-    """In the run's own clock [s]."""
+    """On the run's own clock [s]."""
     end: float
     why: Why
     words: str
-    """What happened then, as the end of a sentence: the wheels turned and ..."""
+    """Description, as the end of a sentence: the wheels turned and ..."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,24 +155,24 @@ class Run:
     ticks: Ticks
     reference: Reference | None = None
     notes: tuple[str, ...] = ()
-    """What the reader chose or left out, in words for the user."""
+    """Choices and omissions of the reader, in words for the user."""
     damage: tuple[str, ...] = ()
-    """What of the record is spoilt and was got over, in words for the user."""
+    """Damage of the record that was worked around, in words for the user."""
     no_reference: str = ""
-    """Where nothing was measured: what would be a reference, and what is there."""
+    """Without a reference: what could be one, and what the record contains."""
     circle: str = ""
-    """Where the reference's name and frames say that it is made from the wheels: what it is, why,
-    and what else there is."""
+    """If the reference is computed from the wheels, by name and frames: what it is, why, and the
+    alternatives."""
     held_poses: int = 0
-    """Poses of the reference that were left out, see `held.without_held_poses`."""
+    """Number of reference poses removed by `run_checks.without_held_poses`."""
     no_driving: tuple[NoDriving, ...] | None = None
-    """What of it is no driving; None where nobody has looked yet."""
+    """Stretches that are not driving; None if not yet determined."""
     taken_out: tuple[tuple[float, float], ...] = ()
-    """Stretches of the reference that were put aside on purpose, from and to [s]: legs end there,
-    and begin anew."""
+    """Stretches of the reference that are excluded on purpose, start and end [s]: legs end there,
+    and start again."""
     happened: tuple[tuple[float, float], ...] = ()
-    """Stretches in which the robot, or the reference, was moved at once, from and to [s]: an event,
-    which no law explains. Legs go through it, and nothing is told of their errors."""
+    """Stretches in which the robot or the reference was displaced at once, start and end [s]: an
+    event, which no model explains. Legs continue through it, and their errors are not evaluated."""
 
 
 class Collected(NamedTuple):
@@ -178,7 +180,7 @@ class Collected(NamedTuple):
 
     reference: Reference
     told: str
-    """In words what it is about."""
+    """Its frames or content, in words."""
     damage: tuple[str, ...] = ()
     """See `Run.damage`."""
     taken_out: tuple[tuple[float, float], ...] = ()
@@ -186,7 +188,7 @@ class Collected(NamedTuple):
 
 
 def counts_of(values: Floats) -> Counts:
-    """Counts as int64 where all of them are whole numbers that a float64 tells apart."""
+    """Convert counts to int64 if all are integers that a float64 represents exactly."""
     exact = np.abs(values) < EXACT
     if exact.all() and (values == np.rint(values)).all():
         return values.astype(np.int64)

@@ -22,7 +22,7 @@ from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.text_files import readable
 
 Progress = Callable[[float], None]
-"""Told, now and then, which share of the work is done."""
+"""Callback for the share of the work done."""
 
 
 Topics = str | Sequence[str] | None
@@ -45,24 +45,24 @@ def read_run_bag(
     path : path
         A rosbag2 folder (sqlite3 or MCAP), a .mcap or .db3 file, or a ROS 1 .bag.
     robot_file : RobotFile
-        Says the joints' names, the unit of their positions, and how two topics are paired.
+        Gives the joint names, the unit of positions, and how two topics are paired.
     ticks_topic : str, optional
-        Where the ticks are, LEFT,RIGHT for two topics; needed where there are several.
+        Topic of the ticks, LEFT,RIGHT for two; required if there are several candidates.
     reference_topic : str or several, optional
-        Where the reference is, /tf:PARENT:CHILD among transforms, `none` for no reference; needed
-        where there are several. Two are judged as one, see `merged`.
+        Topic of the reference, /tf:PARENT:CHILD for transforms, `none` for no reference; required
+        if there are several candidates. Two are merged, see `merged`.
     force : bool
-        Take for a reference what is none.
+        Accept an unsuitable reference.
 
     Returns
     -------
     Run
-        Stamps are those of the headers, where there are any; else when messages were received.
+        Stamps are those of the headers if present, otherwise times of recording.
 
     Raises
     ------
     InputError
-        When the bag cannot be read, or what to read is not plain.
+        If the bag is unreadable, or the choice of topics is ambiguous.
     """
     path = Path(path)
     with opened_bag(path) as bag:
@@ -92,7 +92,7 @@ def read_run_bag(
 
 
 class FoundReference(NamedTuple):
-    """A reference as it was read."""
+    """A reference and the remarks from reading it."""
 
     reference: Reference | None
     notes: tuple[str, ...]
@@ -107,7 +107,7 @@ class FoundReference(NamedTuple):
 def read_reference_bag(
     path: Path, robot_file: RobotFile, reference_topic: Topics = None, force: bool = False
 ) -> FoundReference:
-    """Read a reference from a bag whose wheels, if it has any, are not asked for."""
+    """Read only the reference from a bag; wheels are ignored."""
     nothing = Wheels("", "", 0, "counts")
     with opened_bag(path) as bag:
         held = _contents_of(bag, robot_file, reference_topic)
@@ -143,7 +143,7 @@ def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[C
 def _collect(
     bag: Bag, takers: Sequence[tuple[Sequence[str], _Taker]], progress: Progress | None
 ) -> None:
-    """Give each message of a bag to those that take its topic."""
+    """Pass each message of a bag to the collectors of its topic."""
     wanted = {name for names, _ in takers for name in names}
     total = sum(topic.messages for topic in bag.topics if topic.name in wanted)
     for number, message in enumerate(bag.messages(sorted(wanted))):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a run can be judged at all, said with what is there; what was got over; poses held."""
+"""Checks whether a run can be evaluated; lists what was worked around; removes held poses."""
 
 from __future__ import annotations
 
@@ -17,18 +17,19 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 FEW_STEPS_BACK = 3
-"""A clock is set back now and then; rows that are not sorted go back again and again."""
+"""More steps back in time than this are unsorted rows and not a clock set back."""
 APART = 5.0
-"""Seconds by which a reference may lie beside the ticks and be found again (docs/set_up.md)."""
+"""Largest time between reference and ticks that a search for the delay covers [s]
+(docs/set_up.md)."""
 
 
 def refuse_unjudgeable(run: Run) -> None:
-    """Whether there is something to compare the odometry with, at the same time.
+    """Check that there is a reference to compare with, overlapping in time.
 
     Raises
     ------
     InputError
-        When there is no reference, it lies wholly before or after the ticks, or the ticks go back
+        If there is no reference, it lies entirely before or after the ticks, or the ticks go back
         in time.
     """
     if run.reference is None:
@@ -38,7 +39,7 @@ def refuse_unjudgeable(run: Run) -> None:
 
 
 def words_about(runs: Sequence[Run]) -> list[str]:
-    """What of some runs was left out, a line each."""
+    """Data that were left out of some runs, one line each."""
     found = [f"{run.path}: {words}" for run in runs for words in run.damage]
     for run in runs:
         lost = ~(np.isfinite(run.ticks.left) & np.isfinite(run.ticks.right))
@@ -94,25 +95,24 @@ def _told(span: tuple[float, float]) -> str:
 
 
 QUANTA = 3.0
-"""Steps of the reference's resolution by which a robot must have moved for its pose to change."""
+"""Motion that must change the pose, in steps of the reference's resolution."""
 
 FEWEST = 20
-"""Poses of a run; fewer are taken by hand, and one may well be the one before: a robot that was
-driven back onto its mark."""
+"""Number of poses for this test. Fewer poses are manual measurements, and an equal pose may be
+real: a robot driven back to its mark."""
 
 LEAST_TRAVEL, LEAST_TURN = 0.01, 0.02
-"""By which a robot must have moved for its pose to be called held [m, rad]: a measurement may stick
-for some millimetres."""
+"""Motion that must change the pose [m, rad]; a measurement may stick for some millimetres."""
 
 ROLLS = 0.01
-"""Of these, in the interval in which the pose was new: the robot was under way."""
+"""Share of these, in the interval of the last new pose, above which the robot was moving."""
 
 
 def without_held_poses(run: Run, robot: Robot) -> Run:
-    """The run without poses that repeat while its wheels turn.
+    """Remove poses that repeat while the wheels turn.
 
-    For references whose poses are each their own. One that adds up what it has matched says by an
-    equal pose that it missed a motion.
+    For references with independent poses only. For an incremental one, an equal pose means a missed
+    motion.
     """
     if run.reference is None:
         return run
@@ -123,7 +123,7 @@ def without_held_poses(run: Run, robot: Robot) -> Run:
 
 
 def words_about_held(runs: Sequence[Run]) -> str | None:
-    """What was left out of some runs; None where nothing was."""
+    """Description of the removed poses; None if there are none."""
     some = [run for run in runs if run.held_poses]
     if not some:
         return None
@@ -137,10 +137,10 @@ def words_about_held(runs: Sequence[Run]) -> str | None:
 
 
 def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
-    """Which poses of a run's reference were held, shape (m,).
+    """Poses of a run's reference that were held, shape (m,).
 
-    The wheels must have turned when the pose was new: a reference that is late shows a robot that
-    stands, and for a while after it has set off.
+    The wheels must have turned when the pose was new. A delayed reference shows the robot at rest,
+    also for a while after it starts to move.
     """
     reference = run.reference
     assert reference is not None
@@ -163,11 +163,11 @@ def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
     travelled &= travels[first] & reference.has_position
     turned &= turns[first] & reference.has_yaw
     since = np.maximum.accumulate(np.where(repeats & (travelled | turned), rows, -1))
-    return np.asarray(repeats & (since > first))  # a robot may come back to where it was lost
+    return np.asarray(repeats & (since > first))  # the robot may return to the held pose
 
 
 def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:
-    """Way [m] and turn [rad] by the counters at some instants; NaN where they do not say."""
+    """Path [m] and turn [rad] by the counters at some instants; NaN outside their range."""
     stamps = np.maximum.accumulate(run.ticks.time)
     left, right = (
         np.interp(time, stamps, counts.astype(np.float64) * size, left=np.nan, right=np.nan)
@@ -184,7 +184,7 @@ def _equal(one: Floats, other: Floats) -> NDArray[np.bool_]:
 
 
 def _quantum(*columns: Floats) -> float:
-    """The smallest step of some values that is not zero; 0 where there is none."""
+    """Smallest non-zero step of some values; 0 if there is none."""
     steps = np.abs(np.concatenate([np.diff(column) for column in columns]))
     steps = steps[steps > 0.0]
     return float(steps.min()) if steps.size else 0.0

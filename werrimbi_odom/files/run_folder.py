@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs recorded as a folder with ticks.csv and, where something was measured, reference.csv."""
+"""Runs recorded as a folder with ticks.csv and, optionally, reference.csv."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TICKS_COLUMNS = ("t_s", "left_ticks", "right_ticks")
 REFERENCE = "reference.csv"
 REFERENCE_COLUMNS = ("t_s", "x_m", "y_m", "yaw_rad")
 LATEST = 1e12
-"""No time in seconds [s]; the time of day in milliseconds or nanoseconds lies beyond it."""
+"""Upper limit of a time in seconds [s]; Unix time in milliseconds or nanoseconds exceeds it."""
 SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
 
 
@@ -31,7 +31,7 @@ def read_run_folder(path: str | Path) -> Run:
     Raises
     ------
     InputError
-        When a file cannot be used; the message names file, line and column.
+        If a file is not usable; the message names file, line and column.
     """
     path = Path(path)
     ticks, damage = _ticks(path / TICKS)
@@ -51,7 +51,7 @@ def read_run_folder(path: str | Path) -> Run:
 
 
 def _cut(table: CsvTable) -> tuple[str, ...]:
-    """That a file ends in mid-row, as where the power failed."""
+    """Remark on a file that ends in mid-row, as after a power failure."""
     if not table.cut:
         return ()
     return (f"{table.path.name}, line {table.cut}: cut off in mid-row; read up to there",)
@@ -65,7 +65,7 @@ def _ticks(path: Path) -> tuple[Ticks, tuple[str, ...]]:
 
 
 def _times(table: CsvTable) -> Floats:
-    """Stamps; a row without one cannot be placed, so that is an error."""
+    """Stamps; a row without one is an error."""
     times = table.column("t_s")
     if not (np.abs(times) < LATEST).all():
         table.refuse_where("t_s", _not_a_time)
@@ -82,7 +82,7 @@ def _not_a_time(text: str) -> str:
 
 
 def _counts(table: CsvTable, name: str) -> Counts:
-    """Counters; `nan` and `inf` stand for a reading that failed, and the model counts them."""
+    """Counters; `nan` and `inf` mark failed readings, which the model counts."""
     values = table.column(name)
     if np.isnan(values).any():
         table.refuse_where(name, _not_a_count)
@@ -98,12 +98,12 @@ def _not_a_count(text: str) -> str:
 
 
 def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
-    """A reference and, in words, what of its file is spoilt.
+    """A reference, and the damage of its file in words.
 
     Raises
     ------
     InputError
-        When it cannot be used; the message names file, line and column.
+        If it is not usable; the message names file, line and column.
     """
     table = read_table(path, REFERENCE_COLUMNS, REFERENCE_COLUMNS[:1])
     for name in table.names:

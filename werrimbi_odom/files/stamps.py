@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Stamps of a bag's topics: those of the headers against when the recorder got the messages."""
+"""Stamps of a bag's topics: header stamps against times of recording."""
 
 from __future__ import annotations
 
@@ -14,54 +14,54 @@ from werrimbi_odom.files.bag import Bag
 from werrimbi_odom.model.pose import Floats
 
 _BURST = 0.2
-"""Share of the usual interval, below which two messages were received at once."""
+"""Share of the usual interval below which two messages arrived in a burst."""
 _LATE = 0.1
-"""By how much more than usual a message must be late to be counted [s]."""
+"""Delay beyond the usual one above which a message counts as late [s]."""
 _FEWEST = 3
 _ALIKE = 1.1
-"""Times as uneven as the other clock, below which it is told to be as even."""
+"""Largest ratio of jitters at which the header clock is still preferred."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stamps:
-    """Stamps of one topic; times in seconds."""
+    """Statistics of one topic's stamps; times in seconds."""
 
     messages: int
     rate: float
-    """Of the stamps that are believed [Hz]."""
+    """Rate by the preferred stamps [Hz]."""
     jitter: float | None
-    """Half of the span that nine tenths of the intervals between header stamps are in; None where
-    there are no headers."""
+    """Half of the range of nine tenths of the intervals between header stamps; None without
+    headers."""
     received_jitter: float
-    """The same of the times of receipt."""
+    """The same for the times of recording."""
     longest: float
-    """Longest interval of the stamps that are believed."""
+    """Longest interval of the preferred stamps."""
     offset: float | None
-    """Median of receipt after stamp."""
+    """Median delay from stamp to recording."""
     wander: float | None
-    """Span that 98 of 100 of these are in."""
+    """Range of 98 % of these delays."""
     latest: float | None
-    """The largest of them."""
+    """Largest of these delays."""
     bursts: float
-    """Share of the messages that were received together with the one before."""
+    """Share of messages that arrived in a burst with the previous one."""
     late: float
-    """Share of the messages that are late by a tenth of a second more than usual."""
+    """Share of messages with a delay 0.1 s above the usual one."""
     back: int
-    """Times that the stamps went back."""
+    """Number of times that the stamps went back."""
 
     @property
     def believed(self) -> Literal["header", "received"]:
-        """The clock whose intervals are the evener; the headers where neither is by much."""
+        """The clock with the more even intervals; the headers if they differ little."""
         if self.jitter is None:
             return "received"
         return "header" if self.jitter <= _ALIKE * self.received_jitter else "received"
 
 
 def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:
-    """Stamps of some topics of an open bag; of those with three messages and more.
+    """Stamp statistics of some topics of an open bag, for topics with at least three messages.
 
-    Of transforms those of the one that comes most seldom: several send on one topic, each with
-    stamps of its own, and what measures is slower than the odometry below it.
+    For transforms, those of the rarest one: several nodes send on one topic, each with its own
+    stamps, and a measurement is slower than the odometry below it.
     """
     times: dict[str, dict[tuple[str, ...], list[tuple[float, float]]]] = {}
     for message in bag.messages(topics):
@@ -77,14 +77,14 @@ def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:
 
 
 def _frames(content: Any) -> tuple[str, ...]:
-    """Of a message's first transform, from and to; empty where it has none."""
+    """Parent and child of a message's first transform; empty if it has none."""
     for each in getattr(content, "transforms", ())[:1]:
         return str(each.header.frame_id), str(each.child_frame_id)
     return ()
 
 
 def _stamp(content: Any) -> float:
-    """Of the header, of a message or of its first transform; 0 where there is none."""
+    """Header stamp of a message or of its first transform; 0 if there is none."""
     for part in (content, *getattr(content, "transforms", ())[:1]):
         stamp = getattr(getattr(part, "header", None), "stamp", None)
         if stamp is not None:
@@ -95,7 +95,7 @@ def _stamp(content: Any) -> float:
 def _judged(header: Floats, received: Floats) -> Stamps:
     gaps = np.diff(received)
     has_header = bool(np.isfinite(header).all())
-    told = np.diff(np.sort(header)) if has_header else gaps  # one may overtake another
+    told = np.diff(np.sort(header)) if has_header else gaps  # messages may overtake one another
     after = received - header
     usual = float(np.median(told))
     return Stamps(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a run's reference tells of its beginning: the first pose, and the wheels' phases."""
+"""Start pose of a run, and the wheels' phases, from its reference."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 
 class StartPose(NamedTuple):
-    """The pose at the first row of ticks, and in words where it comes from."""
+    """Pose at the first row of ticks, and its origin in words."""
 
     pose: Pose
-    """Of the axle's midpoint, in the frame of the odometry, which is right-handed."""
+    """Pose of the axle's midpoint in the odometry frame, which is right-handed."""
     told: str
     shown: Pose
-    """What the reference shows of it, in its own frame."""
+    """The same as measured by the reference, in its own frame."""
 
 
 def start_pose(run: Run, robot_file: RobotFile) -> Pose:
-    """Where the axle is when the reference shows its first pose; see `start_of`."""
+    """Pose of the axle at the reference's first pose; see `start_of`."""
     return start_of(run, robot_file).pose
 
 
 def start_of(run: Run, robot_file: RobotFile) -> StartPose:
-    """Where the axle is when the reference shows its first pose; the origin without a reference.
+    """Pose of the axle at the reference's first pose; the origin without a reference.
 
-    Where the robot file says that the reference measures another point or axis, a mirrored frame or
-    another time, the start is the one that makes it show its first pose.
+    If the robot file has the reference measure another point or axis, a mirrored frame or another
+    time, the start is the pose at which the reference would measure its first pose.
 
-    What the first row of the reference leaves out is taken from the next row that has it, brought
-    back by the odometry between the two. Where no heading was measured at all, it is the one with
-    which the odometry's path fits the measured positions best, in least squares, both turned about
-    the first of them.
+    Quantities missing in the first row of the reference are taken from the next row that has them,
+    propagated back by the odometry between the two. If no heading was measured, the start heading
+    is the one that fits the odometry's path to the measured positions best (least squares), both
+    rotated about the first of them.
     """
     view = view_of(robot_file.robot.effects)
     if run.reference is None:
@@ -86,7 +86,7 @@ def _mirrored(pose: Pose, view: View) -> Pose:
 
 
 def _seen_how(view: View) -> str:
-    """What lies between the reference's pose and the axle's, in words."""
+    """Difference between the reference's pose and the axle's, in words."""
     parts = []
     if view.ahead or view.left:
         parts.append(f"{1e3 * view.ahead:.0f} mm ahead and {1e3 * view.left:.0f} mm to the left")
@@ -98,7 +98,7 @@ def _seen_how(view: View) -> str:
 
 
 def driven(run: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
-    """A run dead reckoned, by everything that the robot file says."""
+    """Dead reckoning of a run with everything in the robot file."""
     return trajectory(
         robot_file.robot,
         run.ticks.time,
@@ -114,8 +114,8 @@ def driven(run: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
 def _brought_back(
     run: Run, robot_file: RobotFile, start: Pose, first_pose: Pose, view: View
 ) -> Pose:
-    """A start from which the reference, whose stamps are early, shows its first pose at once."""
-    for _ in range(2):  # an effect may look at the heading, so once is not quite enough
+    """Start at which a reference with early stamps would measure its first pose at once."""
+    for _ in range(2):  # an effect may read the heading, so once is not quite enough
         path = shown(driven(run, robot_file, start), view)
         begin = Pose(float(path.x[0]), float(path.y[0]), float(path.yaw[0]))
         start = compose(first_pose, between(begin, start))
@@ -123,7 +123,7 @@ def _brought_back(
 
 
 def _pieced_together(reference: Reference, driven: Path, begin: float) -> tuple[Pose, str]:
-    """The pose at the time `begin`, from what a drive from the origin shows; and how, in words."""
+    """Pose at the time `begin`, from a drive that starts at the origin; and the method in words."""
     at, facing = np.flatnonzero(reference.has_position), np.flatnonzero(reference.has_yaw)
     positions = reference.x + 1j * reference.y
     path = _path(driven, reference.time)
@@ -156,9 +156,9 @@ def _path(driven: Path, time: Floats) -> NDArray[np.complex128]:
 
 
 def with_learnt_phases(run: Run, robot_file: RobotFile) -> tuple[RobotFile, tuple[str, ...]]:
-    """The robot file with the run's own phases, as far as its reference tells them; and remarks.
+    """Set the phases of a run in the robot file, estimated from its reference; also return remarks.
 
-    Effects of which something stays unknown are left out of what is reckoned; the remarks say so.
+    Effects with an unknown phase are left out of dead reckoning; the remarks say so.
     """
     learnt: dict[str, Phase] = {}
     if learnable(robot_file.robot) and run.reference is not None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of numbers from CSV: fast when all is well, exact about the place when it is not."""
+"""Numeric tables from CSV: fast for valid files, with exact locations in error messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from werrimbi_odom.model.pose import Floats
 
 MAX_BYTES = 2**30
 MAX_ROWS = 20_000_000
-"""At 1 kHz, five and a half hours; the arrays of such a run still fit a usual memory."""
+"""Five and a half hours at 1 kHz; such a run's arrays still fit an ordinary memory."""
 MAX_COLUMNS = 256
 MAX_LINE = 2**20
 """Bytes."""
@@ -30,26 +30,26 @@ _NUMBER = re.compile(
     r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
 )
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
-"""Cells with nothing in them, in one line."""
+"""Empty cells of a line."""
 
 
 @dataclass(frozen=True)
 class CsvTable:
-    """The columns of a CSV file; empty cells are NaN."""
+    """Columns of a CSV file; empty cells are NaN."""
 
     path: Path
     names: tuple[str, ...]
     values: Floats
     """Shape (rows, columns); at least one row."""
     cut: int = 0
-    """Number of the last line, where that was cut off in mid-row and left out."""
+    """Number of the last line, if it is truncated and therefore skipped; else 0."""
 
     def column(self, name: str) -> Floats:
-        """A column by its name."""
+        """The column with this name."""
         return np.ascontiguousarray(self.values[:, self.names.index(name)])
 
     def integers(self, name: str) -> NDArray[np.int64] | None:
-        """A column as integers beyond what floats hold exactly; None where it has others."""
+        """A column as exact integers beyond the range of floats; None if it has other values."""
         kinds = [(str(i), "i8" if item == name else "f8") for i, item in enumerate(self.names)]
         try:
             rows = _loaded(_lines(self.path, self.cut), np.dtype(kinds))
@@ -58,17 +58,17 @@ class CsvTable:
         return np.ascontiguousarray(rows[str(self.names.index(name))])
 
     def refuse_where(self, name: str, wrong: Callable[[str], str]) -> None:
-        """Go through the cells of a column and refuse the first one that is wrong.
+        """Raise on the first invalid cell of a column.
 
         Parameters
         ----------
         wrong : callable
-            Takes a cell's text and says what is wrong with it; "" when nothing is.
+            Takes a cell's text and returns what is wrong with it; "" if nothing is.
 
         Raises
         ------
         InputError
-            At the first wrong cell, with its line and column.
+            At the first invalid cell, with its line and column.
         """
         place = self.names.index(name)
         for line, cells in _rows(self.path, self.cut):
@@ -80,18 +80,17 @@ class CsvTable:
 def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> CsvTable:
     """Read a CSV file of numbers whose first line names the columns, in any order.
 
-    A last line without an end that is no whole row (the power failed as it was written) is left
-    out.
+    An incomplete last line without a line end (from a power failure) is skipped.
 
     Parameters
     ----------
     filled
-        Columns of which no cell may be empty.
+        Columns without empty cells.
 
     Raises
     ------
     InputError
-        When it is not such a file; the message names line and column, and what stands there.
+        If the file is not valid; the message names line, column and content.
     """
     try:
         _refuse_too_large(path)
@@ -110,7 +109,7 @@ def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> Cs
 
 
 def _refuse_too_large(path: Path) -> None:
-    """Keep what follows in bounded memory, whatever the file is."""
+    """Raise on files that would exceed the memory limit."""
     lines = 0
     with path.open("rb") as file:
         while block := file.read(MAX_LINE):
@@ -152,7 +151,7 @@ def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
 
 
 def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
-    """Number of the last line, where it was cut off in mid-row; else 0."""
+    """Number of the last line if it is truncated, else 0."""
     with path.open("rb") as file:
         size = file.seek(0, 2)
         file.seek(max(size - MAX_LINE, 0))
@@ -168,7 +167,7 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
         return 0
     with path.open(encoding="utf-8-sig", errors="replace", newline=None) as file:
         lines = sum(1 for _ in file)
-    return lines if lines > 2 else 0  # a header and no whole row: there is nothing to read
+    return lines if lines > 2 else 0  # only a header and no complete row: there is nothing to read
 
 
 def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
@@ -192,7 +191,7 @@ def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
 
 def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # no data: seen by the caller
+        warnings.simplefilter("ignore", UserWarning)  # no data: handled by the caller
         warnings.simplefilter("error", DeprecationWarning)  # 1.0 read as an integer
         values: NDArray[Any] = np.loadtxt(
             source,
@@ -208,7 +207,7 @@ def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _lines(path: Path, cut: int) -> Iterator[str]:
-    """Lines with `nan` written into empty cells; blank lines left out, and that which is cut."""
+    """Yield lines with `nan` in empty cells, without blank lines and the truncated one."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in itertools.islice(file, cut - 1 if cut else None):
             if not line.isspace():
@@ -216,7 +215,7 @@ def _lines(path: Path, cut: int) -> Iterator[str]:
 
 
 def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
-    """Line number, from 1, and cells of each row below the header."""
+    """Yield line number, from 1, and cells of each row below the header."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
             if line.strip():

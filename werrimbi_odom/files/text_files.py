@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Files of text: written whole or not at all, renamed into their place; small ones, read."""
+"""Text files: atomic writing by renaming, and reading of small ones."""
 
 from __future__ import annotations
 
@@ -17,22 +17,21 @@ from werrimbi_odom.errors import InputError
 
 @contextmanager
 def replacing(path: Path) -> Iterator[TextIO]:
-    """A text file (UTF-8, LF) that takes the place of `path` when the block ends well.
+    """Open a text file (UTF-8, LF) that replaces `path` if the block succeeds.
 
-    When it does not, `path` is as it was before. Where `path` is a pipe or a device there is
-    nothing to keep, so it is written to directly.
+    Otherwise `path` is unchanged. A pipe or device is written directly.
 
     Raises
     ------
     InputError
-        When the file cannot be written: no such folder, no permission, no space.
+        If the file is not writable: no such folder, no permission, no space.
     """
     try:
         if path.exists() and not path.is_file():
             with path.open("w", encoding="utf-8", newline="\n") as direct:
                 yield direct
             return
-        target = Path(place_of(path))  # a link stays a link; what it points to is replaced
+        target = Path(place_of(path))  # a link stays; its target is replaced
         part = _part_of(target)
         try:
             with part.open("x", encoding="utf-8", newline="\n") as file:
@@ -53,12 +52,12 @@ def replacing(path: Path) -> Iterator[TextIO]:
 
 
 def refuse_unwritable(path: Path, option: str) -> None:
-    """Whether `path` can be written: done by beginning it, which is all that tells in the end.
+    """Check that `path` is writable, by creating a file: the only reliable test.
 
     Raises
     ------
     InputError
-        When there is no such folder, or no file can be made there; `option` begins the message.
+        If there is no such folder, or no file can be created; `option` begins the message.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe, a device
         if not os.access(path, os.W_OK):
@@ -68,17 +67,17 @@ def refuse_unwritable(path: Path, option: str) -> None:
     if not target.parent.is_dir():
         raise InputError(f"{option}: there is no folder {target.parent}")
     try:
-        with TemporaryFile(dir=target.parent):  # without a name: nobody who interrupts leaves it
+        with TemporaryFile(dir=target.parent):  # without a name: an interruption leaves nothing
             pass
     except OSError as error:
         raise InputError(f"{option} cannot be written: {error.strerror or error}") from error
 
 
 def place_of(path: Path) -> str:
-    """Where a path leads to in the end."""
+    """Resolved path, with links followed."""
     try:
         return os.path.realpath(path)
-    except ValueError:  # a NUL byte in the name; whoever opens the file says so
+    except ValueError:  # a NUL byte in the name; opening the file reports it
         return str(path)
 
 
@@ -90,19 +89,19 @@ MAX_BYTES = 1_000_000
 
 
 def read_small_text(path: Path, *, wanted: str, too_large: str) -> str:
-    """The text of a small UTF-8 file, its line ends made LF.
+    """Read a small UTF-8 file; line ends become LF.
 
     Parameters
     ----------
     wanted : str
         What to give instead of a folder, as in "give the YAML file in it".
     too_large : str
-        What a file of more than `MAX_BYTES` cannot be, as in "it is not a robot file".
+        Remark on a file larger than `MAX_BYTES`, as in "it is not a robot file".
 
     Raises
     ------
     InputError
-        When it cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
+        If it cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
     """
     try:
         with path.open("rb") as file:
@@ -128,5 +127,5 @@ def read_small_text(path: Path, *, wanted: str, too_large: str) -> str:
 
 
 def readable(text: str) -> str:
-    """The same for people and pages: bytes of a path that are no UTF-8 are spelt out."""
+    """Escape bytes of a path that are not valid UTF-8."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bags that were never finished (a recorder killed, a power failure), read from their beginning.
+"""Reads unfinished bags (a killed recorder, a power failure) from the beginning.
 
-An index stands at a bag's end, so one that is cut off has none. Its messages stand in the file in
-the order in which they were received; they are read up to the first place that is spoilt.
+The index is at the end of a bag, so a truncated one has none. The messages are stored in order of
+recording; they are read up to the first damage.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from werrimbi_odom.files.unfinished_sqlite import described, rows_of
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 ROS1_MAGIC = b"#ROSBAG V2.0\n"
 LARGEST = 2**30
-"""Bytes of a record; more is no length but damage."""
+"""Largest record [bytes]; a greater length is damage."""
 
 
 class Raw(NamedTuple):
-    """A message as it stands in a file."""
+    """A message as stored in a file."""
 
     topic: str
     kind: str
@@ -34,20 +34,20 @@ class Raw(NamedTuple):
     """[ns]"""
     data: bytes
     definition: str
-    """Of its type; "" where the file has none."""
+    """Definition of its type; "" if the file has none."""
 
 
 def absolute(topic: str) -> str:
-    """A topic's name from the root: a recorder of ROS 1 keeps names as they were typed."""
+    """Absolute topic name; ROS 1 recorders store names as typed."""
     return "/" + topic.strip("/")
 
 
 class SpoiltError(Exception):
-    """A file ends in mid-record, or what stands there is no record."""
+    """A file ends in mid-record, or contains an invalid record."""
 
 
 def raw_messages(files: Sequence[Path]) -> Iterator[Raw]:
-    """Messages of files one after the other, up to where each is spoilt."""
+    """Yield the messages of successive files, each up to its damage."""
     for file in files:
         scan = _SCANS[file.suffix]
         try:
@@ -108,12 +108,12 @@ def _decompressed(data: bytes, compression: str, size: int) -> bytes:
         raise SpoiltError
     try:
         return bytes(_decompressor(compression).decompress(data, size))
-    except Exception as error:  # each library has its own
+    except Exception as error:  # each library has its own exception
         raise SpoiltError from error
 
 
 def _decompressor(compression: str) -> Any:
-    """What gives so many bytes at the most, and those before a cut; all of one form."""
+    """Decompressor with a size limit that also returns the data before a cut; one interface."""
     if compression == "bz2":
         return bz2.BZ2Decompressor()
     if compression == "lz4":
@@ -172,7 +172,7 @@ def _fields(header: bytes) -> dict[str, bytes]:
 
 
 def _exactly(stream: IO[bytes], length: int, cut: bool = False) -> bytes:
-    """So many bytes; where they may be cut off, those that are there."""
+    """Read `length` bytes; fewer only if `cut` is true."""
     if length > LARGEST:
         raise SpoiltError
     found = stream.read(length)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of a sqlite3 bag whose end is missing, page by page.
+"""Messages of a truncated sqlite3 bag, page by page.
 
-SQLite finds rows through pages that may be anywhere in the file, so that it reads nothing of a
-table whose end is cut off. The rows themselves stand in leaf pages one after the other. Format:
-https://www.sqlite.org/fileformat2.html, sections 1.5, 1.6 and 2.1.
+SQLite finds rows through pages anywhere in the file, and therefore cannot read a truncated table.
+The rows themselves are in consecutive leaf pages. Format: https://www.sqlite.org/fileformat2.html,
+sections 1.5, 1.6 and 2.1.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 LEAF = 0x0D
-"""First byte of a page with rows of a table."""
+"""First byte of a leaf page with rows of a table."""
 MOST = 10_000
-"""Topics that a recording is believed to have."""
+"""Largest plausible number of topics."""
 
 
 class MessageRow(NamedTuple):
-    """A row of the table of messages."""
+    """A row of the messages table."""
 
     topic: int
     received: int
@@ -32,10 +32,10 @@ class MessageRow(NamedTuple):
 
 
 def described(file: Path) -> tuple[dict[int, tuple[str, str]], dict[str, str]]:
-    """Name and type of each topic by its number, and what defines each type."""
+    """Name and type of each topic by its number, and the definition of each type."""
     database = sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)
     try:
-        # Without it a file that is shorter than its header says is not read at all.
+        # Needed to read a file that is shorter than its header states.
         database.execute("PRAGMA writable_schema=ON")
         found = database.execute("SELECT name FROM sqlite_master WHERE type = 'table' LIMIT 100")
         tables = {name for (name,) in found}  # a view may be a program that never ends
@@ -58,7 +58,7 @@ def described(file: Path) -> tuple[dict[int, tuple[str, str]], dict[str, str]]:
 
 
 def rows_of(file: Path) -> Iterator[MessageRow]:
-    """Messages in the order in which they were written; those that are cut off are left out."""
+    """Yield messages in order of writing; truncated ones are skipped."""
     with file.open("rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as held:
         pages = _Pages(held)
         for _, place in sorted(pages.cells()):
@@ -75,7 +75,7 @@ class _Pages:
         self._usable = self._size - held[20]
 
     def cells(self) -> Iterator[tuple[int, int]]:
-        """Number of each row, and where its payload's length stands."""
+        """Yield the number of each row, and the position of its payload length."""
         for start in range(0, len(self._held), self._size):
             head = start + (100 if start == 0 else 0)
             if self._held[head] != LEAF or head + 8 > len(self._held):
@@ -87,7 +87,7 @@ class _Pages:
                     yield self._number(self._number(place)[1])[0], place
 
     def row(self, place: int) -> MessageRow | None:
-        """A row of four columns: its number, the topic's, a time, and bytes; None for others."""
+        """Parse a row of four columns (number, topic, time, bytes); None for other rows."""
         length, at = self._number(place)
         payload = self._payload(length, self._number(at)[1])
         if payload is None:
@@ -110,7 +110,7 @@ class _Pages:
         return MessageRow(numbers[0], numbers[1], payload[at : at + (kinds[3] - 12) // 2])
 
     def _payload(self, length: int, at: int) -> bytes | None:
-        """A row's bytes, those on pages of their own among them; None where some are missing."""
+        """Bytes of a row, including overflow pages; None if some are missing."""
         if length > len(self._held):
             return None
         most = self._usable - 35
@@ -136,11 +136,11 @@ class _Pages:
 
 
 _WIDTHS = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8, 8: 0, 9: 0}
-"""Bytes of an integer by its serial type."""
+"""Size in bytes of an integer by its serial type."""
 
 
 def _varint(held: bytes | mmap.mmap, at: int) -> tuple[int, int]:
-    """A number of one to nine bytes, and where the next begins."""
+    """Read a varint of one to nine bytes; also return the position after it."""
     value = 0
     for index in range(9):
         byte = held[at + index]

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which joints of a JointState are driven wheels, by names and turns; which topic has the wheels.
+"""Identifies the driven wheels among the joints of a JointState, by name and rotation.
 
-One topic often holds all joints of a robot: wheels, an arm, a gripper, a camera's pan and tilt. A
-gripper has a left and a right finger as well; but they stay within a turn, and wheels do not.
+One topic often contains all joints of a robot: wheels, an arm, a gripper, a camera's pan and tilt.
+A gripper also has a left and a right finger, but these stay within a turn, unlike wheels.
 """
 
 from __future__ import annotations
@@ -31,36 +31,35 @@ head hip jaw knee knuckle leg lift mower neck pan pantilt propeller rotor should
 trunk waist wrist
 """
 NO_WHEELS = frozenset(_NO_WHEELS.split())
-"""Words of names of joints that roll on no floor."""
+"""Words in the names of joints that are not wheels."""
 
 UNDRIVEN = ("cast", "steer", "swivel", "suspension", "rocker", "bogie")
-"""Parts of names of joints about a wheel that no motor turns, or that do not roll."""
+"""Parts of the names of joints near a wheel that are not driven or do not roll."""
 
 SIDES = ("left", "right")
 TURN = 2.0 * math.pi
-_ROUNDING = 1e-3  # [rad], of angles that begin anew at each turn and so stay within one
+_ROUNDING = 1e-3  # [rad], for angles that restart at each turn and so stay within one
 
 
 @dataclass(frozen=True)
 class WheelJoints:
-    """The joints of a recording, told apart."""
+    """The joints of a recording, classified."""
 
     left: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
-    """Joints that are no wheels, or are not taken for any."""
+    """Joints that are not identified as wheels."""
     turned: Mapping[str, float] | None = None
-    """How far each joint got from where it had been, at the most [rad]; None where they were not
-    looked at."""
+    """Range of each joint's angle [rad]; None if not determined."""
 
     @property
     def rolled(self) -> tuple[str, ...]:
-        """Those of the others that turned by more than a turn, as wheels do."""
+        """Other joints with a range of more than one turn, as wheels have."""
         return tuple(name for name in self.others if (self.turned or {}).get(name, 0.0) > TURN)
 
 
 def is_no_wheel(name: str) -> bool:
-    """Whether a joint's name says that it is no driven wheel."""
+    """Whether a joint's name excludes a driven wheel."""
     low = name.lower()
     if any(part in low for part in UNDRIVEN):
         return True
@@ -72,16 +71,16 @@ def joints_told_apart(
     turned: Mapping[str, float],
     known: tuple[Sequence[str], Sequence[str]] = ((), ()),
 ) -> WheelJoints:
-    """Wheels on the left and on the right, and what is neither.
+    """Classify joints as left wheels, right wheels, and others.
 
     Parameters
     ----------
     joints
-        Names of all.
+        Names of all joints.
     turned
-        How far each got from where it had been, at the most [rad].
+        Range of each joint's angle [rad].
     known
-        Wheels of both sides that a URDF or a robot file names: they are believed.
+        Wheels of both sides named in a URDF or a robot file; these take precedence.
     """
     if all(known) and {*known[0], *known[1]} <= set(joints):
         left, right = tuple(known[0]), tuple(known[1])
@@ -103,14 +102,14 @@ def _by_names(
                 tuple(name for name in side if turned.get(name, 0.0) > TURN)
                 for side in (left, right)
             ]
-            # One that stays within a turn while others on both sides roll is none; where the robot
-            # hardly moved, none rolls, and names are all there is.
+            # If wheels on both sides roll, one that stays within a turn is not a wheel. If the
+            # robot hardly moved, none rolls, and only the names remain.
             return (rolled[0], rolled[1]) if all(rolled) else (left, right)
     return (), ()
 
 
 def is_of(name: str, side: str) -> bool:
-    """Whether a joint's name says that it is on a side."""
+    """Whether a joint's name contains this side."""
     parts = name.lower().replace("-", "_").split("_")
     return (
         side in name.lower()
@@ -122,11 +121,11 @@ def is_of(name: str, side: str) -> bool:
 
 
 def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
-    """How far each joint of a topic got from where it had been, at the most [rad].
+    """Range of each joint's angle in a topic [rad].
 
-    All messages are asked, for several nodes may send to one topic, each its own joints; up to one
-    that cannot be read, of which whoever reads the wheels will tell. Where there are speeds alone
-    they are integrated.
+    All messages are read, up to one that is unreadable (reported later by the reader of the
+    wheels): several nodes may publish different joints on one topic. Speeds are integrated where
+    there are no angles.
     """
     angles: dict[str, _Values] = {}
     speeds: dict[str, _Values] = {}
@@ -146,7 +145,7 @@ def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
 
 
 class _Values:
-    """Times and values of a joint, those that are finite."""
+    """Times and finite values of a joint."""
 
     def __init__(self) -> None:
         self._time, self._values = array("d"), array("d")
@@ -166,7 +165,7 @@ class _Values:
 
 
 def _range(angles: Floats) -> float:
-    """Of angles, unwrapped where they begin anew at each turn."""
+    """Range of the angles, unwrapped if they restart at each turn."""
     if angles.size == 0:
         return 0.0
     within = float(np.ptp(angles))
@@ -190,12 +189,12 @@ def _words(name: str) -> set[str]:
 def chosen_wheels(
     bag: Bag, contents: Contents, wish: str | None, source: RobotFile | None
 ) -> tuple[Wheels | None, WheelJoints]:
-    """What tells how the wheels turned, and the joints of it; the firmware's odometry last.
+    """Choose the source of wheel data, and classify its joints; the firmware's odometry is last.
 
     Raises
     ------
     InputError
-        When there are no ticks in what is wished for.
+        If the requested topic contains no ticks.
     """
     known = ((), ()) if source is None else tuple(wheel_names(source, side) for side in SIDES)
     able = sorted(contents.wheels, key=lambda each: each.gives == "odometry")
@@ -214,7 +213,7 @@ def chosen_wheels(
 
 
 def _rank(found: tuple[Wheels, WheelJoints]) -> int:
-    """Wheels by name or message first, then joints that roll, then odometry, then others."""
+    """Rank: wheels by name or message, then joints that roll, then odometry, then others."""
     wheels, joints = found
     if wheels.gives == "odometry":
         return 2
@@ -224,13 +223,13 @@ def _rank(found: tuple[Wheels, WheelJoints]) -> int:
 
 
 def of_another_robot(contents: Contents, wheels: Wheels | None) -> set[str]:
-    """References in the namespace of wheels that are not those looked at."""
+    """References in the namespace of other wheels than the chosen ones."""
     ours = _space(wheels.name) if wheels is not None else ""
     spaces = {_space(each.name) for each in contents.wheels} - {ours, ""}
     return {each.name for each in contents.references if _space(each.name) in spaces}
 
 
 def _space(topic: str) -> str:
-    """First name of a topic's namespace; "" where it has none."""
+    """First component of a topic's namespace; "" if it has none."""
     first, _, rest = topic.strip("/").partition("/")
     return first if rest else ""

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The text of a robot file with other values and effects; all that stands around them stays.
+"""Edits values and effects in the text of a robot file; everything else is kept.
 
-The YAML reader says where each value stands. There it is replaced in the text, and what comes or
-goes are whole lines. A block in brackets is written anew, in its brackets.
+The YAML parser gives the position of each value, which is replaced in the text. Additions and
+removals are whole lines. A flow-style block is rewritten as a whole.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from werrimbi_odom.model.effect import AppliedEffect, Parameter
 
 _PLAIN_TEXT = re.compile(r"[A-Za-z_/~][\w/~{}-]*(\.\w+)*\Z", re.ASCII)
 _NOT_TEXT = re.compile(r"(y|n|yes|no|on|off|true|false|null|~)\Z", re.IGNORECASE)
-"""What a reader of YAML 1.1, as in ROS, does not take for text unless it is quoted."""
+"""Words that a YAML 1.1 parser, as in ROS, reads as text only if quoted."""
 _UNPRINTABLE = re.compile("[\x7f-\x9f\u2028\u2029\ufeff]")
 _COMMENT_COLUMN = 40
 _WIDTH = 110
@@ -37,18 +37,18 @@ def with_values(
     order: Sequence[str],
     effects: Sequence[AppliedEffect] | None = None,
 ) -> str:
-    """The text with `values`, and with exactly these effects, in the block at `place`.
+    """Set `values`, and exactly these effects, in the block at `place`.
 
     Parameters
     ----------
     place : (str, str)
         Key of the node, and below it that of its parameters.
     values : mapping
-        What is there already and says the same is not touched.
+        Equal values are left untouched.
     order : sequence of names
-        An added name goes behind the nearest one before it in this order.
+        A new name is inserted after its nearest predecessor in this order.
     effects : sequence of AppliedEffect, optional
-        By default those that are there stay.
+        Default: the existing ones are kept.
     """
     text = text if text.endswith("\n") else f"{text}\n"
     yaml = round_trip()
@@ -75,18 +75,18 @@ def with_values(
 
 
 def known_values(applied: AppliedEffect) -> dict[str, float]:
-    """Every value of an effect that a file can hold: not what each run has anew."""
+    """All values of an effect that a file can hold; per-run values are excluded."""
     values: Mapping[str, float] = {**applied.effect.nulls, **applied.values}
     return {name: float(values[name]) for name in values if name not in applied.unknown}
 
 
 class _Block:
-    """A mapping in the text, a key a line, and what is to become of it.
+    """A mapping in block style, one key per line, and the edits to apply.
 
     Parameters
     ----------
     edits
-        From where, to where (in characters), and what is to stand there instead.
+        Start and end (in characters), and the new text.
     """
 
     def __init__(
@@ -98,30 +98,30 @@ class _Block:
         self.nodes = {str(key.value): (key, value) for key, value in node.value}
 
     def below(self, name: str) -> _Block:
-        """The block of a key."""
+        """The block below a key."""
         return _Block(self.text, self.nodes[name][1], self.given[name], self.edits)
 
     def behind(self, name: str) -> int:
-        """Where the line after all of a key begins."""
+        """Start of the line after a key's value."""
         return self.text.index("\n", _end(self.text, *self.nodes[name])) + 1
 
     def insert(self, at: int, lines: Sequence[str]) -> None:
-        """Put in lines, indented as the keys are."""
+        """Insert lines with the indentation of the keys."""
         new = "".join(f"{' ' * self.column}{line}\n" for line in lines)
         self.edits.append((at, at, new))
 
     def cut(self, name: str) -> None:
-        """Take out the lines of a key."""
+        """Remove the lines of a key."""
         start = self.nodes[name][0].start_mark
         self.edits.append((start.index - start.column, self.behind(name), ""))
 
     def change(self, name: str, value: Any, *, named: bool = False) -> None:
-        """Replace a value, unless it says the same; a comment beside it keeps its column.
+        """Replace a value, unless it is equal; a comment beside it keeps its column.
 
         Parameters
         ----------
         named
-            Whether what stands beside an item of a list is told of that item.
+            Whether a comment beside a list item refers to that item.
         """
         key, node = self.nodes[name]
         old = _tree(self.given[name])
@@ -148,7 +148,7 @@ class _Block:
     def _items(
         self, node: SequenceNode, old: Sequence[Any], value: Sequence[str], named: bool
     ) -> str:
-        """Item below item; one that stays keeps what stands beside it."""
+        """Write a block list; items that stay keep their comments."""
         ends = [_end(self.text, None, item) for item in node.value]
         nexts = [self.text.rindex("\n", 0, item.start_mark.index) for item in node.value[1:]]
         nexts.append(self.text.index("\n", ends[-1]))
@@ -159,7 +159,7 @@ class _Block:
         return f"\n{' ' * int(node.start_mark.column)}".join(lines)
 
     def edited(self) -> str:
-        """The text, changed."""
+        """Apply the edits to the text."""
         parts, done = [], 0
         for start, end, new in sorted(self.edits, key=lambda edit: edit[:2]):
             parts += [self.text[done:start], new]
@@ -168,7 +168,7 @@ class _Block:
 
 
 def _change_effects(block: _Block, effects: Sequence[AppliedEffect], step: str) -> None:
-    """Have exactly these effects in a block; `step`: by which what is below a key is indented."""
+    """Set exactly these effects in a block; `step`: indentation below a key."""
     names = tuple(applied.name for applied in effects)
     gone = {name for name in block.given.get(EFFECTS) or () if name not in names}
     cut = [key for key in block.nodes if key.partition(".")[0] in gone]
@@ -187,7 +187,7 @@ def _change_effects(block: _Block, effects: Sequence[AppliedEffect], step: str) 
 
 
 def _change_effect(block: _Block, applied: AppliedEffect, behind: int, step: str) -> int:
-    """Have an effect's values in a block; returns where the next one's belong."""
+    """Set an effect's values in a block; return the position for the next effect."""
     name, known, declared = applied.name, known_values(applied), applied.effect.parameters
     holder, prefix = block, f"{name}."
     if name in block.nodes:
@@ -217,7 +217,7 @@ def _change_effect(block: _Block, applied: AppliedEffect, behind: int, step: str
 
 
 def _with_effects(block: dict[str, Any], effects: Sequence[AppliedEffect]) -> dict[str, Any]:
-    """A block in brackets with exactly these effects."""
+    """Return a flow-style block with exactly these effects."""
     kept = {applied.name: applied for applied in effects}
     gone = set(block.get(EFFECTS) or ()) - set(kept)
     new = {key: value for key, value in block.items() if key.partition(".")[0] not in gone}
@@ -235,7 +235,7 @@ def _with_effects(block: dict[str, Any], effects: Sequence[AppliedEffect]) -> di
 def _needed(
     own: Mapping[str, Any], known: Mapping[str, float], declared: Mapping[str, Parameter]
 ) -> dict[str, float]:
-    """Values that must be told: those that are told already, and those that are not null."""
+    """Values to write: those already present, and those that are not null."""
     return {
         name: value for name, value in known.items() if name in own or value != declared[name].null
     }
@@ -249,7 +249,7 @@ def _child(node: Node, key: str) -> MappingNode:
 
 
 def _end(text: str, key: Node | None, node: Any) -> int:
-    """Where the last thing of a value ends; a block's own end lies behind the comments below it."""
+    """End of a value's last token; a block's own end includes the comments below it."""
     if _is_empty(node) and key is not None:
         return text.index(":", key.end_mark.index) + 1
     if isinstance(node, ScalarNode) or node.flow_style or not node.value:
@@ -264,17 +264,17 @@ def _is_empty(node: Node) -> bool:
 
 
 def _tree(value: Any) -> Any:
-    """Plain values all the way down."""
+    """Convert to plain values recursively."""
     if isinstance(value, CommentedMap):
         return {str(key): _tree(below) for key, below in value.items()}
     return plain(value)
 
 
 def _written(value: Any, *, quoted: bool = False) -> str:
-    """A value on one line, as readers of YAML 1.1, too, take it; `quoted`: all texts are."""
+    """Format a value in one line, valid for YAML 1.1 too; `quoted`: quote all texts."""
     if isinstance(value, bool) or value is None:
         return json.dumps(value)
-    if isinstance(value, float):  # with a point also before an exponent, without which it is a text
+    if isinstance(value, float):  # without a point, YAML 1.1 reads an exponent as text
         digits = repr(value)
         return digits if "." in digits else digits.replace("e", ".0e")
     if isinstance(value, str):
@@ -291,7 +291,7 @@ def _written(value: Any, *, quoted: bool = False) -> str:
 
 
 def _line(key: str, value: float, parameter: Parameter) -> str:
-    """A value with its unit and meaning beside it, as far as there is room."""
+    """A value with unit and meaning as a comment, if there is room."""
     says = f"{parameter.unit}, {parameter.says}" if parameter.unit else parameter.says
     name = key.lstrip()
     line = f"{key[: len(key) - len(name)]}{_written(name)}: {_written(value)}"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""YAML text to plain values with line numbers; hostile text costs little and runs nothing."""
+"""YAML text to plain values with line numbers; safe and cheap for malicious text."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ from werrimbi_odom.files.text_files import read_small_text
 
 MAX_DEPTH = 8
 _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
-"""That ruamel lets out as they are (a date in month 13)."""
+"""Exceptions that ruamel does not wrap (a date in month 13)."""
 _TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
 
 _READ_OTHERWISE = re.compile(
     r"[-+]?(0[0-9_]+|0[ob][0-7_]+|0x[0-9a-f_]*_[0-9a-f_]*|(?=[^_]*_)(?=[._]*[0-9])[0-9._]+(e[-+]?[0-9_]+)?)",
     re.IGNORECASE,
 )
-"""Numbers to YAML 1.2 which are other numbers, or texts, to ROS: its reader asks C's strtol, to
-which 0100 is 64, and which knows no 0o, no 0b and no 1_000."""
+"""Numbers that YAML 1.2 and ROS read differently: ROS uses C's strtol, which reads 0100 as 64 and
+does not accept 0o, 0b or 1_000."""
 
 
 def read_text(path: Path) -> str:
-    """The text of a small UTF-8 file, its line ends made LF.
+    """Read a small UTF-8 file; line ends become LF.
 
     Raises
     ------
     InputError
-        When it cannot be opened, is larger than a robot file can be, or is not UTF-8.
+        If it cannot be opened, is too large for a robot file, or is not UTF-8.
     """
     return read_small_text(
         path, wanted="give the YAML file in it", too_large="it is not a robot file"
@@ -52,7 +52,7 @@ def read_text(path: Path) -> str:
 
 
 def round_trip() -> YAML:
-    """A reader and writer that keeps comments, order, quotes and the look of numbers."""
+    """YAML reader and writer that keeps comments, order, quotes and number formats."""
     yaml = YAML(typ="rt", pure=True)
     yaml.preserve_quotes = True
     yaml.width = 4096
@@ -60,13 +60,13 @@ def round_trip() -> YAML:
 
 
 def load(text: str, path: Path) -> CommentedMap:
-    """The one mapping that a text holds; its keys know their lines (see `line_of`).
+    """Parse a text with one mapping; its keys have line numbers (see `line_of`).
 
     Raises
     ------
     InputError
-        When the text is empty, not YAML, not a mapping, or uses what parameter files have no use
-        for and attackers do: aliases, tags, deep nesting, several documents.
+        If the text is empty, not YAML, not a mapping, or uses features that parameter files do not
+        need and attackers do: aliases, tags, deep nesting, several documents.
     """
     yaml = round_trip()
     try:
@@ -76,12 +76,12 @@ def load(text: str, path: Path) -> CommentedMap:
         raise
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        if str(error.context).startswith("while scanning"):  # where it began, not where it showed
+        if str(error.context).startswith("while scanning"):  # where the token began
             mark = error.context_mark or mark
         where = f", line {mark.line + 1}" if mark is not None else ""
         problem = " ".join(str(error.problem or error.context).split())
         raise InputError(f"{path}{where}: this is not YAML: {problem}") from None
-    except NotImplementedError as error:  # ruamel keeps comments, but not in every place
+    except NotImplementedError as error:  # ruamel keeps comments, but not at every position
         found = re.search(r"line: (\d+)", str(error))
         where = f", line {int(found[1]) + 1}" if found else ""
         raise InputError(
@@ -135,12 +135,12 @@ def _is_number_to_yaml_alone(event: ScalarEvent) -> bool:
 
 
 def line_of(block: CommentedMap, key: object) -> int:
-    """Line, from 1, on which a key stands."""
+    """Line number of a key, from 1."""
     return int(block.lc.key(key)[0]) + 1
 
 
 def plain(value: Any) -> object:
-    """A value without what the round trip keeps beside it (the look of a number, comments)."""
+    """A value without the round-trip information (number format, comments)."""
     if isinstance(value, CommentedSeq):
         return [plain(item) for item in value]
     if isinstance(value, ScalarBoolean):

@@ -5,5 +5,6 @@
 Reading order: `motion` (travel to displacement), `covariance` (one piece in closed form),
 `uncertainty` and `moments` (along a path), `encoder` (counters to travel), `pieces_online` (where a
 piece ends), `odometer` (all of it, message by message), `trajectory` (a whole run at once). `robot`
-is what the model knows of a robot; `effect` and `drive` are what an effect is and may look at.
+holds the parameters of a robot. `effect` defines an effect, `drive` the quantities that it may
+read.
 """

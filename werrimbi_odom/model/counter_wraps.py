@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Counters that wrap at the end of their range: what a difference of two readings means."""
+"""Differences of counters that wrap at the end of their range."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 def wrapped(difference: float, bits: int) -> float:
-    """A difference of counts read from counters that wrap at `bits` (0: they do not)."""
+    """Unwrap a difference of two readings of a counter of `bits` bits (0: it does not wrap)."""
     if bits == 0:
         return difference
     half = 1 << (bits - 1)
@@ -23,7 +23,7 @@ def wrapped(difference: float, bits: int) -> float:
 def differences(
     counts: NDArray[np.float64] | NDArray[np.int64], bits: int
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """`wrapped` differences of consecutive counts (n, ...), and where they wrapped."""
+    """Return unwrapped differences of consecutive counts (n, ...), and where they wrapped."""
     steps = np.diff(counts, axis=0)
     wraps = np.zeros(steps.shape, dtype=np.bool_)
     if bits > 0:

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses, their errors and the pieces along the steps of a whole run, in arrays.
 
-Two ways lead to the same figures: `march`, step by step as machine code, where there is some and
-the run is long enough for it to pay; and array operations here, for what
-`pieces_recorded` has cut.
+Two implementations give the same results: `march`, step by step as compiled code, where numba is
+installed and the run is long enough; and array operations here, on the pieces cut by
+`pieces_recorded`.
 """
 
 from __future__ import annotations
@@ -35,27 +35,28 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import March, Marching, follow, march, sums_of
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 
-_BLOCK = 8192  # steps that are worked at once: their arrays stay in the cache
+_BLOCK = 8192  # steps per block: their arrays stay in the cache
 
 Lost = Mapping[int, WheelTravel[float]]
-"""Variances of travel that no counter saw [m²], by the step before which it was lost."""
+"""Variance of travel that no counter saw [m²], by the index of the step before which it was
+lost."""
 
 
 class PathInPieces(NamedTuple):
-    """n steps, of m pieces."""
+    """Result for n steps, grouped into m pieces."""
 
     poses: Floats
     """x, y, yaw before the first step and after each, shape (3, n + 1)."""
     covariances: Floats
-    """There, shape (6, n + 1)."""
+    """Covariances of these poses, shape (6, n + 1)."""
     mean_shift: Floats | None
-    """Where exact moments are carried: mean of the true position less x, y; shape (2, n + 1)."""
+    """Mean of the true position minus (x, y), shape (2, n + 1); None without exact moments."""
     start: NDArray[np.intp]
-    """First step of every piece, shape (m,)."""
+    """First step of each piece, shape (m,)."""
     sums: Floats
-    """Travel of the wheels, and motion along, sideways and in turn, over each; shape (5, m)."""
+    """Left and right travel, and motion along, sideways and in yaw, of each piece; shape (5, m)."""
     reset: Mapping[int, PoseCovariance[float]]
-    """Covariance at the start of those pieces before which travel was lost."""
+    """Covariance at the start of each piece that follows lost travel, by piece."""
 
 
 def course_of(
@@ -66,7 +67,7 @@ def course_of(
     steps: AfterEffects,
     lost: Lost,
 ) -> PathInPieces:
-    """Go along all steps from a start pose with its errors."""
+    """Integrate all steps from a start pose and its errors."""
     machine = compiled_for(steps.travel.left.size, march)
     if machine is not None and errors.moments is None:
         return _marched(machine, robot, rule, start, errors.covariance, steps, lost)
@@ -124,7 +125,7 @@ def _marched(
 def integrated(start: Pose, motion: BodyMotion[Floats]) -> Floats:
     """x, y, yaw before the first step and after each, shape (3, n + 1).
 
-    Some thousand steps at a time: their arrays stay in the cache, which takes half as long.
+    Steps are processed in blocks whose arrays stay in the cache, which halves the time.
     """
     poses = np.empty((3, motion.turn.size + 1))
     poses[:, 0] = start
@@ -138,9 +139,9 @@ def integrated(start: Pose, motion: BodyMotion[Floats]) -> Floats:
 
 
 def followed(motion: BodyMotion[Floats]) -> tuple[NDArray[np.complex128], Floats]:
-    """Position and yaw from zero on, shape (n + 1,) each: `integrated`, the fastest way there is.
+    """Return position and yaw from zero on, shape (n + 1,) each; the fastest form of `integrated`.
 
-    For who follows one run again and again.
+    For repeated passes over one run.
     """
     position = np.zeros(motion.turn.size + 1, dtype=np.complex128)
     machine = compiled_for(motion.turn.size, follow, again=True)
@@ -188,7 +189,7 @@ def _with_lost(
 
 
 def _blocks(count: int, breaks: Lost | None = None) -> Iterator[slice]:
-    """Some thousand steps at a time, and none beyond a break."""
+    """Yield blocks of at most `_BLOCK` steps, none of them across a break."""
     first = 0
     for last in [*sorted(breaks or ()), count]:
         for begin in range(first, last, _BLOCK):
@@ -205,7 +206,7 @@ def _chained(
     errors: Uncertainty[float],
     unseen: Mapping[int, PathNoise[float]],
 ) -> Uncertainty[Floats]:
-    """Errors of the pose at the start of each piece, from one piece to the next; shape (m,)."""
+    """Propagate the errors from piece to piece; return those at the start of each, shape (m,)."""
     parts: list[Uncertainty[Floats]] = []
     for some in _blocks(begin.size):
         yaw = poses[2, begin[some]]
@@ -240,7 +241,7 @@ def _at_every_step(
     starts: Uncertainty[Floats],
     at_start: Uncertainty[float],
 ) -> tuple[Floats, Floats | None]:
-    """Errors at every entry: the chain up to its piece, and the piece in closed form."""
+    """Errors after every step: the chain up to its piece, then the piece in closed form."""
     x, y, yaw = poses
     count = x.size - 1
     lengths = np.diff(np.append(pieces.start, count))

@@ -3,16 +3,16 @@
 """The closed-form covariance of one piece of constant curvature (paper, equation 17).
 
 The paper's form divides differences of sines by Δ and loses all digits on straight lines. Here the
-same terms stand as products of four entire functions of h = Δ/2, of which three have a series near
-zero. So there is one formula for line, arc, spin and pivot, and no case to choose between.
+same terms are products of four entire functions of h = Δ/2, three of which are evaluated by a
+series near zero. One formula therefore covers line, arc, spin and pivot.
 
-With S = sin h / h, T = (1 - sinc 2h) / h², U = (1 + cos(2h)/2 - 3/2 sinc 2h) / h⁴ and
-V = (S - cos h) / h², the paper's integrals in the chord's frame (E with the noise b, F with c; see
-docs/model.md) read, per travel D:
+With S = sin h / h, T = (1 - sinc 2h) / h², U = (1 + cos(2h)/2 - 3/2 sinc 2h) / h⁴ and V = (S - cos
+h) / h², the paper's integrals in the chord's frame are, per travel D (E belongs to the noise b, F
+to c; see docs/model.md):
 E_x = -h V / 2, E_y = S / 2, E_xx = h² U / 4, E_yy = (S² + T/2) / 4, E_xy = -h S V / 4,
 F_xx = F_yy = -h T / 4, F_xy = S² / 2.
 
-All functions take floats, or arrays of one shape, alike.
+All functions take floats or arrays of one shape.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ Entry = TypeVar("Entry")  # a Number: mypy takes no methods on a tuple of a rest
 
 
 class PoseCovariance(NamedTuple, Generic[Entry]):
-    """Covariance of the errors (δx, δy, δyaw) of a pose, all in the frame the pose is given in.
+    """Covariance of the errors (δx, δy, δyaw) of a pose, in the frame in which it is given.
 
-    Sampling: a draw e ~ N(0, P) means that the true pose is (x + e_x, y + e_y, yaw + e_yaw).
-    Units m², m·rad and rad²; the order is that of the columns of `odom.csv`.
+    For a draw e ~ N(0, P) the true pose is (x + e_x, y + e_y, yaw + e_yaw). Units are m², m·rad and
+    rad²; the order is that of the columns of `odom.csv`.
     """
 
     xx: Entry
@@ -44,7 +44,7 @@ class PoseCovariance(NamedTuple, Generic[Entry]):
     yawyaw: Entry
 
     def matrix(self) -> Floats:
-        """As an array of shape (..., 3, 3)."""
+        """Return the matrix, shape (..., 3, 3)."""
         rows = [
             [self.xx, self.xy, self.xyaw],
             [self.xy, self.yy, self.yyaw],
@@ -54,11 +54,11 @@ class PoseCovariance(NamedTuple, Generic[Entry]):
 
 
 CERTAIN: PoseCovariance[float] = PoseCovariance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""The covariance of a pose that is known exactly."""
+"""Covariance of an exactly known pose."""
 
 
 class PathNoise(NamedTuple, Generic[Number]):
-    """Noise of the body over a piece: a [m²] along, b [rad²] in heading, c [m·rad] between."""
+    """Noise of the body on a piece: variances a [m²] along, b [rad²] yaw, covariance c [m·rad]."""
 
     a: Number
     b: Number
@@ -66,19 +66,19 @@ class PathNoise(NamedTuple, Generic[Number]):
 
 
 def path_noise(robot: Robot, left: Number, right: Number) -> PathNoise[Number]:
-    """Noise of wheels that travelled `left` and `right` metres without reversing (equation 4)."""
+    """Noise of the body after wheel travels [m] without reversal (equation 4)."""
     return path_noise_of(robot.wheel_noise, left, right)
 
 
 def path_noise_of(wheels: WheelNoise, left: Number, right: Number) -> PathNoise[Number]:
-    """The same, from what makes the noise."""
+    """`path_noise`, given the wheels' noise parameters."""
     return noise_of_wheel_variances(
         wheels.left * abs(left), wheels.right * abs(right), wheels.track
     )
 
 
 def noise_of_wheel_variances(left: Number, right: Number, track: float) -> PathNoise[Number]:
-    """Noise of the body from the variances of the two wheels' travel [m²]."""
+    """Noise of the body, given the variances of both wheels' travel [m²]."""
     both = left + right
     return PathNoise(0.25 * both, both / (track * track), 0.5 * (right - left) / track)
 
@@ -106,17 +106,17 @@ def twist_noise(
 ) -> TwistCovariance:
     """Covariance of the mean twist of a step.
 
-    A counter read at an instant is uniform over one count, so the difference of two readings has
-    a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
+    The error of a counter reading is uniform over one count, so the difference of two readings has
+    a variance of 1/6 count², in addition to the wheel's noise (equation 4).
 
     Parameters
     ----------
     left_tick, right_tick : float
-        Travel for a count [m].
+        Travel per count [m].
     duration, left, right : float
-        Of the step [s] and of its wheels [m].
+        Duration of the step [s], and travel of the wheels [m].
     left_lost, right_lost : float
-        Variances of travel that no counter saw [m²].
+        Variance of travel that no counter saw [m²].
     """
     left = wheels.left * abs(left) + left_tick * left_tick / 6.0
     right = wheels.right * abs(right) + right_tick * right_tick / 6.0
@@ -133,10 +133,10 @@ def piece_covariance(
     Parameters
     ----------
     motion : BodyMotion
-        The whole piece as one constant twist. `sideways` is zero in the paper; a body that creeps
-        sideways turns the lever of the heading noise by the creep angle, and nothing else.
+        The whole piece as one constant twist. The paper has no `sideways`; lateral creep only
+        rotates the lever arm of the heading noise, by the creep angle.
     noise : PathNoise
-        Noise of the whole piece, spread evenly along its path.
+        Noise of the whole piece, distributed evenly along it.
     yaw : float or ndarray
         Heading at the start of the piece [rad].
 
@@ -157,8 +157,8 @@ def covariance_over(
     S, cos, sin = chord
     h = 0.5 * turn
     T, U, V = entire(h, S)
-    # The piece in its chord frame: x along the heading half way.
-    m_x, m_y = -0.5 * h * V, 0.5 * S  # mean lever of the heading noise, per travel
+    # Covariance in the chord frame: x along the heading at the middle of the piece.
+    m_x, m_y = -0.5 * h * V, 0.5 * S  # mean lever arm of the heading noise, per travel
     m_xx, m_yy, m_xy = 0.25 * h * h * U, 0.25 * (S * S + 0.5 * T), -0.25 * h * S * V
     spread = 0.5 * a * h * h * T
     bend = 0.5 * c * along * h * T
@@ -178,10 +178,10 @@ def covariance_over(
 
 
 def carried(covariance: PoseCovariance[Number], dx: Number, dy: Number) -> PoseCovariance[Number]:
-    """J P Jᵀ: an earlier pose's covariance seen from a pose displaced by (dx, dy) [m].
+    """J P Jᵀ: propagate a pose covariance through a displacement (dx, dy) [m].
 
-    The heading error of the earlier pose swings the displacement (paper, equation 16). `dx` and
-    `dy` are in the frame of the covariance.
+    The heading error rotates the displacement (paper, equation 16). `dx` and `dy` are in the frame
+    of the covariance.
     """
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
     return PoseCovariance(
@@ -195,7 +195,7 @@ def carried(covariance: PoseCovariance[Number], dx: Number, dy: Number) -> PoseC
 
 
 def plus(one: PoseCovariance[Number], other: PoseCovariance[Number]) -> PoseCovariance[Number]:
-    """Covariance of the sum of two independent errors, both given in one frame."""
+    """Covariance of the sum of two independent errors in one frame."""
     xx, xy, xyaw, yy, yyaw, yawyaw = one
     more_xx, more_xy, more_xyaw, more_yy, more_yyaw, more_yawyaw = other
     return PoseCovariance(
@@ -216,20 +216,20 @@ def after_stretch(
     dx: Number,
     dy: Number,
 ) -> PoseCovariance[Number]:
-    """Covariance of a pose to which a piece has led, in the frame of the one at its start.
+    """Covariance of the pose at the end of a piece, in the frame of the one at its start.
 
     Parameters
     ----------
     motion, noise, chord
-        Of the piece.
+        Of the piece; `chord` as from `chord_of`.
     dx, dy : float or ndarray
-        Displacement that was integrated message by message [m].
+        Displacement, integrated message by message [m].
     """
     return plus(carried(start, dx, dy), covariance_over(motion, noise, chord))
 
 
 def _turned(covariance: PoseCovariance[Number], cos: Number, sin: Number) -> PoseCovariance[Number]:
-    """A covariance from a turned frame, in the frame it is turned against."""
+    """Rotate a covariance into the frame in which the rotation (cos, sin) is given."""
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
     cos2, sin2, both = cos * cos, sin * sin, cos * sin
     across = 2.0 * both * xy
@@ -243,8 +243,8 @@ def _turned(covariance: PoseCovariance[Number], cos: Number, sin: Number) -> Pos
     )
 
 
-# Below |h| = 1 the series, beyond it the closed form: there both hold to a few units in the last
-# place (test/model/test_covariance_exact.py), so the seam is not visible in any entry.
+# The series is used below |h| = 1, the closed form beyond. At the seam both are accurate to a few
+# units in the last place (test/model/test_covariance_exact.py).
 _SEAM = 1.0
 _TERMS = 14
 _T = tuple((-1) ** (n + 1) * 4.0**n / math.factorial(2 * n + 1) for n in range(_TERMS - 1, 0, -1))
@@ -255,14 +255,14 @@ _V = tuple((-1) ** (n + 1) * 2.0 * n / math.factorial(2 * n + 1) for n in range(
 
 
 def entire(h: Number, S: Number) -> tuple[Number, Number, Number]:
-    """T, U, V of the module's docstring; S is its own."""
+    """T, U and V of the module's docstring, given S."""
     if isinstance(h, np.ndarray):
         return _entire_of_array(h, S)
     return entire_of_float(h, S)
 
 
 def entire_of_float(h: float, S: float) -> tuple[float, float, float]:
-    """`entire` of a single number."""
+    """`entire` for a single number."""
     if abs(h) > _SEAM:
         return _closed(h, S)
     t = h * h
@@ -291,7 +291,7 @@ def _closed(h: Number, S: Number) -> tuple[Number, Number, Number]:
 
 
 def _polynomial(coefficients: tuple[float, ...], t: Number) -> Number:
-    """Of coefficients that begin with that of the highest power."""
+    """Evaluate a polynomial; the coefficient of the highest power comes first."""
     total = 0.0 * t
     for coefficient in coefficients:
         total *= t  # in place for arrays

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What an effect declares beside its law: parameters, twins, a sketch. Data; nothing here acts."""
+"""Declarations of an effect besides its formula: parameters, twins, a sketch. Data only."""
 
 from __future__ import annotations
 
@@ -13,31 +13,32 @@ from werrimbi_odom.model.pose import wrap
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of an effect, declared once.
+    """Declaration of a parameter of an effect.
 
     Parameters
     ----------
     unit : str
-        SI unit, "" for a pure number.
+        SI unit; "" if dimensionless.
     null : float
-        The value at which the effect is absent.
+        Value at which the effect is absent.
     typical : float
-        A size that real robots show; the scale on which derivatives are taken.
+        Typical size on real robots; also the scale for derivatives.
     bounds : (float, float)
-        What physics allows; a fit that ends there is a finding of its own.
+        Physical limits; a fit that ends at one is reported.
     says : str
-        What the number is, in plain words.
+        Meaning of the parameter, in plain words.
     per_run : bool
-        A nuisance that each run has anew (a phase where counters start anywhere).
+        Nuisance parameter with a new value in each run (a phase, where counters start anywhere).
     tries : tuple of float
-        Given for a shape (a threshold, a length): it does nothing while the effect's other
-        parameters are null, so no derivative there finds it. A fit begins at each of these values.
+        Start values for a shape parameter (a threshold, a length). While the effect's other
+        parameters are null, it has no influence and therefore no derivative there. A fit starts at
+        each of these values.
     as_base : bool
-        It is the robot file's `wheel_separation_multiplier` by another name: a fit turns that, and
-        what it finds is told and written as this.
+        The parameter is `wheel_separation_multiplier` of the robot file under another name: a fit
+        changes that one and reports and writes the result as this one.
     grain : float
-        Given for a threshold: the share of its value over which the law lets it set in, because
-        speeds and the like are not counted finely enough for an edge. A fit knows no more of it.
+        For a threshold: relative width of its smooth onset. Speeds and the like are too coarsely
+        quantised for a sharp edge, and a fit knows the threshold no better than this.
     """
 
     unit: str
@@ -52,14 +53,13 @@ class Parameter:
 
     @property
     def scale(self) -> float:
-        """Distance from null that real robots show; of a shape, its typical size."""
+        """Typical distance from null on real robots; for a shape parameter its typical size."""
         return abs(self.typical) if self.tries else abs(self.typical - self.null)
 
     def combined(self, one: float, more: float) -> float:
-        """What two of its values come to, one after the other: factors multiply, others add.
+        """Combine two successive values of the parameter: factors multiply, others add.
 
-        A parameter is a factor where it is absent at 1. An angle that goes all the way round stays
-        within half a turn.
+        A parameter with null value 1 is a factor. An angle that may take any direction is wrapped.
         """
         if self.null == 1.0:
             return one * more
@@ -69,27 +69,27 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Twin:
-    """Another effect that no drive can tell from this one, and what can.
+    """Another effect that no drive can distinguish from this one, and what can.
 
     Parameters
     ----------
     name : str
-        Of the other effect.
+        Name of the other effect.
     told_apart_by : str
-        Why no drive can tell them, and what can; a clause, without a full stop.
+        Reason why no drive can distinguish them, and what can; a clause, without a full stop.
     do : str
-        What to do for that; likewise.
+        What to do to distinguish them; likewise.
     manoeuvre : str
-        A name for it, for programs.
+        Identifier of that manoeuvre, for programs.
     minutes : float
-        How long it takes to drive; 0 where it is no drive.
+        Duration of the drive [min]; 0 if it is no drive.
     values : mapping of str to (str, float)
-        For each parameter of the twin, the parameter of this effect and the factor that make it;
-        empty where they are not in proportion.
+        For each parameter of the twin, the parameter of this effect and the factor that give it;
+        empty where the two are not proportional.
     of_headings : bool
-        They are one only where the reference measures headings alone.
+        They are twins only where the reference measures headings alone.
     inverse : bool
-        Values are in proportion to the reciprocals of this effect's.
+        The twin's values are proportional to the reciprocals of this effect's.
     """
 
     name: str
@@ -102,7 +102,7 @@ class Twin:
     inverse: bool = False
 
     def same_as(self, values: Mapping[str, float]) -> dict[str, float]:
-        """The twin's values that do the same as `values` of this effect."""
+        """Values of the twin that are equivalent to `values` of this effect."""
         power = -1.0 if self.inverse else 1.0
         return {name: factor * values[own] ** power for name, (own, factor) in self.values.items()}
 
@@ -138,28 +138,28 @@ DRAWINGS: Mapping[str, int] = {
     "wandering_bias": 0,
     "yaw_offset": 0,
 }
-"""Drawings that the reports have, and how many labels each asks for: a side, or two signals."""
+"""Drawings of the reports, and the number of labels that each takes: a side, or two signals."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sketch:
-    """A drawing of the physics, for reports: which one, and its words.
+    """A drawing of the physics for reports, and its texts.
 
     Parameters
     ----------
     drawing : str
         One of `DRAWINGS`.
     says : str
-        What it shows, for those who do not see it.
+        Text alternative of the drawing.
     caption : str
-        Below it.
+        Caption below it.
     labels : tuple of str
-        What the drawing asks for: a side ("left", "right"), the names of two signals.
+        Labels that the drawing takes: a side ("left", "right"), the names of two signals.
 
     Raises
     ------
     ValueError
-        For a drawing that there is not, or labels that it does not ask for.
+        For an unknown drawing, or a wrong number of labels.
     """
 
     drawing: str

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The memory behind `Drive` while the robot drives: constant in size, a step at a time."""
+"""Computes `Drive` online, one step at a time, with constant memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from werrimbi_odom.model.pose import Pose
 
 
 class _Means(NamedTuple):
-    """Speeds over a step [m/s, rad/s, m/s, m/s]."""
+    """Mean speeds over a step [m/s, rad/s, m/s, m/s]."""
 
     speed: float
     yaw_rate: float
@@ -24,13 +24,13 @@ class _Means(NamedTuple):
 
 
 def smoothed(before: float, speed: float, duration: float) -> float:
-    """A speed behind a low pass of `SMOOTHING`, after a step at one speed [m/s]."""
+    """Low-pass filtered speed (`SMOOTHING`) after a step at constant `speed` [m/s]."""
     return speed + (before - speed) * math.exp(-duration / SMOOTHING)
 
 
 @dataclass(slots=True)
 class _Shuttle:
-    """Travel since the last reversal of something that goes to and fro."""
+    """Travel since the last reversal of something that moves back and forth."""
 
     flicker: float
     direction: float = 0.0
@@ -45,7 +45,7 @@ class _Shuttle:
         return abs(self._farthest - self._turned_at)
 
     def step(self, travel: float) -> Span[float]:
-        """Take one step; travel since reversal at its start and end."""
+        """Add one step; return the travel since reversal at its start and end."""
         self._position += travel
         start = self.since
         ahead = (self._position - self._farthest) * (self.direction or 1.0)
@@ -65,14 +65,14 @@ class _Shuttle:
 
 @dataclass(slots=True)
 class DriveMemory:
-    """The causal memory behind `Drive`: constant in size, a step at a time.
+    """State behind `Drive`: constant in size, updated once per step.
 
     Parameters
     ----------
     flicker : float
         A wheel that goes back by less (or by less than `ROLLBACK`) has not reversed [m].
     left_angle, right_angle : float
-        Of the wheels at the first message, from the counters' zeros [rad].
+        Angles of the wheels at the first message, from the counters' zeros [rad].
     """
 
     flicker: float
@@ -96,7 +96,7 @@ class DriveMemory:
         pose: Pose,
         channels: Mapping[str, Span[float]] | None = None,
     ) -> Drive[float]:
-        """Take one step, which begins at `pose`, and tell an effect all that it may know of it."""
+        """Add one step that begins at `pose`; return what an effect may read in it."""
         time = Span(self._time, self._time + raw.duration)
         distance = Span(self._distance, self._distance + abs(raw.along))
         means = _Means(

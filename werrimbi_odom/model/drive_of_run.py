@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What effects may look at in all steps of a recorded run at once."""
+"""Quantities that effects may read, for all steps of a recorded run at once."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
 
 QUANTITIES = tuple(item.name for item in fields(Drive))
-"""All that effects may look at."""
+"""Names of all quantities that effects may read."""
 
 
 Some = TypeVar("Some", bound="DriveOfRun")
 
 
 class DriveOfRun(Drive[Floats]):
-    """A `Drive` over the steps of runs that works each quantity out when it is first asked for.
+    """A `Drive` over all steps of runs that computes each quantity at first use.
 
-    Effects look at two or three of them, and all are thirty numbers for each step.
+    An effect reads two or three of the thirty quantities.
     """
 
     __slots__ = ("_works",)
@@ -34,17 +34,17 @@ class DriveOfRun(Drive[Floats]):
 
     @classmethod
     def by(cls: type[Some], works: Mapping[str, Callable[[], Any]]) -> Some:
-        """The drive whose quantities these functions find, by name."""
+        """Create a drive from functions that compute its quantities, by name."""
         drive = object.__new__(cls)
         object.__setattr__(drive, "_works", works)
         return drive
 
     def found(self, name: str) -> Any:
-        """A quantity, worked out and not kept."""
+        """Compute a quantity without caching it."""
         return self._works[name]()
 
     def __getattr__(self, name: str) -> Any:
-        """A quantity that was not asked for before."""
+        """Compute and cache a quantity at its first use."""
         if name not in QUANTITIES:
             raise AttributeError(name)
         value = self.found(name)
@@ -52,7 +52,7 @@ class DriveOfRun(Drive[Floats]):
         return value
 
     def but(self, **quantities: Any) -> DriveOfRun:
-        """The same with other quantities."""
+        """Return a copy with these quantities replaced."""
         works: dict[str, Callable[[], Any]]
         works = {name: partial(getattr, self, name) for name in QUANTITIES}
         for name, value in quantities.items():
@@ -77,10 +77,10 @@ def drive_of_run(
     first_angles: tuple[float, float] = (0.0, 0.0),
     channels: Mapping[str, Span[Floats]] | None = None,
 ) -> DriveOfRun:
-    """All steps of a run at once; the same as feeding them to a `drive_memory.DriveMemory`.
+    """Compute all steps of a run at once; the same as passing them to a `drive_memory.DriveMemory`.
 
-    Arrays have shape (n,), as in `RawStep`. The pose is that of the counters alone, from zero on
-    (`Drive.with_heading`, `Drive.with_place`).
+    Arrays have shape (n,), as in `RawStep`. The pose is that of the counters alone, starting at
+    zero (see `Drive.with_heading`, `Drive.with_place`).
     """
     least = max(flicker, ROLLBACK)
     since = cache(partial(_shuttled, along, least))
@@ -128,17 +128,17 @@ def drive_of_run(
 
 
 def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> DriveOfRun:
-    """The same with each step's speeds of the wheels those of the message that it is a part of.
+    """Return the same drive with wheel speeds averaged over whole messages instead of steps.
 
-    Where a message is cut in two, at an instant that somebody else measured, the counters say no
-    more of either part: a mean over a part has the error of where it was cut in it, so that a stamp
-    which is off would make the robot fast and far ahead at once, as wheels that slip do. Those of
-    the body stay the step's: what they add up to is the robot's path and turn, to the last digit.
+    A message may be split into steps at a reference stamp. The mean speed over one part contains
+    the error of that stamp: a stamp that is off would make the robot both faster and farther ahead,
+    which looks like wheel slip. So both parts get the speed of the message. The speeds of the body
+    stay those of the steps: they sum exactly to the robot's path and turn.
 
     Parameters
     ----------
     message : ndarray, shape (n,)
-        Number of the message in which each step ends, counted from 0 on, and none left out.
+        Index of the message in which each step ends, from 0 on, without gaps.
     """
 
     @cache
@@ -174,23 +174,23 @@ class _Shuttled(NamedTuple):
 
 
 def _grown(first: float, steps: Floats) -> Span[Floats]:
-    """Running sum before and after each step."""
+    """Cumulative sum before and after each step."""
     sums = np.concatenate([[first], steps])
     np.cumsum(sums, out=sums)
     return Span(sums[:-1], sums[1:])
 
 
 def _lagged(means: Floats) -> Span[Floats]:
-    """Mean of the step before, and of the step; the first step has none before it."""
+    """Mean of the previous step, and of this one; the first step uses its own for both."""
     both = np.concatenate([means[:1], means])
     return Span(both[:-1], both[1:])
 
 
 def _smooth(means: Floats, duration: Floats) -> Span[Floats]:
-    """Behind a low pass, as `drive_memory.smoothed` has it message by message.
+    """Low-pass filter of the speeds; the same as `drive_memory.smoothed` message by message.
 
-    A message is a line of what was before it, `kept * before + rest`; lines put into one another
-    make those of two messages, four, eight, until nothing is kept.
+    Each message is an affine map of the previous value, `kept * before + rest`. Composing these
+    maps gives those of two messages, four, eight, until `kept` vanishes.
     """
     kept = np.exp(-duration / SMOOTHING)
     rest = (1.0 - kept) * means
@@ -204,10 +204,10 @@ def _smooth(means: Floats, duration: Floats) -> Span[Floats]:
 
 
 def _shuttled(travel: Floats, flicker: float) -> _Shuttled:
-    """Travel since reversal over a whole run, as `drive_memory` has it step by step.
+    """Travel since reversal over a whole run; the same as `drive_memory` step by step.
 
-    Only steps that set a new extreme or turn back matter; between reversals the farthest point is
-    a running extreme, so the loop is over reversals, not over steps.
+    Only steps that set a new extreme or reverse matter. Between reversals the farthest point is a
+    running extreme, so the loop runs over reversals and not over steps.
     """
     position = np.cumsum(travel)
     count = position.size
@@ -233,7 +233,7 @@ def _shuttled(travel: Floats, flicker: float) -> _Shuttled:
 def _until_reversal(
     position: Floats, begin: int, sign: float, flicker: float
 ) -> tuple[int, Floats]:
-    """First step after `begin` that has turned back, and the farthest point until then."""
+    """First step after `begin` that has reversed, and the farthest point until then."""
     window = 256
     while True:
         end = min(begin + window, position.size)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""From what the encoders say to what the robot does: travel passes through the effects it holds."""
+"""From encoder increments to motion of the robot, through the effects of its model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Channels = Mapping[str, float]
 
 
 class DrivenStep(NamedTuple):
-    """One step before any effect, and what effects may look at in it."""
+    """One step before any effect, and what effects may read in it."""
 
     raw: WheelTravel[float]
     drive: Drive[float]
@@ -31,11 +31,11 @@ class DrivenStep(NamedTuple):
 
 @dataclass(slots=True)
 class Driving:
-    """The effects of a robot in a live drive, a step at a time."""
+    """The effects of a robot during a live drive, one step at a time."""
 
     robot: Robot
     last: DrivenStep | None = field(default=None, init=False)
-    """The latest step, where the robot has effects."""
+    """The latest step; None for a robot without effects."""
     _memory: DriveMemory | None = field(init=False)
     _channels: dict[str, float] = field(default_factory=dict, init=False)
 
@@ -43,19 +43,19 @@ class Driving:
         self._memory = DriveMemory(flicker_of(self.robot)) if acts(self.robot) else None
 
     def begin(self, left: float, right: float, channels: Channels | None = None) -> None:
-        """Take the counters of the first message: wheels have angles from then on."""
+        """Set the counters of the first message, which define the wheels' angles."""
         if self._memory is not None:
             self._memory.left_angle = left * _left_angle(self.robot)
             self._memory.right_angle = right * _right_angle(self.robot)
             self._channels.update(_measured(channels or {}))
 
     def retune(self, robot: Robot, left: float, right: float) -> None:
-        """Go on with other values; all that effects remember stays.
+        """Change the parameter values; the state of the effects is kept.
 
         Parameters
         ----------
         left, right : float
-            The counters of the last message, for an effect that is the first to act.
+            Counters of the last message, needed where no effect acted before.
         """
         self.robot = robot
         if self._memory is None and acts(robot):
@@ -87,7 +87,7 @@ class Driving:
         return after_effects(self.robot, raw, drive)
 
     def _spans(self, channels: Channels | None) -> Mapping[str, Span[float]] | None:
-        """From the last message's values to this one's; what was not measured stays as it was."""
+        """From the last message's values to this one's; channels without a value keep the last."""
         if not channels and not self._channels:
             check_channels(self.robot, {})
             return None
@@ -102,12 +102,12 @@ def _measured(channels: Channels) -> dict[str, float]:
 
 
 def check_channels(robot: Robot, channels: Mapping[str, object]) -> None:
-    """Whether everything is measured that the robot's effects look at.
+    """Check that every channel that the robot's effects read is measured.
 
     Raises
     ------
     InputError
-        When a channel is not; the message names it and the effect.
+        If one is not; the message names it and the effect.
     """
     for applied in robot.effects:
         missing = applied.effect.lacks(channels)
@@ -127,19 +127,19 @@ def features(
     first_counts: tuple[float, float],
     channels: Mapping[str, Span[Floats]] | None = None,
 ) -> DriveOfRun:
-    """What effects may look at in a run.
+    """Compute what effects may read in a run.
 
     Parameters
     ----------
     first_counts : (left, right)
-        The counters at the first message.
+        Counters at the first message.
     channels : mapping, optional
         Extra measured channels at the start and end of each step.
 
     Raises
     ------
     InputError
-        When an effect looks at a channel that was not measured.
+        If an effect reads a channel that was not measured.
     """
     check_channels(robot, channels or {})
     motion = wheels_to_body(raw, robot.track)
@@ -159,12 +159,12 @@ def features(
 
 
 def acts(robot: Robot) -> bool:
-    """Whether any of its effects acts on wheels or body."""
+    """Whether any of the robot's effects acts on wheels or body."""
     return any(applied.effect.stage in ("wheels", "body") for applied in robot.effects)
 
 
 def flicker_of(robot: Robot) -> float:
-    """How far a wheel may go back without having reversed [m]: one count may flicker."""
+    """Largest backward travel of a wheel that is no reversal [m]: one count may flicker."""
     return 0.75 * (robot.left_tick + robot.right_tick)
 
 

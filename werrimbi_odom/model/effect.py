@@ -1,17 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A physical effect: a named, documented function on travel or motion, with declared parameters.
+"""A physical effect: a named, documented function of travel or motion, with declared parameters.
 
 Physics acts at three places, so an effect has a stage: `wheels` (WheelTravel -> WheelTravel),
-`body` (BodyMotion -> BodyMotion) and `reference` (View -> View: how the measurement looks at the
+`body` (BodyMotion -> BodyMotion) or `reference` (View -> View: how the reference observes the
 robot; it changes what is compared, never what the node publishes). Set-up mistakes change how the
 counters are read (Wiring -> Wiring).
 
-Laws that every effect keeps (`check_effect` holds them against it, a user's own too): at its null
-values it is the exact identity; a step's result depends on that step's row alone; it changes none
-of its arguments; it is finite at the bounds; splitting a step changes nothing; a turn that depends
-on the heading does so gently; a drive comes out alike live, recorded and predicted. What it looks
-at is found by running it (`werrimbi_odom.model.effects_over_run`), and need not be declared.
+Every effect, also a user's own, must satisfy these laws (tested by `check_effect`): at its null
+values it is exactly the identity; a step's result depends on that step's row alone; it does not
+modify its arguments; it is finite at the bounds; splitting a step changes nothing; a turn that
+depends on the heading does so smoothly and weakly; live, recorded and predicted drives give equal
+results. The quantities that it reads need not be declared: they are recorded while it runs
+(`werrimbi_odom.model.effects_over_run`).
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ Apply = Callable[..., Any]
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect of the library, or of a user's package.
+    """A physical effect of the library or of a user's package.
 
     Parameters
     ----------
@@ -63,23 +64,23 @@ class Effect:
     stage : "wiring", "wheels", "body" or "reference"
         Where it acts.
     parameters : mapping of str to Parameter
-        None: a set-up mistake, which is made or not.
+        Empty for a set-up mistake, which is present or not.
     apply : callable
-        The law.
+        The function itself.
     doc : str
-        Its page: what it is, then Formula, Signature, Ruler, Twins.
+        Its page: a description, then Formula, Signature, Ruler, Twins.
     indistinguishable_from : tuple of Twin
-        Effects that no drive can tell from it, by algebra, and what can.
+        Effects that no drive can distinguish from it, by algebra, and what can.
     quadrature : (str, str), optional
-        Names of an amplitude and a phase [rad]. The amplitude alone has no derivative at null (it
-        depends on the phase); amplitude * cos(phase) and amplitude * sin(phase) have. See
+        Names of an amplitude and a phase [rad]. The amplitude has no derivative at null, because
+        that depends on the phase; amplitude * cos(phase) and amplitude * sin(phase) have one. See
         `to_fit`.
     channels : tuple of str
-        Extra measured channels that it looks at; without them it cannot be applied.
+        Extra measured channels that it reads; it cannot be applied without them.
     sketch : Sketch, optional
-        A drawing of it, for reports.
+        A drawing for reports.
     one_of_channels : tuple of str
-        Words, one of which must be in the name of a measured channel; likewise.
+        It needs a measured channel with one of these words in its name.
     """
 
     name: str
@@ -94,7 +95,7 @@ class Effect:
     one_of_channels: tuple[str, ...] = ()
 
     def lacks(self, measured: Iterable[str]) -> tuple[str, ...]:
-        """Channels that it looks at and that were not measured, in words; empty: it can act."""
+        """Channels that it reads and that were not measured, in words; empty if it can act."""
         there = tuple(measured)
         missing = tuple(name for name in self.channels if name not in there)
         wanted = self.one_of_channels
@@ -104,33 +105,33 @@ class Effect:
 
     @property
     def twins(self) -> tuple[str, ...]:
-        """Names of the effects that no drive can tell from it, whatever the reference measures."""
+        """Effects that no drive can distinguish from it, whatever the reference measures."""
         return tuple(twin.name for twin in self.indistinguishable_from if not twin.of_headings)
 
     @property
     def summary(self) -> str:
-        """First line of what it is."""
+        """First line of its page."""
         return self.doc.strip().splitlines()[0]
 
     @property
     def nulls(self) -> dict[str, float]:
-        """The values at which it is absent."""
+        """Values at which it is absent."""
         return {name: item.null for name, item in self.parameters.items()}
 
     @property
     def is_mistake(self) -> bool:
-        """Whether it is a set-up mistake: made or not, nothing in between."""
+        """Whether it is a set-up mistake: present or absent, nothing in between."""
         return not self.parameters
 
     def allows(self, values: Mapping[str, float]) -> bool:
-        """Whether physics allows some values of its parameters."""
+        """Whether these values lie within the physical bounds."""
         bounds = {name: self.parameters[name].bounds for name in values}
         return all(low <= values[name] <= high for name, (low, high) in bounds.items())
 
     def to_fit(self, values: Mapping[str, float]) -> dict[str, float]:
-        """Values in coordinates that have a derivative at null, for a fit to move.
+        """Transform values to coordinates that have a derivative at null, for a fit.
 
-        They are the parameters themselves, but for a `quadrature`: its amplitude and phase become
+        They are the parameters themselves, except for a `quadrature`: amplitude and phase become
         ``AMPLITUDE_cos`` and ``AMPLITUDE_sin``.
         """
         if self.quadrature is None:
@@ -146,7 +147,7 @@ class Effect:
         }
 
     def from_fit(self, coordinates: Mapping[str, float]) -> dict[str, float]:
-        """What `to_fit` undoes: parameters from coordinates; the amplitude is not negative."""
+        """Inverse of `to_fit`; the amplitude is not negative."""
         if self.quadrature is None:
             return dict(coordinates)
         amplitude, phase = self.quadrature
@@ -156,15 +157,15 @@ class Effect:
         return {name: found[name] for name in self.parameters}
 
     def using(self, **values: float) -> AppliedEffect:
-        """The effect with values; those not given are null.
+        """Apply the effect with these values; those not given are null.
 
-        A parameter that each run has anew and that is not given stays `unknown` until somebody
-        (a fit, the node) has learnt it.
+        A per-run parameter that is not given stays `unknown` until it is estimated by a fit or the
+        node.
 
         Raises
         ------
         ValueError
-            For a parameter that it does not have, or a value that physics does not allow.
+            For an unknown parameter, or a value outside its physical bounds.
         """
         for name, value in values.items():
             if name not in self.parameters:
@@ -189,20 +190,20 @@ class AppliedEffect:
     effect: Effect
     values: Mapping[str, float] = field(default_factory=dict)
     unknown: tuple[str, ...] = ()
-    """Parameters that this run has anew and nobody has learnt yet; their values are the null's."""
+    """Per-run parameters that are not yet estimated; their values are null."""
 
     @property
     def name(self) -> str:
-        """Of the effect."""
+        """Name of the effect."""
         return self.effect.name
 
     @property
     def ready(self) -> bool:
-        """Whether it can act: with an unknown phase it might double the error that it is for."""
+        """Whether it can act. With an unknown phase it might double the error instead."""
         return not self.unknown
 
     def learnt(self, **values: float) -> AppliedEffect:
-        """The same with values that are now known."""
+        """Return a copy with estimated values."""
         left = tuple(name for name in self.unknown if name not in values)
         return AppliedEffect(self.effect, {**self.values, **values}, left)
 
@@ -214,7 +215,7 @@ def wheel_effect(
     channels: tuple[str, ...] = (),
     one_of_channels: tuple[str, ...] = (),
     sketch: Sketch | None = None,
-    pose: bool = False,  # asked for once; what a law looks at is now found by running it
+    pose: bool = False,  # obsolete: what an effect reads is now recorded while it runs
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""
@@ -237,14 +238,14 @@ def body_effect(
 def reference_effect(
     *, twins: Sequence[Twin | str] = (), sketch: Sketch | None = None, **parameters: Parameter
 ) -> Callable[[Apply], Effect]:
-    """Declare ``f(view, **parameters) -> View`` as an effect of the measurement."""
+    """Declare ``f(view, **parameters) -> View`` as an effect on the measurement."""
     return _declared("reference", parameters, 1, twins, sketch)
 
 
 def wiring_mistake(
     *, twins: Sequence[Twin | str] = (), sketch: Sketch | None = None
 ) -> Callable[[Apply], Effect]:
-    """Declare ``f(wiring) -> Wiring`` as a set-up mistake: it is made, or it is not."""
+    """Declare ``f(wiring) -> Wiring`` as a set-up mistake: present or not."""
     return _declared("wiring", {}, 1, twins, sketch)
 
 
@@ -292,21 +293,21 @@ def _declared(
 
 
 def twin_of(one: Effect, other: Effect) -> Twin | None:
-    """What the one says of the other as its twin, or the other of the one; None: no twins."""
+    """Declaration of twinship, by either of the two effects; None if they are no twins."""
     found = [twin for twin in one.indistinguishable_from if twin.name == other.name]
     found += [twin for twin in other.indistinguishable_from if twin.name == one.name]
     return max(found, key=lambda twin: bool(twin.do), default=None)
 
 
 def always_twins(one: Effect, other: Effect) -> bool:
-    """Whether no drive can tell them apart, whatever the reference measures."""
+    """Whether no drive can distinguish them, whatever the reference measures."""
     return other.name in one.twins or one.name in other.twins
 
 
 def after_wheel_effects(
     effects: tuple[AppliedEffect, ...], travel: WheelTravel[Any], drive: Drive[Any]
 ) -> WheelTravel[Any]:
-    """Travel of the wheels once the effects on them have acted, in order."""
+    """Apply the effects on the wheels, in order."""
     for applied in effects:
         if applied.effect.stage == "wheels" and applied.ready:
             travel = applied.effect.apply(travel, drive, **applied.values)
@@ -316,7 +317,7 @@ def after_wheel_effects(
 def after_body_effects(
     effects: tuple[AppliedEffect, ...], motion: BodyMotion[Any], drive: Drive[Any]
 ) -> BodyMotion[Any]:
-    """Motion of the body once the effects on it have acted, in order."""
+    """Apply the effects on the body, in order."""
     for applied in effects:
         if applied.effect.stage == "body" and applied.ready:
             motion = applied.effect.apply(motion, drive, **applied.values)
@@ -324,7 +325,7 @@ def after_body_effects(
 
 
 def view_of(effects: tuple[AppliedEffect, ...]) -> View:
-    """How the reference looks at the robot."""
+    """How the reference observes the robot."""
     view = View()
     for applied in effects:
         if applied.effect.stage == "reference" and applied.ready:
@@ -333,7 +334,7 @@ def view_of(effects: tuple[AppliedEffect, ...]) -> View:
 
 
 def wiring_of(effects: tuple[AppliedEffect, ...]) -> Wiring:
-    """How the counters are to be read."""
+    """How the counters must be read."""
     wiring = Wiring()
     for applied in effects:
         if applied.effect.stage == "wiring":

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects over a recorded run: one pass, and more where they look at the pose that they lead to.
+"""Effects over a recorded run: one pass, or several where effects depend on the resulting pose.
 
-What an effect looks at is found by running it, on the very steps and values that count: a law that
-did not ask for the pose cannot depend on it, however it is written, and one that asked is given
-poses of its own making until nothing changes.
+The quantities that an effect reads are recorded while it runs on the actual steps and values. An
+effect that did not read the pose cannot depend on it. One that did is evaluated again with the
+poses that result, until these converge.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ class AfterEffects(NamedTuple):
 
 
 class WatchedDrive(DriveOfRun):
-    """A `Drive` that notes what is asked of it: quantities, and extra channels, by name.
+    """A `Drive` that records which quantities and extra channels are read, by name.
 
-    Copies of it, however made, ask it for what they hold, and that is noted too.
+    Copies of it read their quantities through it, so those are recorded too.
     """
 
     __slots__ = ("asked",)
@@ -55,7 +55,7 @@ class WatchedDrive(DriveOfRun):
 
     @classmethod
     def by(cls: type[Some], works: Mapping[str, Callable[[], Any]]) -> Some:
-        """The drive whose quantities these functions find, by name."""
+        """Create a drive from functions that compute its quantities, by name."""
         drive = super().by(works)
         object.__setattr__(drive, "asked", set())
         return drive
@@ -90,7 +90,7 @@ class _WatchedChannels(Mapping[str, Span[Floats]]):
 
 
 def watched(drive: Drive[Floats]) -> WatchedDrive:
-    """The same drive, watched."""
+    """Return the drive with recording of what is read."""
     seen = WatchedDrive.by({name: partial(getattr, drive, name) for name in QUANTITIES})
     object.__setattr__(seen, "channels", drive.channels)
     return seen
@@ -99,7 +99,7 @@ def watched(drive: Drive[Floats]) -> WatchedDrive:
 def after_effects(
     robot: Robot, raw: WheelTravel[Number], drive: Drive[Number]
 ) -> tuple[WheelTravel[Number], BodyMotion[Number]]:
-    """Travel and motion once all effects have acted, in their order."""
+    """Travel and motion after all effects, in their order."""
     travel = after_wheel_effects(robot.effects, raw, drive)
     motion = wheels_to_body(travel, robot.track)
     return travel, after_body_effects(robot.effects, motion, drive)
@@ -108,23 +108,23 @@ def after_effects(
 def driven(
     robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose
 ) -> AfterEffects:
-    """A whole run after the effects, the same as `driving.Driving` step by step.
+    """Compute a whole run after the effects; the same as `driving.Driving` step by step.
 
     Parameters
     ----------
     raw : WheelTravel
-        Before the effects, shape (n,).
+        Travel before the effects, shape (n,).
     drive : Drive
-        Of the run (`driving.features`).
+        Drive of the run (`driving.features`).
     start : Pose
-        Of the robot before the first step.
+        Pose of the robot before the first step.
     """
     seen = watched(drive)
     first = AfterEffects(*after_effects(robot, raw, seen))
     if not seen.asked & POSE:
         return first
-    # Few effects turn the robot by its heading, so a second pass with the heading of the first is
-    # mostly the answer.
+    # Few effects turn the robot depending on its heading, so a second pass with the heading of the
+    # first is usually the solution.
     heading = np.cumsum(np.concatenate([[start.yaw], first.motion.turn[:-1]]))
     again = watched(drive.with_heading(heading, drive.heading.change))
     second = AfterEffects(*after_effects(robot, raw, again))
@@ -136,11 +136,10 @@ def driven(
 def _settled(
     robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose
 ) -> AfterEffects:
-    """The same where motion depends on the pose that it leads to, some hundred steps at a time.
+    """Fixed-point iteration where motion depends on the resulting pose, in blocks of steps.
 
-    In each pass the poses come from the last pass's motion. A step depends on those before it
-    alone, so every pass settles at least one step more for good; a gentle dependence settles all
-    of them in a few.
+    Each pass uses the poses from the previous pass's motion. A step depends only on earlier ones,
+    so every pass settles at least one more step; a weak dependence settles all of them in a few.
     """
     parts = []
     x, y, yaw = start
@@ -180,7 +179,7 @@ def _settled(
 
 
 def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
-    """Some steps of a drive."""
+    """Slice of some steps of a drive."""
 
     def some(value: Any) -> Any:
         if isinstance(value, Span):
@@ -196,10 +195,10 @@ def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
 
 
 Headings = Callable[[AfterEffects], Floats]
-"""Heading at the start of each step [rad], from what the steps do."""
+"""Heading at the start of each step [rad], from the motion of the steps."""
 
 Places = Callable[[AfterEffects, Floats], tuple[Floats, Floats]]
-"""Place at the start of each step [m], from what the steps do and the headings."""
+"""Position at the start of each step [m], from the motion of the steps and the headings."""
 
 
 def driven_from_measured(
@@ -209,13 +208,13 @@ def driven_from_measured(
     headings: Headings,
     places: Places,
 ) -> AfterEffects:
-    """The same where the pose is measured now and then, so that a run is not one long chain.
+    """As `driven`, where the pose is measured at times, so that errors do not accumulate.
 
     Parameters
     ----------
     headings, places
-        From the motion of the last pass and what was measured, the poses for the next; asked for
-        only where an effect looks at them.
+        Give the poses for the next pass from the motion of the last one and the measurements;
+        called only where an effect reads them.
     """
     seen = watched(drive)
     found = AfterEffects(*after_effects(robot, raw, seen))
@@ -237,7 +236,7 @@ def driven_from_measured(
 
 
 def _same(before: AfterEffects, after: AfterEffects, placed: bool) -> bool:
-    """Whether another pass would find the same poses."""
+    """Whether another pass would give the same poses."""
     olds, parts = (each.motion if placed else (each.motion.turn,) for each in (before, after))
     return all(
         not np.max(np.abs(new - old), initial=0.0) > _SAME

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""From cumulative counters to wheel travel, through everything that happens to real counters.
+"""From cumulative counters to wheel travel, with the faults of real counters handled.
 
-Counters are cumulative, so a lost, doubled or late message loses no motion: the next good one holds
-it all. What would make the pose jump is a counter that starts anew; see `Encoder` for how that is
-told from motion.
+Counters are cumulative, so a lost, doubled or late message loses no motion: the next good one
+contains it all. Only a counter reset would make the pose jump; `Encoder` describes how a reset is
+distinguished from motion.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ CLOCK_JUMP = 1.0
 """A stamp older than the last by more than this [s] is a clock set back, not a late message."""
 
 RESOLUTION = 0.5e-9
-"""Stamps count in nanoseconds; two that are closer than this [s] are one."""
+"""Stamps have a resolution of nanoseconds; two that are closer than this [s] are equal."""
 
 LEARNED_MARGIN = 4.0
-"""A wheel may go this many times faster than it did of late ..."""
+"""Without a known top speed, a wheel may go this many times faster than it did recently ..."""
 LEARNED_FLOOR = 1.0
-"""... or one turn a second, before a fall to zero is called a reset."""
+"""... or one turn a second, before a fall to zero is taken as a reset."""
 
 
 @dataclass(slots=True)
 class EncoderTally:
-    """What happened to the messages so far; every one of them is counted once in `messages`."""
+    """Counts of message faults so far; `messages` counts every message once."""
 
     messages: int = 0
     accepted: int = 0
@@ -59,13 +59,13 @@ class EncoderTally:
 
 @dataclass(frozen=True, slots=True)
 class EncoderLimits:
-    """When counters are doubted.
+    """When counter readings are rejected.
 
     Parameters
     ----------
     max_wheel_speed : float
-        Fastest that a wheel can go [m/s]; 0 when unknown. Given, faster steps are refused until
-        a second message confirms them. Unknown, nothing but a fall back to zero is doubted.
+        Fastest possible wheel speed [m/s]; 0 if unknown. If given, faster steps are rejected until
+        a second message confirms them. If unknown, only a fall to zero is checked.
     gap_duration : float
         Intervals longer than this [s] are counted as gaps; their motion is kept.
     """
@@ -80,19 +80,19 @@ class WheelStep(NamedTuple):
     time: float
     """Stamp of the later message [s]."""
     duration: float
-    """Seconds since the earlier one; greater than zero."""
+    """Time since the earlier message [s]; greater than zero."""
     left: float
     """Signed travel of the left wheel [m]."""
     right: float
     """Signed travel of the right wheel [m]."""
     left_lost: float = 0.0
-    """Variance of left travel that no counter saw [m²]; zero but for a reset."""
+    """Variance of left travel that no counter saw [m²]; zero except after a reset."""
     right_lost: float = 0.0
-    """Variance of right travel that no counter saw [m²]; zero but for a reset."""
+    """Variance of right travel that no counter saw [m²]; zero except after a reset."""
 
 
 class Reading(NamedTuple):
-    """What one message says: stamp [s] and cumulative counts."""
+    """Content of one message: stamp [s] and cumulative counts."""
 
     time: float
     left: float
@@ -100,23 +100,23 @@ class Reading(NamedTuple):
 
 
 class CountRule(NamedTuple):
-    """What is made of counts, and when they are doubted, for one robot and its limits."""
+    """How counts are scaled and checked, for one robot and its limits."""
 
     left_tick: float
-    """Travel for a count [m]."""
+    """Travel per count [m]."""
     right_tick: float
     left_per_turn: float
-    """Counts for a turn of the wheel."""
+    """Counts per turn of the wheel."""
     right_per_turn: float
     half: float
-    """Half the range of counters that wrap, in counts; infinite where they do not."""
+    """Half the range of counters that wrap, in counts; infinite if they do not wrap."""
     top_speed: float
-    """Fastest that a wheel can go [m/s], and turn [turns/s]; 0 when unknown."""
+    """Fastest possible wheel speed [m/s], and `top_rate` [turns/s]; 0 if unknown."""
     top_rate: float
 
     @staticmethod
     def of(robot: Robot, limits: EncoderLimits) -> CountRule:
-        """The rule for a robot's encoders."""
+        """Create the rule for a robot's encoders."""
         return CountRule(
             robot.left_tick,
             robot.right_tick,
@@ -130,12 +130,12 @@ class CountRule(NamedTuple):
 
 @dataclass(slots=True)
 class Encoder:
-    """Counters to wheel travel, a message at a time, in constant time and memory.
+    """Counters to wheel travel, one message at a time, in constant time and memory.
 
-    A counter has been reset (a restarted driver) when it falls to near zero faster than its wheel
-    can turn, or when both fall to exactly zero from further away than one message explains. The
-    travel of that one interval is lost: it is taken as zero, with the last speed over the interval
-    as its standard deviation, and counting goes on from the new reading.
+    A counter was reset (a restarted driver) if it falls to near zero faster than its wheel can
+    turn, or if both fall to exactly zero from farther away than one message explains. The travel of
+    that interval is lost: it is taken as zero, with the last speed times the interval as its
+    standard deviation, and counting continues from the new reading.
     """
 
     robot: Robot
@@ -145,7 +145,7 @@ class Encoder:
     _doubted: Reading | None = None
     pace: Pace = field(default_factory=Pace)
     lasted: float = USUAL_AT_FIRST
-    """Seconds over which the latest step was judged: its own, but where it came much too soon."""
+    """Interval for checking the latest step [s]: its own, unless it arrived much too early."""
     _left_speed: float = 0.0
     _right_speed: float = 0.0
     rule: CountRule = field(init=False)
@@ -154,24 +154,24 @@ class Encoder:
         self.rule = CountRule.of(self.robot, self.limits)
 
     def retune(self, robot: Robot, limits: EncoderLimits) -> None:
-        """Go on with other values."""
+        """Change the parameter values; the state is kept."""
         self.robot, self.limits = robot, limits
         self.__post_init__()
 
     def step(self, time: float, left: float, right: float) -> WheelStep | None:
-        """Travel since the last accepted message.
+        """Return the travel since the last accepted message.
 
         Parameters
         ----------
         time : float
             Stamp of the message [s].
         left, right : float or int
-            Cumulative signed counts (whole or not; integers of any size stay exact).
+            Cumulative signed counts (fractional or integer; integers of any size stay exact).
 
         Returns
         -------
         WheelStep or None
-            None for the first message and for one that is refused; `tally` says why.
+            None for the first message and for one that is rejected; `tally` counts the reason.
         """
         self.tally.messages += 1
         if not (isfinite(time) and isfinite(left) and isfinite(right)):
@@ -179,7 +179,7 @@ class Encoder:
             return None
         reading = Reading(time, left, right)
         if self._doubted is not None and time == self._doubted.time:
-            self.tally.duplicates += 1  # a doubted message does not confirm itself
+            self.tally.duplicates += 1  # a doubtful message does not confirm itself
             return None
         if self._last is None:
             self._last = reading
@@ -194,7 +194,7 @@ class Encoder:
         return self._advance(reading, duration)
 
     def _goes_on(self, elapsed: float) -> bool:
-        """Whether a message that is no later than the last one follows it all the same."""
+        """Whether a message that is no later than the last one is accepted nevertheless."""
         if elapsed >= -RESOLUTION:
             self.tally.duplicates += 1
         elif elapsed >= -CLOCK_JUMP:
@@ -252,16 +252,16 @@ class Encoder:
     def have_taken(
         self, durations: Floats, left: float, right: float, lasted: float, last: Reading
     ) -> None:
-        """Go on behind steps that were taken together elsewhere, which `pace` has heard.
+        """Update the state after steps that were processed elsewhere; `pace` has them already.
 
         Parameters
         ----------
         durations : ndarray, shape (n,)
-            Of the steps [s].
+            Durations of the steps [s].
         left, right, lasted : float
-            Travel in the last of them [m], and the seconds to judge it over.
+            Travel in the last of them [m], and the interval to check it over [s].
         last : Reading
-            The reading they end with.
+            The last reading.
         """
         self._left_speed, self._right_speed, self.lasted = left / lasted, right / lasted, lasted
         self.tally.messages += durations.size
@@ -270,14 +270,14 @@ class Encoder:
         self._last, self._doubted = last, None
 
     def have_stepped(self, step: WheelStep, last: Reading) -> None:
-        """Go on behind a step that was taken elsewhere, counted, and heard by `pace`."""
+        """Update the state after a step processed elsewhere; `tally` and `pace` have it already."""
         self.lasted = step.duration
         self._left_speed, self._right_speed = step.left / step.duration, step.right / step.duration
         self._last, self._doubted = last, None
 
     @property
     def last(self) -> Reading | None:
-        """The last reading, where all is well: none since that is doubted."""
+        """The last reading; None while a later one is doubtful."""
         return self._last if self._doubted is None else None
 
     def _exceeds(self, start: Reading, end: Reading, duration: float) -> bool:
@@ -288,12 +288,12 @@ class Encoder:
 
 
 def exceeds(rule: CountRule, left: float, right: float, duration: float) -> bool:
-    """Whether a wheel would have gone faster than it can, with these travels [m]."""
+    """Whether a wheel would have exceeded its top speed with these travels [m]."""
     return max(abs(left), abs(right)) > rule.top_speed * abs(duration)
 
 
 def faster_wheel(rule: CountRule, left: float, right: float) -> float:
-    """Turns of the wheel that turned more, for differences of counts."""
+    """Turns of the wheel that turned more, for these differences of counts."""
     left_turns, right_turns = abs(left) / rule.left_per_turn, abs(right) / rule.right_per_turn
     return left_turns if left_turns > right_turns else right_turns
 
@@ -308,16 +308,16 @@ def was_reset(
     usual: float,
     fastest: float,
 ) -> bool:
-    """Whether a counter has been reset between two readings; see `Encoder`.
+    """Whether a counter was reset between two readings; see `Encoder`.
 
     Parameters
     ----------
     left, right : float
-        What they differ by, unwrapped.
+        Differences of the readings, unwrapped.
     lasted : float
-        Seconds over which to judge that.
+        Interval to check them over [s].
     usual, fastest : float
-        The usual interval [s], and the fastest that a wheel has turned of late [turns/s].
+        The usual interval [s], and the fastest recent turn rate of a wheel [turns/s].
     """
     rate = reach_rate(rule, fastest)
     reach = lasted * rate
@@ -335,35 +335,35 @@ def was_reset(
 
 
 def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:
-    """Whether a counter came to near zero further than a wheel can reach; all in turns."""
+    """Whether a counter fell to near zero by more than a wheel can turn; all in turns."""
     return abs(new) <= reach and abs(old) > reach and abs(step) > reach
 
 
 def reach_rate(rule: CountRule, fastest: float) -> float:
-    """Fastest that a wheel is believed to turn [turns/s]."""
+    """Fastest plausible turn rate of a wheel [turns/s]."""
     if rule.top_speed > 0.0:
         return rule.top_rate
     return max(LEARNED_FLOOR, LEARNED_MARGIN * fastest)
 
 
 class Undoubted(NamedTuple):
-    """What a reading says that leaves no doubt."""
+    """Content of a reading that passes all checks."""
 
     left: float
-    """Travel since the reading before [m]."""
+    """Travel since the previous reading [m]."""
     right: float
     rate: float
     """Speed of the faster wheel [turns/s]."""
     lasted: float
-    """Seconds over which that is."""
+    """Interval that `rate` refers to [s]."""
 
 
 def undoubted(
     rule: CountRule, now: Reading, last: Reading, usual: float, fastest: float
 ) -> tuple[bool, Undoubted]:
-    """Whether `Encoder` would take a reading without further ado; and what that comes to.
+    """Whether `Encoder` would accept a reading without special handling; and its content.
 
-    Of numbers that are not finite every comparison is false, so they never pass.
+    Comparisons with NaN are false, so numbers that are not finite never pass.
     """
     duration = now.time - last.time
     left, right = float(now.left - last.left), float(now.right - last.right)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One tick message in single numbers: the lines that `QuickOdometer` has machine code of.
+"""One tick message as scalar operations: the function that `QuickOdometer` compiles.
 
-What the odometer knows stands in arrays, which cost a call nothing to hand over. What is made of it
-is what `Odometer` makes, by the same functions and so to the last bit.
+The state of the odometer is held in arrays, which cost nothing to pass. The functions are those of
+`Odometer`, so results agree to the last bit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from werrimbi_odom.model.robot import WheelNoise
 from werrimbi_odom.model.scalar_loop import Marching, onward, sums_of
 
 GOES_ON, PIECE_ENDED, IN_DOUBT = 0, 1, 2
-"""What becomes of a message; one in doubt changes nothing."""
+"""Result of a message; one in doubt changes nothing."""
 
 
 def take(
@@ -34,24 +34,24 @@ def take(
     left: float,
     right: float,
 ) -> int:
-    """Take the counters of one message, if nothing about them is in doubt.
+    """Process the counters of one message, if they pass all checks.
 
     Parameters
     ----------
     rules : ndarray, shape (17,)
-        `CountRule`, `PieceRule` and `WheelNoise`, then the longest interval that is no gap.
+        `CountRule`, `PieceRule` and `WheelNoise`, then the longest interval that is no gap [s].
     heard : ndarray, shape (9,)
-        `Reading` of the last message, `Heard`, how many stamps are remembered, and the place of the
-        next one in their ring; goes on, as the two after it.
+        `Reading` of the last message, `Heard`, the number of stamps in the ring, and the index of
+        the next one; updated, as are the two arrays after it.
     stamps : ndarray, shape (REMEMBERED + 1,)
-        The ring [s].
+        Ring buffer of stamps [s].
     at : ndarray, shape (34,)
-        `Marching`, number by number.
+        `Marching`, flattened.
     said : ndarray, shape (22,)
-        Written: stamp, duration, travel of the wheels, and motion of the step; then the pose, its
+        Output: stamp, duration, travel of the wheels, and motion of the step; then the pose, its
         covariance, that of the twist, and the twist.
     ended : ndarray, shape (15,)
-        Written where a piece ends: its last stamp, pose and covariance at its start, `sums_of`.
+        Output where a piece ends: its last stamp, pose and covariance at its start, `sums_of`.
     """
     counts, piece_rule, wheels = rules_of(rules)
     last, now = Reading(heard[0], heard[1], heard[2]), Reading(time, left, right)
@@ -93,7 +93,7 @@ def take(
 
 
 def rules_of(row: Floats) -> tuple[CountRule, PieceRule, WheelNoise]:
-    """What `rules` begins with."""
+    """Unpack the beginning of `rules`."""
     return (
         CountRule(row[0], row[1], row[2], row[3], row[4], row[5], row[6]),
         PieceRule(row[7], row[8], row[9], row[10], row[11], row[12]),
@@ -102,7 +102,7 @@ def rules_of(row: Floats) -> tuple[CountRule, PieceRule, WheelNoise]:
 
 
 def marching_of(row: Floats | Sequence[float]) -> Marching:
-    """What `write_marching` has written."""
+    """Inverse of `write_marching`."""
     return Marching(
         Pose(row[0], row[1], row[2]),
         PoseCovariance(row[3], row[4], row[5], row[6], row[7], row[8]),
@@ -126,7 +126,7 @@ def marching_of(row: Floats | Sequence[float]) -> Marching:
 
 
 def write_marching(row: Floats, at: Marching) -> None:
-    """Write it number by number, shape (34,)."""
+    """Write the state number by number, shape (34,)."""
     row[0], row[1], row[2] = at.pose
     write_covariance(row, 3, at.covariance)
     row[9], row[10], row[11] = at.start
@@ -143,7 +143,7 @@ def write_marching(row: Floats, at: Marching) -> None:
 
 
 def write_covariance(row: Floats, first: int, covariance: PoseCovariance[float]) -> None:
-    """Write its six numbers from a place on."""
+    """Write the six numbers of a covariance from index `first` on."""
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
     row[first], row[first + 1], row[first + 2] = xx, xy, xyaw
     row[first + 3], row[first + 4], row[first + 5] = yy, yyaw, yawyaw

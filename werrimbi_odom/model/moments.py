@@ -4,12 +4,12 @@
 
 With w = e^{iθ}, z = x + iy and Gaussian heading error φ, the white noise of the wheels makes the
 first and second moments of the pose obey a linear system with constant coefficients along a piece
-(docs/model.md, "Large errors"); `piece_moments` is its solution in closed form. Pieces are chained
-by `chained`, exactly: the error of the whole is e = e₀ + w₀ (ω ε + η ζ), where e₀ and ω = e^{iφ₀}
-belong to the earlier pieces, ε to this one, ζ is its nominal displacement, and η = ω - 1.
-Carrying η instead of ω keeps small errors free of cancellation.
+(docs/model.md, "Large errors"). `piece_moments` is its closed-form solution. `chained` composes
+pieces exactly: the total error is e = e₀ + w₀ (ω ε + η ζ), where e₀ and ω = e^{iφ₀} belong to the
+earlier pieces, ε to this one, ζ is its nominal displacement, and η = ω - 1. Carrying η instead of ω
+avoids cancellation for small errors.
 
-All functions take scalars, or arrays of one shape, alike.
+All functions take scalars or arrays of one shape.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ import numpy as np
 from werrimbi_odom.model.covariance import CERTAIN, PathNoise, PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 
-Complex = Any  # complex, or ndarray of complex: numpy's own types tell these apart only at run time
+Complex = Any  # complex, or ndarray of complex; numpy's own types differ only at run time
 Real = Any  # float, or ndarray of float
 
-_SEAM = 1.0  # |x| below which the series of the φ-functions are used
+_SEAM = 1.0  # |x| below which the φ-functions are evaluated by their series
 _TERMS = 20
 
 
 class PieceMoments(NamedTuple):
-    """Moments of one piece's own error ε = ζ - nominal ζ, heading known at its start.
+    """Moments of the error ε = ζ - nominal ζ of one piece, given its start heading.
 
-    In the frame of the robot at the start of the piece; φ is the heading error that the piece
-    adds, and η = e^{iφ} - 1.
+    In the frame of the robot at the start of the piece. φ is the heading error added by the piece,
+    and η = e^{iφ} - 1.
     """
 
     nominal: Complex
@@ -62,7 +62,7 @@ class PathMoments(NamedTuple):
     """
 
     error: Complex = 0j
-    """E[e]: how far the mean of the true position lies from the nominal one [m]."""
+    """E[e]: offset of the mean of the true position from the nominal one [m]."""
     absolute: Real = 0.0
     """E|e|² [m²]."""
     square: Complex = 0j
@@ -79,8 +79,8 @@ class PathMoments(NamedTuple):
     def about_pose(self) -> PoseCovariance[Any]:
         """Second moments of the error about the nominal pose.
 
-        What a filter that is given the nominal pose must be told; contains the square of the
-        mean shift.
+        This is the covariance for a filter that uses the nominal pose; it contains the square of
+        the mean shift.
         """
         return PoseCovariance(
             0.5 * (self.absolute + _real(self.square)),
@@ -109,7 +109,7 @@ def from_covariance(covariance: PoseCovariance[float] = CERTAIN) -> PathMoments:
 
 
 def piece_moments(motion: BodyMotion[Any], noise: PathNoise[Any]) -> PieceMoments:
-    """Exact moments that one piece of constant twist adds."""
+    """Exact moments added by one piece of constant twist."""
     a, b, c = noise
     travel = motion.along + 1j * motion.sideways
     rate = 1j * motion.turn - 0.5 * b  # of E[w]
@@ -140,14 +140,14 @@ def piece_moments(motion: BodyMotion[Any], noise: PathNoise[Any]) -> PieceMoment
 
 
 def chained(path: PathMoments, piece: PieceMoments, yaw: Real) -> PathMoments:
-    """Moments at the end of a piece that follows a path which ended with nominal heading `yaw`."""
+    """Moments at the end of a piece that follows a path with nominal end heading `yaw`."""
     variance, zeta = path.heading_variance, piece.nominal
     d1, d2 = _expm1(-0.5 * variance), _expm1(-2.0 * variance)  # E[ω] - 1 and E[ω²] - 1
     added_spin = _expm1(-0.5 * piece.heading_variance)  # E[η] of the piece
     facing = _exp(1j * yaw)
     with_facing = path.error + path.with_spin  # E[e₀ ω]
     conjugate_with_facing = _conj(path.error) + path.conjugate_with_spin  # E[ē₀ ω]
-    # q = ω ε + η ζ is what the piece adds, seen in the nominal frame of its start.
+    # q = ω ε + η ζ is the contribution of the piece, in the nominal frame of its start.
     q = (1.0 + d1) * piece.error + d1 * zeta
     q_absolute = (
         piece.absolute - 2.0 * d1 * abs(zeta) ** 2 - 2.0 * d1 * _real(piece.error * _conj(zeta))

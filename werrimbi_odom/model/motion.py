@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """From wheel travel to body motion to displacement (paper, equations 13 and 14).
 
-Every function takes floats or arrays of one shape alike: the node feeds single steps, a recorded
-run all its steps at once, and both walk the same lines of code.
+Every function takes floats or arrays of one shape. So the node, which computes single steps, and a
+recorded run, computed all at once, use the same code.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ class BodyMotion(NamedTuple, Generic[Number]):
 
 
 def wheels_to_body(travel: WheelTravel[Number], track: float) -> BodyMotion[Number]:
-    """Body motion of a wheel travel: D = (L + R) / 2 and Δ = (R - L) / B."""
+    """Body motion for a wheel travel: D = (L + R) / 2 and Δ = (R - L) / B."""
     left, right = travel
     along = 0.5 * (left + right)
     return BodyMotion(along, 0.0 * along, (right - left) / track)
 
 
 def mean_twist(motion: BodyMotion[Number], duration: float) -> BodyMotion[Number]:
-    """Speeds [m/s, m/s, rad/s] of a motion that took a duration [s]."""
+    """Mean speeds [m/s, m/s, rad/s] of a motion over a duration [s]."""
     along, sideways, turn = motion
     per_second = 1.0 / duration
     return BodyMotion(along * per_second, sideways * per_second, turn * per_second)
@@ -56,7 +56,7 @@ def sinc(x: float) -> float: ...
 @overload
 def sinc(x: Floats) -> Floats: ...
 def sinc(x: float | Floats) -> float | Floats:
-    """sin(x) / x, and 1 at zero (not numpy's sinc, which takes turns of pi)."""
+    """sin(x) / x, and 1 at zero (numpy's sinc has a factor of pi)."""
     if isinstance(x, np.ndarray):
         with np.errstate(invalid="ignore"):  # 0 / 0
             found = np.asarray(np.sin(x) / x)
@@ -66,7 +66,7 @@ def sinc(x: float | Floats) -> float | Floats:
 
 
 def sinc_of_float(x: float) -> float:
-    """`sinc` of a single number."""
+    """`sinc` for a single number."""
     return math.sin(x) / x if x != 0.0 else 1.0
 
 
@@ -82,14 +82,15 @@ def cos_sin(angle: Any) -> Any:
 
 
 def cos_sin_of_float(angle: float) -> tuple[float, float]:
-    """`cos_sin` of a single number."""
+    """`cos_sin` for a single number."""
     return math.cos(angle), math.sin(angle)
 
 
 def displacement(motion: BodyMotion[Number], yaw: Number) -> tuple[Number, Number]:
-    """Displacement of the axle's midpoint in the frame in which `yaw` was its heading at the start.
+    """Displacement of the axle's midpoint, in the frame in which its start heading is `yaw`.
 
-    A constant twist traces an arc; its chord is sinc(Δ/2) times the path and points along the
+    A constant twist traces an arc. Its chord is sinc(Δ/2) times as long and points along the
+    heading at mid-arc (paper, equation 13, in a form that also holds for Δ = 0).
     heading half way (paper, equation 13, in the form that holds for Δ = 0 too).
 
     Returns
@@ -104,25 +105,25 @@ def displacement(motion: BodyMotion[Number], yaw: Number) -> tuple[Number, Numbe
 
 
 class Chord(NamedTuple, Generic[Number]):
-    """Of the arc that a constant twist traces: how much shorter it is, and where it points."""
+    """Chord of the arc of a constant twist: relative length and direction."""
 
     shrink: Number
-    """sinc(Δ/2): its length over that of the arc."""
+    """sinc(Δ/2): its length relative to the arc."""
     cos: Number
-    """Cosine of the heading half way ..."""
+    """Cosine of the heading at mid-arc ..."""
     sin: Number
     """... and sine."""
 
 
 def chord_of(turn: Number, yaw: Number) -> Chord[Number]:
-    """The chord of a turn that begins at a heading [rad]."""
+    """Chord of a turn that begins at heading `yaw` [rad]."""
     half = 0.5 * turn
     cos, sin = cos_sin(yaw + half)
     return Chord(sinc(half), cos, sin)
 
 
 def along_chord(motion: BodyMotion[Number], chord: Chord[Number]) -> tuple[Number, Number]:
-    """`displacement` [m] of a motion, given the chord of its turn."""
+    """`displacement` [m] of a motion, given its chord."""
     along, sideways, _ = motion
     shrink, cos, sin = chord
     return shrink * (cos * along - sin * sideways), shrink * (sin * along + cos * sideways)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Streaming odometry: ticks in, a pose that knows its covariance out; constant cost and memory."""
+"""Streaming odometry: ticks in, pose with covariance out; constant cost and memory."""
 
 from __future__ import annotations
 
@@ -33,63 +33,62 @@ _after_stretch = of_floats(after_stretch)
 
 
 class _Estimate(NamedTuple):
-    """What an `Estimate` is worked out of."""
+    """The data from which an `Estimate` is computed."""
 
     time: float
     """Stamp of the message [s]."""
     late: WheelStep
-    """Travel of the wheels, before any effect, over the time of which the twist is the mean."""
+    """Raw travel of the wheels over the interval of the twist, before any effect."""
     late_motion: BodyMotion[float]
-    """In that time."""
+    """Motion in that interval."""
     pose: Pose
-    """In the odometry frame; yaw goes on counting past a whole turn."""
+    """In the odometry frame; yaw is unwrapped."""
     distance: float
-    """Travel of the axle's midpoint since the start, both directions counted [m]."""
+    """Path length of the axle's midpoint since the start, both directions counted positive [m]."""
     closed: Piece | None
-    """The piece that this message brought to its end, if it did."""
+    """The piece that ended with this message, if any."""
     robot: Robot
     start: Pose
-    """Of the open piece."""
+    """Pose at the start of the open piece."""
     errors_start: Uncertainty[float]
-    """Of the pose there."""
+    """Errors of that pose."""
     stretch: PieceSums
-    """The open piece as far as it has been driven."""
+    """The open piece so far."""
 
 
 class Estimate(_Estimate):
     """Everything the odometer knows after one message.
 
-    Of errors and twist it holds what they are worked out of; that is done when they are asked for,
-    and once.
+    Errors and twist are computed at first use, and cached.
     """
 
     @cached_property
     def errors(self) -> Uncertainty[float]:
-        """Of the pose, in the odometry frame."""
+        """Errors of the pose, in the odometry frame."""
         return errors_along(self.robot, self.start, self.errors_start, self.stretch, self.pose)
 
     @property
     def covariance(self) -> PoseCovariance[float]:
-        """Of the pose, in the odometry frame."""
+        """Covariance of the pose, in the odometry frame."""
         return self.errors.covariance
 
     @property
     def mean_shift(self) -> tuple[float, float] | None:
-        """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
+        """Mean of the true position minus the pose (x, y) [m]; None without exact moments."""
         return self.errors.mean_shift
 
     @cached_property
     def twist(self) -> BodyMotion[float]:
-        """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval.
+        """Mean speed forward and to the left [m/s] and yaw rate [rad/s] over the last interval.
 
-        A message that came much too soon (a driver that hung, then sent several at once) is taken
-        together with those before it: a few microseconds divide no travel.
+        A message that arrives much too early (a driver that blocked, then sent several at once) is
+        combined with those before it: travel divided by a few microseconds is no speed.
         """
         return mean_twist(self.late_motion, self.late.duration)
 
     @cached_property
     def twist_covariance(self) -> TwistCovariance:
-        """Of the twist: wheel noise over its interval, quantisation of the two readings."""
+        """Covariance of the twist: wheel noise over its interval and quantisation."""
         robot = self.robot
         ticks = robot.left_tick, robot.right_tick
         return twist_noise(robot.wheel_noise, *ticks, *self.late[1:])
@@ -98,8 +97,8 @@ class Estimate(_Estimate):
 class Odometer:
     """Wheel odometry with the closed-form covariance of Chong and Kleeman.
 
-    The pose is integrated exactly at every message; the covariance is that of the pieces finished
-    so far, carried to the present pose, and of the open piece in closed form up to now.
+    The pose is integrated exactly at every message. Its covariance is that of the finished pieces,
+    propagated to the present pose, plus that of the open piece in closed form.
 
     Parameters
     ----------
@@ -107,7 +106,7 @@ class Odometer:
     tolerance : PieceTolerance
         When a piece ends.
     limits : EncoderLimits
-        When counters are doubted.
+        When counter readings are rejected.
     """
 
     def __init__(
@@ -130,12 +129,12 @@ class Odometer:
 
     @property
     def tally(self) -> EncoderTally:
-        """What became of the messages."""
+        """Counts of accepted and rejected messages."""
         return self._encoder.tally
 
     @property
     def piece(self) -> Piece:
-        """The open piece as it stands."""
+        """The open piece so far."""
         return self._piece.finished(self._now, self.robot.track)
 
     @property
@@ -144,13 +143,13 @@ class Odometer:
 
     @property
     def driven_step(self) -> DrivenStep | None:
-        """The latest step as effects see it; None where the robot has none."""
+        """The latest step as effects see it; None for a robot without effects."""
         return self._driving.last
 
     def update(
         self, time: float, left: float, right: float, channels: Channels | None = None
     ) -> Estimate | None:
-        """Take the counters of one message.
+        """Process the counters of one message.
 
         Parameters
         ----------
@@ -159,13 +158,13 @@ class Odometer:
         left, right : float or int
             Cumulative signed counts.
         channels : mapping, optional
-            Extra measured channels, for effects that look at them.
+            Extra measured channels, for effects that read them.
 
         Returns
         -------
         Estimate or None
-            None for the first message (there is no interval yet) and for one that was refused;
-            `tally` says why.
+            None for the first message (no interval yet) and for one that was rejected; `tally`
+            counts the reason.
         """
         left, right = self._wiring.wheels(left, right)
         step = self._encoder.step(time, left, right)
@@ -197,7 +196,7 @@ class Odometer:
         )
 
     def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Piece:
-        """Go on from another pose, known with a covariance; returns the piece that this ends."""
+        """Continue from another pose with this covariance; return the piece that ends here."""
         finished = self.piece
         self._pose = pose
         self._piece = OpenPiece(self._now, pose, known(self.robot.covariance_order, covariance))
@@ -209,15 +208,15 @@ class Odometer:
         tolerance: PieceTolerance | None = None,
         limits: EncoderLimits | None = None,
     ) -> Piece | None:
-        """Go on with other values; pose, errors, counts, and all that effects remember stay.
+        """Change parameter values; pose, errors, counts and the state of the effects are kept.
 
-        The open piece goes on where noise and its rule stay as they are; else it ends here, and is
-        returned: what was driven keeps the noise that was believed of it.
+        The open piece continues if noise and piece rule are unchanged. Otherwise it ends here and
+        is returned, so that past travel keeps the noise assumed at the time.
 
         Raises
         ------
         ValueError
-            When counts would mean something else than before.
+            If the meaning of the counts would change.
         """
         if _reading_of(robot) != _reading_of(self.robot):
             raise ValueError("resolution and wiring of the encoders cannot change in a drive")
@@ -235,12 +234,12 @@ class Odometer:
         return finished
 
     def errors(self) -> Uncertainty[float]:
-        """Of the present pose, in the odometry frame."""
+        """Errors of the present pose, in the odometry frame."""
         piece = self._piece
         return errors_along(self.robot, piece.start, piece.errors_start, piece.stretch, self._pose)
 
     def covariance(self) -> PoseCovariance[float]:
-        """Of the present pose, in the odometry frame."""
+        """Covariance of the present pose, in the odometry frame."""
         return self.errors().covariance
 
     def _begin(self, time: float, left: float, right: float, channels: Channels | None) -> None:
@@ -256,7 +255,7 @@ class Odometer:
     def _cut(
         self, step: WheelStep, travel: WheelTravel[float], motion: BodyMotion[float], pose: Pose
     ) -> Piece | None:
-        """Let the step go on with the open piece, or end that and begin another with it."""
+        """Extend the open piece by the step; or end it, start another, and return the ended one."""
         lost = step.left_lost > 0.0 or step.right_lost > 0.0
         if not lost and self._piece.extend(self._rule, travel, motion, pose):
             return None
@@ -271,13 +270,13 @@ class Odometer:
 
 
 def _reading_of(robot: Robot) -> tuple[object, ...]:
-    """What makes travel of counts, but for the size of wheels."""
+    """Parameters that turn counts into travel, except the wheel sizes."""
     per_turn = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
     return *per_turn, robot.encoder_bits, wiring_of(robot.effects)
 
 
 def _noise_of(robot: Robot) -> tuple[object, ...]:
-    """What makes covariance of travel."""
+    """Parameters that determine the covariance of a travel."""
     noise = robot.left_wheel_noise, robot.right_wheel_noise
     return *noise, robot.track, robot.covariance_order
 
@@ -285,7 +284,7 @@ def _noise_of(robot: Robot) -> tuple[object, ...]:
 def errors_along(
     robot: Robot, start: Pose, errors: Uncertainty[float], stretch: PieceSums, pose: Pose
 ) -> Uncertainty[float]:
-    """Errors of a pose to which a stretch has led, from those of the pose at its start."""
+    """Errors of a pose at the end of a stretch, given those at its start."""
     noise = _path_noise(robot.wheel_noise, stretch.left, stretch.right)
     dx, dy = pose.x - start.x, pose.y - start.y
     if errors.moments is not None:
@@ -298,7 +297,7 @@ def errors_along(
 def with_lost_travel(
     errors: Uncertainty[float], robot: Robot, step: WheelStep, yaw: float
 ) -> Uncertainty[float]:
-    """Errors of a pose with heading `yaw`, with the travel added that a counter reset hid."""
+    """Errors of a pose with heading `yaw`, plus those of the travel lost in a counter reset."""
     noise = noise_of_wheel_variances(step.left_lost, step.right_lost, robot.track)
     return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), noise, yaw, 0.0, 0.0)
 
@@ -306,7 +305,7 @@ def with_lost_travel(
 def joined(
     before: WheelStep, moved: BodyMotion[float], step: WheelStep, motion: BodyMotion[float]
 ) -> tuple[WheelStep, BodyMotion[float]]:
-    """Two steps as one, and the motion in them."""
+    """Combine two steps, and their motions, into one."""
     _, *earlier = before
     time, *later = step
     sums = [a + b for a, b in zip(earlier, later, strict=True)]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`phases`, reading by reading: steps of the odometry and a measured heading come as they come."""
+"""`phases`, online: steps of the odometry and measured headings are added as they arrive."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class _Node(NamedTuple):
 
 
 class PhaseLearner:
-    """Learns the phases of a robot's effects while it drives.
+    """Estimates the phases of a robot's effects during a drive.
 
-    Steps of the odometer and readings of the reference come in any order, stamped by one clock;
-    its memory does not grow.
+    Steps of the odometer and readings of the reference may arrive in any order, stamped by one
+    clock. The memory is bounded.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class PhaseLearner:
     """
 
     MEMORY = 1000
-    """Steps, and readings, that wait for each other."""
+    """Largest number of steps, and of readings, that wait for each other."""
 
     def __init__(self, robot: Robot) -> None:
         self.effects = learnable(robot)
@@ -47,9 +47,9 @@ class PhaseLearner:
         self._rate: tuple[float, float, float] | None = None
 
     def retune(self, robot: Robot) -> None:
-        """Go on with other values of the robot; what was learnt stays.
+        """Change the robot's parameter values; the estimates are kept.
 
-        Phases to be learnt count as unknown still, whatever the robot has for them.
+        Phases to be estimated still count as unknown, whatever values the robot has for them.
         """
         unknown = {applied.name: applied.unknown for applied in self.effects}
         effects = tuple(replace(e, unknown=unknown.get(e.name, e.unknown)) for e in robot.effects)
@@ -57,13 +57,13 @@ class PhaseLearner:
         self._turning = Turning(replace(robot, effects=effects), self.effects)
 
     def step(self, time: float, step: DrivenStep) -> None:
-        """Take a step of the odometer that ends at `time` [s]."""
+        """Add a step of the odometer that ends at `time` [s]."""
         drive = step.drive
         begin = time - drive.duration
         if not self._nodes or abs(self._nodes[-1].time - begin) > 1e-6:
             self.interrupt()
             self._nodes.clear()
-            self._waiting.clear()  # a clock was set: what waits has stamps of the other time
+            self._waiting.clear()  # the clock was set: waiting readings have stamps of the old time
             nothing = [0.0] * (1 + 2 * len(self.effects))
             angles = [drive.left_angle.start, drive.right_angle.start]
             self._nodes.append(_Node(begin, np.array([*nothing, *angles])))
@@ -73,13 +73,13 @@ class PhaseLearner:
         self._meet()
 
     def see_yaw(self, time: float, yaw: float) -> None:
-        """Take a measured heading [rad]."""
+        """Add a measured heading [rad]."""
         if math.isfinite(time) and math.isfinite(yaw):
             self._waiting.append((self._chain, time, yaw))
             self._meet()
 
     def see_rate(self, time: float, rate: float) -> None:
-        """Take a measured yaw rate [rad/s]; what lies between two readings is their mean."""
+        """Add a measured yaw rate [rad/s], integrated by the trapezoidal rule."""
         if not (math.isfinite(time) and math.isfinite(rate)):
             return
         if self._rate is None or not 0.0 < time - self._rate[0] < 0.5:
@@ -91,15 +91,15 @@ class PhaseLearner:
         self.see_yaw(time, self._rate[2])
 
     def interrupt(self) -> None:
-        """Compare nothing across this instant."""
+        """Start a new chain: headings are not compared across this instant."""
         self._chain += 1
 
     def phases(self) -> tuple[Phase, ...]:
-        """What is known of each phase so far; an unknown one has an infinite deviation."""
+        """Estimate of each phase so far; an unknown one has an infinite standard deviation."""
         return self._rows.phases()
 
     def _meet(self) -> None:
-        """Bring readings together with the steps at their times."""
+        """Match readings with the steps at their times."""
         while self._waiting and self._nodes and self._waiting[0][1] <= self._nodes[-1].time:
             chain, time, yaw = self._waiting.popleft()
             while len(self._nodes) > 2 and self._nodes[1].time <= time:

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Phases that each run has anew, learnt from a measured heading while the robot drives.
+"""Per-run phases of effects, estimated from a measured heading during the drive.
 
-An eccentric wheel whose counter starts anywhere has an amplitude that the robot file knows and a
-phase that it cannot know. The error of the turn is linear in amplitude * cos(phase) and
-amplitude * sin(phase) (`Effect.to_fit`), so both are fitted by least squares, row by row:
+The counter of an eccentric wheel starts anywhere. So the robot file knows the amplitude, but cannot
+know the phase. The error of the turn is linear in amplitude * cos(phase) and amplitude * sin(phase)
+(`Effect.to_fit`). Both are fitted by least squares, row by row:
 
     reference turn - predicted turn = sum of (cos, sin) * derivative of the turn in each
                                       + bias * time + share * turn + noise
 
-with a bias of the reference's rate (a gyro's) and a share of the turn (a base that is a little
-wrong) as nuisances, and the noise estimated from what is left.
+Nuisance parameters are a bias of the reference's rate (of a gyro) and a share of the turn (a
+wheelbase that is slightly wrong). The noise is estimated from the residuals.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import channel_spans
 
 KNOWN_WELL_ENOUGH = 0.3
-"""Standard deviation of a phase [rad] below which the effect takes away most of its error."""
+"""Standard deviation of a phase [rad] below which the effect removes most of its error."""
 
 STRIDE = 0.5
-"""A row for each so much of a wheel's turning [rad]: finer rows hold more noise, no more signal."""
+"""Rotation of a wheel per row [rad]; finer rows hold more noise, but no more signal."""
 LONGEST = 10.0
-"""Intervals of the reference beyond this [s] are left out."""
+"""Longer intervals of the reference [s] are skipped."""
 FEWEST = 12
-"""Rows beyond the number of unknowns, before what is left says what the noise is."""
+"""Degrees of freedom from which the residuals determine the noise."""
 ABSURD = 0.5
-"""An error of the turn over one row [rad] beyond which the reference has jumped."""
+"""A larger error of the turn over one row [rad] is a jump of the reference."""
 NUISANCE_BIAS, NUISANCE_SHARE = 0.1, 0.1
-"""What is believed beforehand: a gyro's bias [rad/s], and a base off by a tenth."""
+"""Standard deviations of the priors: a gyro's bias [rad/s], and a relative error of the base."""
 
 
 class Phase(NamedTuple):
-    """What is known of an effect's phase."""
+    """Estimate of an effect's phase."""
 
     effect: str
     parameter: str
@@ -58,11 +58,11 @@ class Phase(NamedTuple):
     std: float
     """[rad]"""
     amplitude: float
-    """That the same data show, whatever the robot file says; in its own unit."""
+    """Estimated amplitude, independent of the robot file's; in its own unit."""
 
 
 def learnable(robot: Robot) -> tuple[AppliedEffect, ...]:
-    """Effects of which everything is known but the phase of a quadrature."""
+    """Effects of which only the phase of a quadrature is unknown."""
     return tuple(
         applied
         for applied in robot.effects
@@ -74,13 +74,13 @@ def learnable(robot: Robot) -> tuple[AppliedEffect, ...]:
 
 
 class Turning:
-    """The turn of steps without the effects to be learnt, and its derivatives in their coordinates.
+    """Turn of steps without the effects to be estimated, and its derivatives in their coordinates.
 
     Parameters
     ----------
     robot : Robot
     effects : sequence of AppliedEffect
-        `learnable` ones of the robot.
+        `learnable` effects of the robot.
     """
 
     def __init__(self, robot: Robot, effects: tuple[AppliedEffect, ...]) -> None:
@@ -96,7 +96,7 @@ class Turning:
                 self._with.append((replace(robot, effects=others), size))
 
     def of(self, raw: WheelTravel[Number], drive: Drive[Number]) -> list[Number]:
-        """The turn [rad], then its derivative in each effect's cos and sin [rad / unit]."""
+        """Turn [rad], then its derivatives in each effect's cos and sin [rad / unit]."""
         turn = after_effects(self._robot, raw, drive)[1].turn
         turns = [turn]
         for robot, amplitude in self._with:
@@ -106,10 +106,10 @@ class Turning:
 
 @dataclass
 class _LeastSquares:
-    """Sums over rows: what recursive least squares carries, in its information form."""
+    """Sums over rows: recursive least squares in information form."""
 
     priors: Floats
-    """Standard deviation of each unknown before anything was seen."""
+    """Prior standard deviation of each unknown."""
     matrix: Floats = field(init=False)
     vector: Floats = field(init=False)
     squares: float = 0.0
@@ -126,14 +126,14 @@ class _LeastSquares:
         self.rows += 1
 
     def solved(self) -> tuple[Floats, Floats] | None:
-        """Unknowns and their covariance, the noise being what is left; None while rows are few."""
+        """Estimates and their covariance, noise from the residuals; None while rows are few."""
         spare = self.rows - self.priors.size
         if spare < FEWEST:
             return None
         variance = self.squares / self.rows
         if variance <= 0.0:
             return None
-        for _ in range(3):  # the noise decides how much the priors weigh, and they hardly matter
+        for _ in range(3):  # the noise sets the weight of the priors, which matters little
             precision = self.matrix / variance + np.diag(self.priors**-2.0)
             scale = np.sqrt(np.diag(precision))
             covariance = np.linalg.inv(precision / np.outer(scale, scale))
@@ -146,18 +146,18 @@ class _LeastSquares:
 
 @dataclass
 class Sample:
-    """The reference's heading at an instant, and everything summed up to then."""
+    """Heading of the reference at an instant, and all sums up to then."""
 
     chain: int
-    """Headings of one chain are relative to each other."""
+    """Only headings of one chain are comparable."""
     time: float
     yaw: float
     sums: Floats
-    """Turn and slopes so far, then both wheels' angles."""
+    """Cumulative turn and derivatives, then the angles of both wheels."""
 
 
 class HeadingRows:
-    """Rows of least squares from samples, one for each `STRIDE` of a wheel."""
+    """Rows for the least squares, one for each `STRIDE` of a wheel's rotation."""
 
     def __init__(self, effects: tuple[AppliedEffect, ...]) -> None:
         self.effects = effects
@@ -167,7 +167,7 @@ class HeadingRows:
         self._anchor: Sample | None = None
 
     def take(self, sample: Sample) -> None:
-        """Take the next sample in time."""
+        """Add the next sample in time."""
         anchor = self._anchor
         if anchor is None or sample.chain != anchor.chain or sample.time - anchor.time > LONGEST:
             self._anchor = sample
@@ -182,7 +182,7 @@ class HeadingRows:
             self.least_squares.add(row, error)
 
     def phases(self) -> tuple[Phase, ...]:
-        """What is known of each phase so far; an unknown one has an infinite deviation."""
+        """Estimate of each phase so far; an unknown one has an infinite standard deviation."""
         solved = self.least_squares.solved()
         return tuple(_phase(applied, i, solved) for i, applied in enumerate(self.effects))
 
@@ -195,7 +195,8 @@ def _phase(applied: AppliedEffect, index: int, solved: tuple[Floats, Floats] | N
     part = slice(2 * index, 2 * index + 2)
     cos, sin = solved[0][part].tolist()
     seen = math.hypot(cos, sin)
-    # Across the direction found; where less than the known amplitude shows, by so much less surely.
+    # Error perpendicular to the estimated vector. An estimated amplitude below the known one
+    # increases the standard deviation in proportion.
     across = np.array([-sin, cos]) / seen
     lever = min(seen, abs(applied.values[amplitude]))
     spread = math.sqrt(float(across @ solved[1][part, part] @ across))
@@ -214,7 +215,7 @@ def phases_of_run(
     limits: EncoderLimits | None = None,
     channels: Mapping[str, Floats] | None = None,
 ) -> tuple[Phase, ...]:
-    """The same for a recorded run.
+    """Estimate the phases of a recorded run.
 
     Parameters
     ----------
@@ -237,7 +238,7 @@ def phases_of_run(
     parts = [*Turning(robot, effects).of(raw, drive), drive.left_angle.change]
     sums = [np.concatenate([[0.0], np.cumsum(p)]) for p in (*parts, drive.right_angle.change)]
     stamps = time[taken]
-    if not (np.diff(stamps) > 0.0).all():  # a clock set back: times do not tell what is when
+    if not (np.diff(stamps) > 0.0).all():  # clock set back: stamps do not give the order
         return rows.phases()
     known = np.isfinite(reference_yaw)
     known &= (reference_time >= stamps[0]) & (reference_time <= stamps[-1])

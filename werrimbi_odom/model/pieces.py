@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pieces that a drive is cut into: lines, arcs and spins; `pieces_online` ends them."""
+"""Pieces of constant curvature (lines, arcs and spins); `pieces_online` decides where they end."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from werrimbi_odom.model.uncertainty import Uncertainty
 PieceKind = Literal["line", "arc", "spin"]
 
 LINE_TURN = 0.05
-"""A line turns by no more than this [rad] ..."""
+"""A line turns by at most this angle [rad] ..."""
 LINE_CURVATURE = 0.05
-"""... and its wheels differ by no more than this share of their travel."""
+"""... and its wheels differ by at most this share of their travel."""
 SPIN_RADIUS = 0.05
-"""A spin turns about a point no further from the axle's middle than this share of the track."""
+"""Largest distance from the axle's midpoint to the centre of a spin, as a share of the track."""
 
 _extended = of_floats(extended)
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A finished, or the present, stretch of constant curvature."""
+    """A stretch of constant curvature, finished or still open."""
 
     kind: PieceKind
     time_start: float
@@ -57,12 +57,12 @@ class Piece:
 
     @property
     def radius(self) -> float:
-        """Signed radius of the midpoint's path [m]: positive to the left, infinite on a line."""
+        """Signed radius of the midpoint's path [m]: positive to the left, infinite for a line."""
         return self.motion.along / self.motion.turn if self.motion.turn else math.inf
 
 
 def kind_of(motion: BodyMotion[float], track: float) -> PieceKind:
-    """What a person would call this motion. Only a name: no figure depends on it."""
+    """Name of this kind of motion; no computation depends on it."""
     turned = 0.5 * track * abs(motion.turn)
     if abs(motion.turn) <= LINE_TURN and turned <= LINE_CURVATURE * abs(motion.along):
         return "line"
@@ -71,31 +71,31 @@ def kind_of(motion: BodyMotion[float], track: float) -> PieceKind:
 
 @dataclass(slots=True)
 class OpenPiece:
-    """The piece being driven."""
+    """The piece that is being driven."""
 
     time_start: float
     start: Pose
     errors_start: Uncertainty[float]
     travelled: float = 0.0
-    """Travel u of the earlier pieces, since the pose was last set [m]."""
+    """Travel u of the earlier pieces since the pose was last set [m]."""
     stretch: PieceSums = PieceSums()  # noqa: RUF009 - an immutable value
 
     @property
     def travelled_after(self) -> float:
-        """`travelled`, this piece included."""
+        """`travelled` including this piece."""
         return self.travelled + self.stretch.travelled
 
     def extend(
         self, rule: PieceRule, travel: WheelTravel[float], motion: BodyMotion[float], pose: Pose
     ) -> bool:
-        """Take one more step that ends at `pose`, or leave the piece as it is and return False."""
+        """Add a step that ends at `pose`; or leave the piece unchanged and return False."""
         goes_on, self.stretch = _extended(
             rule, self.start, self.travelled, self.stretch, travel, motion, pose
         )
         return goes_on
 
     def finished(self, time_end: float, track: float) -> Piece:
-        """The piece as it stands, as a value."""
+        """The piece so far, as an immutable value."""
         left, right, motion, *_ = self.stretch
         return Piece(
             kind_of(motion, track),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pieces of a recorded run, kept in columns: some of a million are of interest at a time."""
+"""The pieces of a recorded run, stored in columns; few of a million are read at a time."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pieces import Piece, kind_of
 from werrimbi_odom.model.pose import Floats, Pose
 
-_BLOCK = 1024  # pieces made together
+_BLOCK = 1024  # pieces constructed together
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PiecesOfRun(Sequence[Piece]):
-    """A run cut into pieces; each is made when it is asked for.
+    """A run cut into pieces; each is constructed when it is accessed.
 
     Parameters
     ----------

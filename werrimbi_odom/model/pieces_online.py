@@ -1,17 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Motion cut into pieces of constant curvature, online: line, arc and spin.
+"""Segmentation of motion into pieces of constant curvature, online: line, arc and spin.
 
-The noise of a wheel goes with its travel, not with time, so a piece is a straight stretch in the
-plane of the two wheels' travel: speed may change and the robot may stop, while the ratio R : L may
-not. A piece goes on while three things hold to within the encoders' quantisation and a tolerance:
+The noise of a wheel grows with its travel, not with time. So a piece is a straight line in the
+plane of the two wheels' travel: the speed may change and the robot may stop, but the ratio R : L is
+constant. A piece continues while three conditions hold, within the encoders' quantisation and a
+tolerance:
 
-1. neither wheel has reversed;
-2. every earlier point of the piece lies on the line to the present one. Along the line the sum of
-   both wheels' travel u = |L| + |R| grows, and the difference v = |R| - |L| says which wheel leads;
-   each point leaves a cone of slopes v / u that pass it closely enough, and the present slope must
-   lie in the intersection of all cones, which takes two numbers to keep (a swing filter);
-3. the pose that was integrated message by message lies on the piece's arc.
+1. Neither wheel has reversed.
+2. Every earlier point of the piece lies on the line to the present one. Along this line the total
+   travel u = |L| + |R| grows, and the difference v = |R| - |L| says which wheel leads. Each point
+   allows a cone of slopes v / u that pass it closely enough. The present slope must lie in the
+   intersection of all cones, which is two numbers (a swing filter).
+3. The pose integrated message by message lies on the piece's arc.
 """
 
 from __future__ import annotations
@@ -25,25 +26,25 @@ from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 
 SETTLED = 10.0
-"""Sum of both wheels' travel, in tracks, after which the full tolerance of a piece holds."""
+"""Total travel of both wheels, in tracks, after which a piece has its full tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
 class PieceTolerance:
-    """How far a piece may depart from one constant curvature, beyond quantisation.
+    """Largest deviation of a piece from constant curvature, beyond quantisation.
 
     Parameters
     ----------
     path : float
-        Distance between the path driven and the piece's arc [m].
+        Distance between the path and the piece's arc [m].
     heading : float
-        Angle between the heading driven and the arc's [rad].
+        Angle between the heading and that of the arc [rad].
 
     Notes
     -----
-    What a departure does to the covariance is of second order in its ratio to the track: a lateral
-    departure δ adds b δ² to a variance that is at least a = b B²/4, so 4 (δ/B)². The defaults keep
-    that under one part in a thousand for tracks from 0.2 m (docs/pieces.md has the measurements).
+    The effect on the covariance is of second order in deviation over track: a lateral deviation δ
+    adds b δ² to a variance of at least a = b B²/4, hence a share of 4 (δ/B)². The defaults keep it
+    below one in a thousand for tracks from 0.2 m (measurements in docs/pieces.md).
     """
 
     path: float = 0.003
@@ -54,26 +55,26 @@ class PieceRule(NamedTuple):
     """The conditions in metres of wheel travel, for one robot and tolerance."""
 
     quantum: float
-    """One count of each wheel [m]; of the coarser one, which on a tight arc may count for both."""
+    """One count of each wheel [m], both taken as the coarser one's."""
     lead: float
-    """How far a wheel may lead or lag its share of the travel, beyond the quantum."""
+    """Largest lead or lag of a wheel relative to its share of the travel, beyond the quantum."""
     path: float
-    """How far the arc's end may lie from the pose, beyond the quantum."""
+    """Largest distance of the arc's end from the pose, beyond the quantum."""
     flicker: float
-    """How far a wheel may go back without having reversed: one count, which may flicker."""
+    """Largest backward travel that is no reversal: one count, which may flicker."""
     path_per_travel: float
-    """A count swings all of the path that follows: distance of the arc's end per metre of u.
+    """Allowed distance of the arc's end per metre of u, since a count rotates all of the following
+    path.
 
-    The heading read from the counters lies up to one count of a wheel beside the true one for all
-    of a piece, and its change over the piece up to two; half the travel times one count over the
-    track is the most that both together can do.
-    """
+    During a piece, the heading from the counters may be off by one count of a wheel, and its change
+    by up to two. Together they displace the end by at most half the travel times one count over the
+    track."""
     settled: float
-    """Travel u after which the full tolerance holds; before it, its share of that travel."""
+    """Travel u after which the full tolerance applies; before, it is proportional to u."""
 
     @staticmethod
     def of(robot: Robot, tolerance: PieceTolerance) -> PieceRule:
-        """The rule for a robot's track and encoders."""
+        """Create the rule for a robot's track and encoders."""
         quantum = 2.0 * max(robot.left_tick, robot.right_tick)
         return PieceRule(
             quantum=quantum,
@@ -86,45 +87,46 @@ class PieceRule(NamedTuple):
 
 
 def allowed_lead(rule: PieceRule, share: Number) -> Number:
-    """Allowance on v [m] at a share of the full tolerance."""
+    """Allowed deviation of v [m] at a share of the full tolerance."""
     return rule.quantum + rule.lead * share
 
 
 def off_arc(rule: PieceRule, u: Number, share: Number, miss_x: Number, miss_y: Number) -> Number:
-    """Squared distance of the arc's end from the pose, less what is allowed [m²]."""
+    """Squared distance of the arc's end from the pose, minus the allowed one [m²]."""
     allowed = rule.quantum + rule.path * share + rule.path_per_travel * u
     return miss_x * miss_x + miss_y * miss_y - allowed * allowed
 
 
 class PieceSums(NamedTuple):
-    """A piece as far as it has been driven: sums since its start, and what bounds its going on."""
+    """A piece so far: sums since its start, and the bounds for its continuation."""
 
     left: float = 0.0
     """Signed travel of the left wheel [m]."""
     right: float = 0.0
     """Signed travel of the right wheel [m]."""
     motion: BodyMotion[float] = BodyMotion(0.0, 0.0, 0.0)
-    """As one constant twist."""
+    """The motion as one constant twist."""
     chord: Chord[float] = Chord(1.0, 1.0, 0.0)
-    """Of that twist, from the heading at the start."""
+    """Chord of that twist, with the heading at the start."""
     left_low: float = 0.0
-    """The left wheel's travel has been between this and the next [m]."""
+    """Smallest travel of the left wheel so far [m]; then its largest, and both of the right
+    wheel."""
     left_high: float = 0.0
     right_low: float = 0.0
     right_high: float = 0.0
     slope_low: float = -math.inf
-    """The cone: v / u must stay between this and the next."""
+    """The cone: v / u must stay between `slope_low` and `slope_high`."""
     slope_high: float = math.inf
     empty: bool = True
 
     @property
     def travelled(self) -> float:
-        """Sum u of both wheels' travel [m]."""
+        """Total travel u of both wheels [m]."""
         return abs(self.left) + abs(self.right)
 
 
 NOTHING = PieceSums()
-"""A stretch before its first step."""
+"""An empty stretch."""
 
 
 def extended(
@@ -136,14 +138,14 @@ def extended(
     motion: BodyMotion[float],
     pose: Pose,
 ) -> tuple[bool, PieceSums]:
-    """Whether a stretch goes on with a step that ends at `pose`; and the longer, or the same, one.
+    """Whether a stretch continues with a step that ends at `pose`; and the stretch afterwards.
 
     Parameters
     ----------
     start : Pose
-        Of the stretch. An empty one takes any step.
+        Pose at the start of the stretch. An empty stretch accepts any step.
     earlier : float
-        Travel u of the pieces before, since the pose was last set [m].
+        Travel u of the earlier pieces since the pose was last set [m].
     travel, motion
         Of the step.
     """

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run cut into pieces: what `OpenPiece.extend` does step by step, in array operations.
+"""Segmentation of a recorded run into pieces: `OpenPiece.extend` in array operations.
 
-Every comparison is the one that `extend` makes, on the same sums added in the same order, so that
-both cut at the same step. Only what cannot change the answer differs: wheels are looked at for
-reversals only once they have turned, and the arcs of several pieces are checked together, after
-the wheels' travel alone has cut them; where one is left, what follows is cut again.
+Every comparison is that of `extend`, on the same sums added in the same order, so both cut at the
+same step. Only the order of work differs, which cannot change the result: wheels are checked for
+reversals only once they have turned back, and the arcs of several pieces are checked together,
+after the wheels' travel alone has cut them. Where a pose is off its arc, the rest is cut again.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, allowed_lead, extended, off_arc
 from werrimbi_odom.model.pose import Floats, Pose
 
-# Steps looked at together. How many is a matter of speed; no figure depends on it.
+# Steps processed together; affects only the speed.
 _FEW, _MANY = 64, 4096
-_SOON = 32  # steps in which a wheel that turns has mostly gone back by more than a flicker
-_SHORT = 8  # steps of a usual piece, below which it is sooner followed one by one
+_SOON = 32  # steps after which a wheel that turns back has usually exceeded the flicker
+_SHORT = 8  # usual steps per piece below which following step by step is faster
 _extended = of_floats(extended)
 _WHEELS, _BODY = slice(0, 2), slice(2, 5)  # rows of the sums
 
@@ -34,8 +34,8 @@ _WHEELS, _BODY = slice(0, 2), slice(2, 5)  # rows of the sums
 class Cut:
     """A whole run cut into pieces.
 
-    `start` has the first step of every piece, shape (m,); `travel` and `motion` have, for every
-    step, the sums from the start of its piece to its end, shape (n,).
+    `start` is the first step of every piece, shape (m,). `travel` and `motion` are the sums from
+    the start of each step's piece to the step's end, shape (n,).
     """
 
     start: NDArray[np.intp]
@@ -52,7 +52,7 @@ def cut(
     yaw: Floats,
     broken: NDArray[np.bool_],
 ) -> Cut:
-    """Cut a run where `OpenPiece` would.
+    """Cut a run where `OpenPiece` does.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def cut(
     x, y, yaw : ndarray, shape (n + 1,)
         Pose before the first step and after each step.
     broken : ndarray of bool, shape (n,)
-        Steps that must begin a piece (travel was lost before them).
+        Steps that must start a piece (travel was lost before them).
     """
     cutter = _Cutter(rule, travel, motion, x, y, yaw)
     begin = 0
@@ -79,7 +79,7 @@ def cut(
 
 
 class _Cutter:
-    """The pieces so far, and the last of them as it stands."""
+    """The pieces so far, and the state of the last one."""
 
     def __init__(
         self,
@@ -94,7 +94,8 @@ class _Cutter:
         self.x, self.y, self.yaw = x, y, yaw
         self.steps = np.stack([*travel, *motion])
         self.sums = np.empty_like(self.steps)
-        """From the start of its piece to the end of each step; overwritten as pieces are recut."""
+        """Sums from the piece's start to the end of each step; overwritten where pieces are
+        recut."""
         self.starts: list[int] = []
         self._travelled: list[float] = []  # travel u before each piece
         self._wheels = [_Wheel(steps, rule.flicker) for steps in travel]
@@ -102,7 +103,7 @@ class _Cutter:
         self._bounds = -math.inf, math.inf
 
     def cut(self, begin: int, end: int) -> None:
-        """Cut the steps from `begin` to before `end`; a piece begins with the first of them."""
+        """Cut the steps from `begin` to before `end`; the first of them starts a piece."""
         self._open(begin)
         ahead = _FEW
         while begin < end:
@@ -120,7 +121,7 @@ class _Cutter:
                 begin, ahead = stop, min(2 * ahead, _MANY)
 
     def _open(self, start: int) -> None:
-        """Begin a piece."""
+        """Start a piece."""
         before = 0.0
         if self.starts:
             left, right = self.sums[_WHEELS, start - 1].tolist()
@@ -133,16 +134,17 @@ class _Cutter:
             wheel.begin(start)
 
     def _forget_after(self, start: int) -> None:
-        """Begin a piece with an earlier step than the last piece did."""
+        """Start a piece at an earlier step than the last piece's."""
         while self.starts[-1] > start:
             self.starts.pop()
             self._travelled.pop()
         self._open(start)
 
     def _follow_one_by_one(self, begin: int, end: int) -> int:
-        """Follow the piece that begins with the step `begin`, and short ones after it, as if live.
+        """Follow the piece that starts at `begin`, and short ones after it, step by step.
 
-        Returns the first step of the last of them, which is to be followed again, being cut off.
+        Returns the first step of the last piece, which must be followed again because it was cut
+        off.
         """
         sums = []
         stretch, earlier, before = NOTHING, self._travelled[-1], len(self.starts)
@@ -169,9 +171,9 @@ class _Cutter:
         return begin
 
     def _follow_wheels(self, begin: int, limit: int) -> int:
-        """Follow the open piece from the step `begin` on as far as its wheels keep to one line.
+        """Follow the open piece from the step `begin` as long as its wheels stay on one line.
 
-        Begins the next piece where they leave it; returns the step to go on with.
+        Where they leave it, the next piece starts. Returns the step to continue with.
         """
         start = self.starts[-1]
         likely_end = min(wheel.next_reversal(begin) for wheel in self._wheels) + _SOON
@@ -184,7 +186,7 @@ class _Cutter:
         low, high = (v - lead) / u, (v + lead) / u
         low[0], high[0] = max(low[0], self._bounds[0]), min(high[0], self._bounds[1])
         low, high = np.maximum.accumulate(low), np.minimum.accumulate(high)
-        slope = v / u  # not a number before the first motion: every comparison is false
+        slope = v / u  # NaN before the first motion, so every comparison is false
         bad = (slope < low) | (slope > high)
         for wheel, travelled in zip(self._wheels, travel, strict=True):
             wheel.mark_reversed(bad, travelled, begin)
@@ -200,7 +202,7 @@ class _Cutter:
         return begin + good
 
     def _summed(self, rows: slice, begin: int, end: int) -> Floats:
-        """Sums of the open piece to the end of each of the steps from `begin` to before `end`."""
+        """Sums of the open piece to the end of each step from `begin` to before `end`."""
         steps = self.steps[rows, begin:end]
         if begin > self.starts[-1]:
             steps = steps.copy()
@@ -213,11 +215,11 @@ class _Cutter:
         return allowed_lead(self.rule, self._share(self._travelled[-1] + u))
 
     def _share(self, travelled: Floats) -> Floats:
-        """Of the full tolerance, that holds after so much travel u since the start of the run."""
+        """Share of the full tolerance after travel u since the start of the run."""
         return np.minimum(1.0, travelled / self.rule.settled)
 
     def _first_off_arc(self, begin: int, end: int) -> int:
-        """First of some steps after which the pose is off its piece's arc; `end` if none is."""
+        """First step after which the pose is off its piece's arc; `end` if there is none."""
         first = bisect_right(self.starts, begin) - 1
         starts = np.array(self.starts[first:])
         lengths = np.diff([begin, *self.starts[first + 1 :], end])
@@ -234,7 +236,7 @@ class _Cutter:
 
 
 class _Wheel:
-    """Where one wheel turns, known beforehand; and its span over the open piece."""
+    """Turning points of one wheel, computed in advance; and its range over the open piece."""
 
     def __init__(self, travel: Floats, flicker: float) -> None:
         self._flicker = flicker
@@ -245,18 +247,19 @@ class _Wheel:
         soon = np.minimum(turns + _SOON, travel.size) - 1
         lasting = np.abs(position[soon] - position[turns - 1]) > flicker
         self._turns: list[int] = [*turns.tolist(), travel.size]
-        """Steps against the motion before, flicker or reversal; the last is behind the run."""
+        """Steps against the previous direction, flicker or reversal; the last entry lies behind the
+        run."""
         self._reversals: list[int] = [*turns[lasting].tolist(), travel.size]
-        """Those that are no mere flicker, as far as is soon seen."""
+        """Those that are probably not flicker, as far as the next steps show."""
         self._next_turn = 0
         self._span = 0.0, 0.0
 
     def next_reversal(self, step: int) -> int:
-        """The next step after this one with which the wheel probably reverses."""
+        """Next step after this one at which the wheel probably reverses."""
         return self._reversals[bisect_right(self._reversals, step)]
 
     def begin(self, start: int) -> None:
-        """Begin a piece."""
+        """Start a piece."""
         self._next_turn = self._turns[bisect_right(self._turns, start)]
         self._span = 0.0, 0.0
 
@@ -270,7 +273,7 @@ class _Wheel:
             return
         rest, flicker = travel[one_way:], self._flicker
         lowest, highest = self._span
-        if highest > flicker:  # so far it goes forwards, and reverses when it falls back
+        if highest > flicker:  # moving forwards so far; a fall back is a reversal
             highs = np.maximum.accumulate(np.maximum(rest, highest))
             bad[one_way:] |= rest < highs - flicker
             self._span = lowest, float(highs[-1])
@@ -288,6 +291,6 @@ class _Wheel:
 
 
 def _until(bad: NDArray[np.bool_]) -> int:
-    """How many come before the first that is bad."""
+    """Number of entries before the first bad one."""
     first = int(bad.argmax())
     return first if bad[first] else bad.size

@@ -22,24 +22,24 @@ class Pose(NamedTuple):
 
 
 def compose(a: Pose, b: Pose) -> Pose:
-    """Pose `b`, given in the frame of `a`, in the frame in which `a` is given."""
+    """Transform pose `b` from the frame of `a` to the frame in which `a` is given."""
     cos, sin = math.cos(a.yaw), math.sin(a.yaw)
     return Pose(a.x + cos * b.x - sin * b.y, a.y + sin * b.x + cos * b.y, a.yaw + b.yaw)
 
 
 def inverse(a: Pose) -> Pose:
-    """The pose that undoes `a`: ``compose(a, inverse(a))`` is the origin."""
+    """Inverse of `a`: ``compose(a, inverse(a))`` is the origin."""
     cos, sin = math.cos(a.yaw), math.sin(a.yaw)
     return Pose(-cos * a.x - sin * a.y, sin * a.x - cos * a.y, -a.yaw)
 
 
 def between(a: Pose, b: Pose) -> Pose:
-    """Pose `b` as seen from `a`: ``compose(a, between(a, b))`` is `b`."""
+    """Pose `b` relative to `a`: ``compose(a, between(a, b))`` is `b`."""
     return compose(inverse(a), b)
 
 
 def wrap(angle: float) -> float:
-    """The same direction in [-pi, pi]."""
+    """Wrap an angle to [-pi, pi]; NaN if it is not finite."""
     return math.remainder(angle, 2.0 * math.pi) if math.isfinite(angle) else math.nan
 
 

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The odometer with machine code for the messages about which nothing is in doubt: nearly all.
+"""The odometer with compiled code for messages that pass all checks: nearly all of them.
 
-For who streams many messages and has numba: its import takes a third of a second and 70 MB, and the
-first time on a machine the code is compiled for some seconds.
+For streams of many messages, if numba is installed. Its import takes a third of a second and 70 MB,
+and the first compilation on a machine some seconds.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from werrimbi_odom.model.uncertainty import Uncertainty
 from werrimbi_odom.model.wiring import Wiring
 
 EXACT = 2.0**53
-"""Counts from which floats leave some out."""
+"""Counts from which floats skip integers."""
 PATIENCE = 64
-"""Messages that the readable lines take after one that was in doubt: others may follow."""
+"""Messages processed in Python after a doubtful one, as more may follow."""
 
 
 class QuickEstimate(Estimate):
-    """An `Estimate` of which all is worked out, and put in its tuples when asked for."""
+    """An `Estimate` that is already computed; its tuples are constructed at first use."""
 
     _numbers: list[float]
 
@@ -43,14 +43,14 @@ class QuickEstimate(Estimate):
     def told(
         cls, numbers: list[float], distance: float, closed: Piece | None, robot: Robot
     ) -> QuickEstimate:
-        """Of the numbers that `message_loop.take` says."""
+        """Create it from the output of `message_loop.take`."""
         found = tuple.__new__(cls, (numbers[0], None, None, None, distance, closed, robot))
         found._numbers = numbers
         return found
 
     @property
     def late(self) -> WheelStep:
-        """As `Estimate` has it, and all that follow."""
+        """As in `Estimate`, like all that follow."""
         return WheelStep(*self._numbers[:4])
 
     @property
@@ -79,11 +79,11 @@ class QuickEstimate(Estimate):
 
 
 class QuickOdometer(Odometer):
-    """`Odometer`, to the last bit, in a fraction of the time where numba is installed.
+    """`Odometer`, identical to the last bit, in a fraction of the time if numba is installed.
 
-    What a message in doubt comes to, and the rest that is seldom, is left to the readable lines:
-    then all that is known goes from arrays into their objects, and back a little later. Robots with
-    effects, or with exact moments, are theirs altogether.
+    Doubtful messages and other rare cases are left to the Python code. For that, the state moves
+    from the arrays to the objects, and back some messages later. Robots with effects or exact
+    moments always use the Python code.
     """
 
     def __init__(
@@ -98,17 +98,17 @@ class QuickOdometer(Odometer):
         self._at, self._said, self._ended = np.zeros(34), np.zeros(22), np.zeros(15)
         self._all = self._rules, self._heard, self._stamps, self._at, self._said, self._ended
         self._arrays: tuple[Floats, ...] = ()
-        """All of these while the machine goes on; empty while the readable lines do."""
+        """All of these while the compiled code runs; empty while the Python code does."""
         if self._machine is not None:
-            self._machine(*self._all, math.nan, 0.0, 0.0)  # loads it, or compiles: not when driving
+            self._machine(*self._all, math.nan, 0.0, 0.0)  # load or compile now, not while driving
         self._waits = 0
-        self._untold = 0  # messages that the tally does not hold yet
-        self._gone = 0  # messages that the arrays know of and the objects do not
+        self._untold = 0  # messages not yet counted in the tally
+        self._gone = 0  # messages in the arrays but not in the objects
 
     def update(
         self, time: float, left: float, right: float, channels: Channels | None = None
     ) -> Estimate | None:
-        """Take the counters of one message, as `Odometer.update` does."""
+        """Process the counters of one message, as `Odometer.update` does."""
         if self._arrays and -EXACT < left < EXACT and -EXACT < right < EXACT:
             assert self._machine is not None
             became = self._machine(*self._arrays, float(time), float(left), float(right))
@@ -128,25 +128,25 @@ class QuickOdometer(Odometer):
 
     @property
     def tally(self) -> EncoderTally:
-        """What became of the messages."""
+        """Counts of accepted and rejected messages."""
         self._tell()
         return self._encoder.tally
 
     @property
     def piece(self) -> Piece:
-        """The open piece as it stands."""
+        """The open piece so far."""
         if not self._gone:
             return super().piece
         return self._objects().finished(float(self._heard[0]), self.robot.track)
 
     def errors(self) -> Uncertainty[float]:
-        """Of the present pose, in the odometry frame."""
+        """Errors of the present pose, in the odometry frame."""
         if not self._gone:
             return super().errors()
         return Uncertainty(PoseCovariance(*self._at[3:9].tolist()))
 
     def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Piece:
-        """Go on from another pose, as `Odometer.set_pose` does."""
+        """Continue from another pose, as `Odometer.set_pose` does."""
         self._put_down()
         return super().set_pose(pose, covariance)
 
@@ -156,7 +156,7 @@ class QuickOdometer(Odometer):
         tolerance: PieceTolerance | None = None,
         limits: EncoderLimits | None = None,
     ) -> Piece | None:
-        """Go on with other values, as `Odometer.retune` does."""
+        """Change parameter values, as `Odometer.retune` does."""
         self._put_down()
         return super().retune(robot, tolerance, limits)
 
@@ -176,19 +176,19 @@ class QuickOdometer(Odometer):
         )
 
     def _tell(self) -> None:
-        """Let the tally know of all messages."""
+        """Bring the tally up to date."""
         self._encoder.tally.messages += self._untold
         self._encoder.tally.accepted += self._untold
         self._untold = 0
 
     def _objects(self) -> OpenPiece:
-        """The open piece that the arrays hold."""
+        """The open piece as an object, from the arrays."""
         at = marching_of(self._at.tolist())
         known = Uncertainty(at.covariance_start)
         return OpenPiece(self._piece.time_start, at.start, known, at.earlier, at.stretch)
 
     def _take_up(self) -> None:
-        """Bring all that is known into the arrays, where the machine can go on with it."""
+        """Move the state to the arrays, if the compiled code can handle it."""
         encoder, piece, pace = self._encoder, self._piece, self._encoder.pace
         last = encoder.last
         if self._machine is None or last is None or acts(self.robot):
@@ -211,7 +211,7 @@ class QuickOdometer(Odometer):
         self._arrays = self._all
 
     def _put_down(self, waits: int = 0) -> None:
-        """Bring all that the arrays hold into the objects, for the readable lines to go on."""
+        """Move the state from the arrays to the objects, for the Python code."""
         if not self._arrays:
             return
         self._arrays, self._waits = (), waits

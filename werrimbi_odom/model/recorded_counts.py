@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Counters of a whole record to wheel travel: what `Encoder` does row by row, in arrays."""
+"""Counters of a whole record to wheel travel: the result of `Encoder`, in array operations."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import Heard, read_on
 
-_BLOCK = 8192  # rows of a record taken together: their arrays stay in the cache
-_STRETCH = 256  # rows taken one by one where one was in doubt
-_LARGEST_COUNT = 1 << 61  # integer counts from which rows are taken one by one
+_BLOCK = 8192  # rows of a record processed together: their arrays stay in the cache
+_STRETCH = 256  # rows processed one by one from a doubtful one on
+_LARGEST_COUNT = 1 << 61  # size of integer counts from which rows are processed one by one
 
 
 @dataclass(frozen=True, slots=True)
 class WheelSteps:
     """The accepted steps of a recorded run; arrays of shape (n,), as in `WheelStep`.
 
-    `row` is the row of the record at which each step ends; `first_row` the one at which the first
-    begins (-1 when no row was accepted).
+    `row` is the row of the record at which each step ends; `first_row` the row at which the first
+    step begins (-1 if no row was accepted).
     """
 
     first_row: int
@@ -54,7 +54,7 @@ class WheelSteps:
 
 
 def lost_travel(steps: WheelSteps) -> dict[int, WheelTravel[float]]:
-    """Variances of travel that no counter saw [m²], by the step that it was lost in."""
+    """Variances of travel that no counter saw [m²], by the step in which it was lost."""
     where = np.flatnonzero((steps.left_lost > 0.0) | (steps.right_lost > 0.0))
     left, right = steps.left_lost[where].tolist(), steps.right_lost[where].tolist()
     return dict(zip(where.tolist(), map(WheelTravel, left, right), strict=True))
@@ -67,10 +67,10 @@ def wheel_steps(
     right: Counts,
     limits: EncoderLimits | None = None,
 ) -> WheelSteps:
-    """All steps of a record at once; the same as feeding its rows to an `Encoder`.
+    """Compute all steps of a record at once; the same as passing its rows to an `Encoder`.
 
-    Rows that leave no doubt are taken together, in array operations; from one that does, the
-    `Encoder` goes on by itself for a stretch.
+    Rows that pass all checks are processed together in array operations. From a doubtful row on,
+    the `Encoder` processes a number of rows one by one.
 
     Parameters
     ----------
@@ -107,35 +107,35 @@ class _Record(NamedTuple):
 
     @property
     def is_huge(self) -> bool:
-        """Whether differences of integer counts could leave their 64 bits."""
+        """Whether differences of integer counts could exceed 64 bits."""
         return _is_huge(self.left) or _is_huge(self.right)
 
     def reading(self, row: int) -> Reading:
-        """One row in Python's numbers, whose integers are exact at any size."""
+        """Return one row as Python numbers; its integers are exact at any size."""
         return Reading(self.time[row].item(), self.left[row].item(), self.right[row].item())
 
     def first_row(self) -> int:
-        """The first row of finite numbers, -1 when there is none."""
+        """First row of finite numbers, -1 if there is none."""
         rows = range(self.rows)
         return next((row for row in rows if all(map(math.isfinite, self.reading(row)))), -1)
 
 
 class _Found(NamedTuple):
-    """The steps that were found, at the rows of the record at which they end."""
+    """The accepted steps, stored at the row of the record at which each ends."""
 
     taken: NDArray[np.bool_]
     columns: Floats
-    """Duration, and travel of the wheels, shape (3, rows)."""
+    """Duration, and travel of the two wheels, shape (3, rows)."""
     lost: dict[int, tuple[float, float]]
     """Variances of travel that no counter saw [m²], by the row."""
 
     @classmethod
     def of(cls, rows: int) -> _Found:
-        """None yet."""
+        """Create an empty store."""
         return cls(np.zeros(rows, dtype=np.bool_), np.empty((3, rows)), {})
 
     def steps(self, record: _Record, tally: EncoderTally) -> WheelSteps:
-        """All of them; where no row in between was refused, without a copy."""
+        """Collect all steps; without a copy if no row in between was rejected."""
         rows = np.flatnonzero(self.taken)
         whole = rows.size > 0 and rows.size == rows[-1] - rows[0] + 1
         at = slice(int(rows[0]), int(rows[-1]) + 1) if whole else rows
@@ -158,7 +158,7 @@ class _Found(NamedTuple):
 
 
 def _judged_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> int:
-    """A stretch from `row` on, one by one; the row after it, which follows an accepted one."""
+    """Process rows from `row` on one by one; return the next row, which follows an accepted one."""
     least = row + _STRETCH
     accepted = False
     while row < record.rows and not (accepted and row >= least):
@@ -181,7 +181,7 @@ def _read_on(
     found: _Found,
     row: int,
 ) -> int:
-    """The same as `_quiet_steps` by machine code of `read_on`, and however many they are."""
+    """`_quiet_steps` with the compiled `read_on`, without a limit on the number of rows."""
     pace = encoder.pace
     heard = Heard(pace.usual, *pace.speeds())
     end, heard, lasted = machine(
@@ -194,7 +194,7 @@ def _read_on(
 
 
 def _take(encoder: Encoder, record: _Record, found: _Found, rows: slice, lasted: float) -> None:
-    """Let the encoder stand as if it had taken some rows itself; their columns are written."""
+    """Update the encoder's state as if it had processed these rows; their columns are written."""
     found.taken[rows] = True
     durations, left, right = found.columns[:, rows]
     last = record.reading(rows.stop - 1)
@@ -202,10 +202,10 @@ def _take(encoder: Encoder, record: _Record, found: _Found, rows: slice, lasted:
 
 
 def _quiet_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> int:
-    """Take the rows from `row` on that leave no doubt, a block at the most; the row after them.
+    """Process the rows from `row` on that pass all checks, at most a block; return the next row.
 
-    The row before must be the last one that `encoder` accepted; afterwards it stands as if it had
-    taken these steps itself.
+    The previous row must be the last that `encoder` accepted. Its state is then as if it had
+    processed the rows itself.
     """
     robot, limits = encoder.robot, encoder.limits
     rows = slice(row - 1, row + _BLOCK)
@@ -214,7 +214,7 @@ def _quiet_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> 
         return row
     per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
     limit = limits.max_wheel_speed
-    with np.errstate(all="ignore"):  # numbers that are not finite are in doubt, and so not used
+    with np.errstate(all="ignore"):  # numbers that are not finite count as doubtful
         duration = np.diff(time)
         left_count, left_wraps = differences(left, robot.encoder_bits)
         right_count, right_wraps = differences(right, robot.encoder_bits)
@@ -225,7 +225,8 @@ def _quiet_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> 
         left_travel, right_travel = left_count * robot.left_tick, right_count * robot.right_tick
         doubt = ~((duration > RESOLUTION) & (duration <= PAUSE) & (rate < np.inf))
         doubt |= (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
-        # Beyond the least, and not beyond the most, that a wheel may be believed to reach.
+        # Doubtful: a step beyond the least reach of a wheel, to a reading within its greatest reach
+        # of zero.
         fastest = max(encoder.pace.fastest, float(rate.max(initial=0.0, where=~doubt)))
         least, most = (lasted * reach_rate(encoder.rule, each) for each in (0.0, fastest))
         for now, steps in ((left / per_left, left_turns), (right / per_right, right_turns)):
@@ -246,14 +247,14 @@ def _quiet_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> 
 
 
 def _is_huge(counts: Counts) -> bool:
-    """Whether differences of integer counts could leave their 64 bits."""
+    """Whether differences of integer counts could exceed 64 bits."""
     return counts.dtype.kind == "i" and bool(
         counts.max() >= _LARGEST_COUNT or counts.min() <= -_LARGEST_COUNT
     )
 
 
 def _as_counts(counts: Counts) -> Counts:
-    """Integers of any kind as 64 bits, everything else as floats."""
+    """Convert integers of any kind to 64 bits, everything else to floats."""
     if counts.dtype.kind in "iub":
         return counts.astype(np.int64, copy=False)
     return counts.astype(np.float64, copy=False)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a reference shows of a robot that drives along a path, and the other way round.
+"""What a reference measures of a robot on a path, and the inverse.
 
-A reference looks at the robot in its own way (`View`): it measures a point off the axle, along an
-axis of its own, late, or in a left-handed frame. Frames: `robot` is the right-handed frame in which
-the robot drives; `shown` is the reference's own, which is the same unless it is mirrored.
+A reference observes the robot through a `View`: it measures a point off the axle, along an axis of
+its own, late, or in a left-handed frame. Frames: `robot` is the right-handed frame in which the
+robot drives; `shown` is the reference's own, which is the same unless it is mirrored.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ class Path(NamedTuple):
     x: Floats
     y: Floats
     yaw: Floats
-    """Goes on counting past a whole turn [rad]."""
+    """Unwrapped [rad]."""
     covariance: PoseCovariance[Floats]
 
 
 def shown(driven: Trajectory, view: View) -> Path:
-    """What the reference shows at the times of a driven path, in its own frame.
+    """Poses that the reference measures at the times of a path, in its own frame.
 
-    Before the first row and after the last the robot is taken to stand. The covariance is the
-    odometry's own, of the point that is shown; the reference's noise is no part of it.
+    Before the first row and after the last the robot is assumed to stand still. The covariance is
+    that of the odometry at the measured point; it does not include the reference's noise.
     """
     axle = Path(driven.time, driven.x, driven.y, driven.yaw, driven.covariance)
     if view == View():
@@ -52,10 +52,10 @@ def shown(driven: Trajectory, view: View) -> Path:
 
 
 def axle_of(measured: Pose, view: View) -> Pose:
-    """Where the axle's midpoint is, in the robot's frame, when the reference shows a pose.
+    """Pose of the axle's midpoint in the robot's frame, given a pose measured by the reference.
 
-    Delays are left out: nothing is known of what was before. So is a bias that wanders, for the
-    drive begins here.
+    Delays are ignored, since earlier poses are unknown. So is a drifting bias, since the drive
+    begins here.
     """
     x, y, yaw = measured
     if view.mirrored:
@@ -69,7 +69,7 @@ def axle_of(measured: Pose, view: View) -> Pose:
 
 
 def _scaled(path: Path, scale: float) -> Path:
-    """Lengths as a reference shows them whose own metre is off."""
+    """Lengths as measured by a reference with a scale error."""
     p, squared = path.covariance, scale * scale
     larger = PoseCovariance(
         squared * p.xx, squared * p.xy, scale * p.xyaw, squared * p.yy, scale * p.yyaw, p.yawyaw
@@ -78,17 +78,17 @@ def _scaled(path: Path, scale: float) -> Path:
 
 
 def mirrored(path: Path) -> Path:
-    """The same in a frame of the other hand: y and yaw change sign."""
+    """Mirror a path: y and yaw change sign."""
     p = path.covariance
     flipped = PoseCovariance(p.xx, -p.xy, -p.xyaw, p.yy, p.yyaw, p.yawyaw)
     return Path(path.time, path.x, -path.y, -path.yaw, flipped)
 
 
 def delayed(path: Path, delay: float) -> Path:
-    """At every time, where the robot was by `delay` [s] earlier.
+    """Pose of the robot `delay` [s] earlier, at every time.
 
-    Between two rows it goes along the arc of one constant twist. The covariance is that of the row
-    before.
+    Between two rows the robot moves along the arc of a constant twist. The covariance is that of
+    the previous row.
     """
     if delay == 0.0 or path.time.size < 2:
         return path
@@ -100,7 +100,7 @@ def delayed(path: Path, delay: float) -> Path:
     turn = path.yaw[begin + 1] - path.yaw[begin]
     chord = (path.x[begin + 1] - path.x[begin]) + 1j * (path.y[begin + 1] - path.y[begin])
     shrunk = sinc(0.5 * turn)
-    whole = np.where(np.abs(shrunk) > 1e-3, shrunk, 1.0)  # a whole turn in one step has no chord
+    whole = np.where(np.abs(shrunk) > 1e-3, shrunk, 1.0)  # a full turn in one step has no chord
     part = share * np.exp(0.5j * (share - 1.0) * turn) * sinc(0.5 * share * turn) / whole
     there = path.x[begin] + 1j * path.y[begin] + chord * part
     at_end = share >= 1.0

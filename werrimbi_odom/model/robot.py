@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the model knows about a robot: geometry, encoders, noise, physical effects."""
+"""Parameters of a robot: geometry, encoders, noise, physical effects."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ CovarianceOrder = Literal["first", "exact"]
 COVARIANCE_ORDERS: tuple[CovarianceOrder, ...] = ("first", "exact")
 
 SIZES = (1e-9, 1e9)
-"""Least and most of an effective radius and track [m]. No robot is near either, not even one given
-in a wrong unit by which another wrong unit is tried; but between them nothing that is computed of
-counts of 64 bits and stamps of a nanosecond is beyond all numbers, nor is divided by zero."""
+"""Smallest and largest effective radius and track [m]. No robot is near either, not even with
+values in a wrong unit. Between them, no computation on 64-bit counts and nanosecond stamps
+overflows or divides by zero."""
 TRAVELS = (1e-15, 1e9)
-"""Least and most travel of a wheel for one count [m], for the same reason."""
+"""Smallest and largest travel of a wheel per count [m], for the same reason."""
 MOST_NOISE = 1e3
-"""Most noise of a wheel [m^0.5]: it errs by a kilometre in a metre."""
+"""Largest noise of a wheel [m^0.5]: an error of a kilometre on a metre."""
 
 
 class WheelNoise(NamedTuple):
-    """What makes noise of travel."""
+    """Noise parameters of the travel."""
 
     left: float
     """k_L² [m]."""
@@ -46,28 +46,28 @@ class Robot:
     wheel_radius : float
         Nominal radius of both wheels [m].
     left_ticks_per_revolution, right_ticks_per_revolution : float
-        Counts of each encoder for one turn of its wheel; gear included.
+        Counts of each encoder per turn of its wheel, gear included.
     wheel_separation_multiplier : float
         C_B of the UMBmark calibration (paper, equation 9).
     left_wheel_radius_multiplier, right_wheel_radius_multiplier : float
         C_L and C_R of the UMBmark calibration (paper, equations 10 and 11).
     encoder_bits : int
-        Width at which the counters wrap; 0 when they do not.
+        Width at which the counters wrap; 0 if they do not.
     left_wheel_noise, right_wheel_noise : float
-        k_L and k_R [m^0.5]: a wheel that travels a distance s errs with variance k² s
-        (paper, equation 4). The defaults are the paper's own robot (section 5.2).
+        k_L and k_R [m^0.5]: the error of a wheel over a distance s has variance k² s (paper,
+        equation 4). The defaults are those of the paper's robot (section 5.2).
     covariance_order : "first" or "exact"
         The paper's first order, or exact moments for large errors.
     effects : tuple of AppliedEffect
-        Physical effects that the model holds, in the order in which they act.
+        Physical effects of the model, in the order in which they act.
     wheels_a_side : int
-        Driven wheels on a side; more than one, and they skid as the robot turns.
+        Driven wheels per side; with more than one, they skid when the robot turns.
 
     Raises
     ------
     ValueError
-        When a value, or what the values make together (`SIZES`, `TRAVELS`), is not finite or
-        outside its physical range; the message names the fields.
+        If a value, or a product of values (`SIZES`, `TRAVELS`), is not finite or outside its
+        physical range; the message names the fields.
     """
 
     wheel_separation: float
@@ -107,7 +107,7 @@ class Robot:
         self._check_products()
 
     def _check_products(self) -> None:
-        """Each value may be a number and what is made of them none: 1e-300 m have no curvature."""
+        """Check products: valid values may have an invalid product (1e-300 m has no curvature)."""
         track = "wheel_separation times wheel_separation_multiplier"
         _check_between(track, self.track, SIZES)
         for side in ("left", "right"):
@@ -129,19 +129,19 @@ class Robot:
 
     @cached_property
     def wheel_noise(self) -> WheelNoise:
-        """What makes noise of travel."""
+        """Noise parameters of the travel."""
         left, right = self.left_wheel_noise, self.right_wheel_noise
         return WheelNoise(left * left, right * right, self.track)
 
     @cached_property
     def left_tick(self) -> float:
-        """Travel of the left wheel for one count [m]."""
+        """Travel of the left wheel per count [m]."""
         radius = self.wheel_radius * self.left_wheel_radius_multiplier
         return 2.0 * math.pi * radius / self.left_ticks_per_revolution
 
     @cached_property
     def right_tick(self) -> float:
-        """Travel of the right wheel for one count [m]."""
+        """Travel of the right wheel per count [m]."""
         radius = self.wheel_radius * self.right_wheel_radius_multiplier
         return 2.0 * math.pi * radius / self.right_ticks_per_revolution
 

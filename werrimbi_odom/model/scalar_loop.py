@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run, step by step in single numbers: the lines that `compiled` makes machine code of.
+"""A recorded run as scalar operations, step by step: the functions that `compiled` compiles.
 
-It is what `Odometer` does at each message, by the same functions and so to the last bit. In plain
-Python it would take as long as the odometer; for that case `pieces_recorded` and `trajectory` have
-arrays.
+They do what `Odometer` does at each message, by the same functions, so results agree to the last
+bit. In plain Python they would be as slow as the odometer; for that case `pieces_recorded` and
+`course` have array operations.
 """
 
 from __future__ import annotations
@@ -29,30 +29,30 @@ from werrimbi_odom.model.robot import WheelNoise
 
 
 class Marching(NamedTuple):
-    """Where the robot is, and the open piece."""
+    """Pose of the robot, and the open piece."""
 
     pose: Pose
     covariance: PoseCovariance[float]
-    """Of the pose."""
+    """Covariance of the pose."""
     start: Pose
-    """Of the piece."""
+    """Pose at the start of the piece."""
     covariance_start: PoseCovariance[float]
-    """Of the pose there."""
+    """Covariance of that pose."""
     earlier: float
-    """Travel u of the pieces before [m]."""
+    """Travel u of the earlier pieces [m]."""
     stretch: PieceSums
 
 
 class Heard(NamedTuple):
-    """How often messages come and how fast wheels turn of late, as in `Pace`."""
+    """Recent message intervals and wheel speeds, as in `Pace`."""
 
     usual: float
     """The usual interval [s]."""
     fastest: float
-    """The fastest turning of a wheel [turns/s]; and that of the newer messages."""
+    """Fastest turn rate of a wheel [turns/s]; `newer` is that of the newer messages."""
     newer: float
     room: int
-    """Messages before only the newer are remembered."""
+    """Number of messages until only the newer ones are remembered."""
 
 
 def read_on(
@@ -66,24 +66,24 @@ def read_on(
     lasted: float,
     steps: Floats,
 ) -> tuple[int, Heard, float]:
-    """Rows of a record from `row` on that leave no doubt, as an `Encoder` takes them.
+    """Process rows of a record from `row` on that pass all checks, as an `Encoder` does.
 
     Parameters
     ----------
     time, left, right : ndarray, shape (rows,)
     row : int
-        The row before is the last that was accepted.
+        The previous row is the last accepted one.
     stamps : ndarray, shape (k,)
-        Stamps that are remembered, the last accepted one among them.
+        Remembered stamps, up to the last accepted one.
     heard, lasted : Heard and float
-        Up to there, and over how many seconds the last step was judged.
+        State up to there, and the interval over which the last step was checked [s].
     steps : ndarray, shape (3, rows)
-        Written, for each of these rows: duration and travel of the wheels.
+        Output for each of these rows: duration, and travel of the wheels.
 
     Returns
     -------
     int, Heard, float
-        The first row in doubt, or how many there are; and what was heard up to there.
+        The first doubtful row, or the number of rows; then `heard` and `lasted` up to there.
     """
     usual, fastest, newer, room = heard
     at = row
@@ -112,7 +112,7 @@ def onward(
     travel: WheelTravel[float],
     motion: BodyMotion[float],
 ) -> tuple[bool, Marching]:
-    """Whether a piece goes on with a step, or ends before it; and where the step leads."""
+    """Whether the piece continues with the step or ends before it; and the state after the step."""
     pose, covariance, start, covariance_start, earlier, stretch = at
     dx, dy = displacement(motion, pose.yaw)
     after = Pose(pose.x + dx, pose.y + dy, pose.yaw + motion.turn)
@@ -140,25 +140,25 @@ def march(
     pieces: int,
     done: int,
 ) -> tuple[Marching, int]:
-    """Go on from `at` over some steps; a piece ends where it must.
+    """Process n steps from the state `at`, and end pieces where they must.
 
     Parameters
     ----------
     travels, motions : arrays of shape (n,)
         The steps.
     poses, covariances : ndarray, shape (3, n) and (6, n)
-        Written: x, y, yaw and the covariance after each step.
+        Output: x, y, yaw and the covariance after each step.
     starts, sums : ndarray, shape (m,) and (5, m)
-        Written from `pieces` on: the first step of each piece that these steps begin, counted from
-        the run's beginning; and the sums over each piece that they end: travel of the wheels, and
-        motion along, sideways and in turn.
+        Output from index `pieces` on: the first step of each piece that starts here, counted from
+        the beginning of the run; and the sums over each piece that ends here: travel of the wheels,
+        and motion along, sideways and in yaw.
     pieces, done : int
-        How many pieces have been begun, and how many steps gone.
+        Number of pieces started, and of steps done so far.
 
     Returns
     -------
     Marching, int
-        Where that leads, and how many pieces have been begun then.
+        State afterwards, and the number of pieces started by then.
     """
     for step in range(motions.turn.size):
         travel = WheelTravel(travels.left[step], travels.right[step])
@@ -180,12 +180,12 @@ def march(
 
 
 def follow(motion: BodyMotion[Floats], position: Floats, yaw: Floats) -> None:
-    """Follow the steps of a run; `course.followed` has what is taken and filled.
+    """Integrate the steps of a run; see `course.followed`.
 
     Parameters
     ----------
     position : ndarray, shape (n + 1, 2)
-        The first row is given; the others are filled, as those of `yaw`, shape (n + 1,).
+        The first row is input; the others are output, as are those of `yaw`, shape (n + 1,).
     """
     along, sideways, turn = motion
     for step in range(turn.size):
@@ -197,10 +197,10 @@ def follow(motion: BodyMotion[Floats], position: Floats, yaw: Floats) -> None:
 
 
 March = Callable[..., tuple[Marching, int]]
-"""`march`, or machine code of it."""
+"""`march`, or its compiled version."""
 
 
 def sums_of(stretch: PieceSums) -> tuple[float, float, float, float, float]:
-    """What a piece has come to: travel of the wheels, and motion along, sideways and in turn."""
+    """Sums over a piece: travel of the wheels, and motion along, sideways and in yaw."""
     along, sideways, turn = stretch.motion
     return stretch.left, stretch.right, along, sideways, turn

@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a gyro says that the wheels missed: by how much less sure of its pose a robot should be.
+"""Wheel slip detected with a gyro, and the variance that it adds to the pose.
 
-The wheels' noise of the paper is that of rolling. A wheel that slips is not in it: the heading goes
-astray by what the wheels turned and the body did not, all to one side. Where a gyro contradicts the
-wheels by more than both can err, the difference, added up since they parted, is taken for one
-standard deviation of the heading; and of the way along, what one wheel must have missed for it.
+The paper's wheel noise is that of rolling and does not cover slip. A slipping wheel biases the
+heading: the wheels turn and the body does not. Where gyro and wheels disagree by more than the
+errors of both, the difference accumulated since then is taken as one standard deviation of the
+heading. If one wheel slipped, the axle's midpoint missed half of its lost travel; this is the
+standard deviation along the path.
 """
 
 from __future__ import annotations
@@ -16,27 +17,27 @@ from typing import NamedTuple
 from werrimbi_odom.model.turns import Turns
 
 WINDOW = 0.2
-"""Over which wheels and gyro are compared [s]. Shorter, noise and counts hide slip; longer, it
-comes late: a filter goes wrong by a fifth of a second's turn before it is told."""
+"""Window over which wheels and gyro are compared [s]. In a shorter one, noise and quantisation hide
+slip. A longer one delays detection: a filter is wrong by the turn of a fifth of a second."""
 GYRO_BIAS = 0.01
-"""Bias of a gyro [rad/s] that is no slip: that of a cheap one after its driver took the mean of a
-standstill."""
+"""Bias of a gyro [rad/s] that is not taken as slip: that of a cheap one after its driver has
+subtracted the mean at standstill."""
 GYRO_SCALE = 0.03
-"""Share of a turn that the gyro's scale, or a base that is a little wrong, may make: data sheets of
-cheap gyros state 2 to 3 %, and a base that is worse is found by `diagnose`, not here."""
+"""Relative error of a turn from the gyro's scale or a slightly wrong base: data sheets of cheap
+gyros state 2 to 3 %. A base that is worse is found by `diagnose`, not here."""
 GYRO_NOISE = 0.005
-"""Standard deviation of one reading [rad/s]: of cheap gyros at 100 Hz, 0.5 mrad/s in the root of a
+"""Standard deviation of one reading [rad/s]: of cheap gyros at 100 Hz, 0.5 mrad/s per root
 hertz."""
 SURE = 4.0
-"""Standard deviations of that noise that are no slip yet: beyond four are 6 of 100,000 windows, and
-the bias and the scale, which are seldom all used up, come on top."""
+"""Threshold in standard deviations of that noise: 6 of 100,000 windows exceed four, and the
+allowances for bias and scale, which are seldom used up, come on top."""
 CLOCKS = 0.02
-"""By which stamps of gyro and counters may be apart [s]: a period of counters at 50 Hz, for drivers
-that stamp on arrival. It matters where the rate changes."""
+"""Clock offset between gyro and counters [s]: a period of counters at 50 Hz, for drivers that stamp
+on arrival. It matters where the rate changes."""
 
 
 class Missed(NamedTuple):
-    """Variances to be added now: of the way along [m^2], and of the heading [rad^2]."""
+    """Variances to add now: of the distance along the path [m^2], and of the heading [rad^2]."""
 
     along: float
     heading: float
@@ -46,38 +47,38 @@ NOTHING = Missed(0.0, 0.0)
 
 
 class SlipGuard:
-    """Watches wheels and gyro.
+    """Detects slip from wheels and gyro.
 
     Parameters
     ----------
     track : float
         Distance between the wheels [m].
     tick : float
-        Travel of the coarser wheel for a count [m].
+        Travel per count of the coarser wheel [m].
     """
 
     def __init__(self, track: float, tick: float) -> None:
         self.track, self.tick = track, tick
         self.times = 0
-        """How often the wheels have slipped."""
+        """Number of slips so far."""
         self.missed = 0.0
-        """Turn that they made and the body did not, in all [rad], as sizes."""
+        """Total turn of the wheels that the body did not make, in absolute values [rad]."""
         self._turns = Turns(WINDOW)
         self._gap = 0.02
         self._gyro_at: float | None = None
-        self._parted: float | None = None  # their difference when they parted
-        self._counted = 0.0  # of the present slip [rad]
+        self._parted: float | None = None  # their difference at the start of the slip
+        self._counted = 0.0  # part of the present slip already reported [rad]
         self._seen = -1.0
 
     def gyro(self, time: float, rate: float) -> None:
-        """Take a yaw rate [rad/s]."""
+        """Add a yaw rate [rad/s]."""
         if self._gyro_at is not None and time > self._gyro_at:
             self._gap = min(time - self._gyro_at, WINDOW)
         self._gyro_at = time
         self._turns.gyro(time, rate)
 
     def wheels(self, time: float, yaw: float) -> Missed:
-        """Take a heading by the wheels [rad]; what is to be added to the pose's covariance."""
+        """Add a heading by the wheels [rad]; return what to add to the pose's covariance."""
         self._turns.wheels(time, yaw)
         span = self._turns.span
         if span is None or span[1] == self._seen:
@@ -99,7 +100,7 @@ class SlipGuard:
         return Missed(more * (0.5 * self.track) ** 2, more)
 
     def _allowed(self, begin: float, end: float) -> float:
-        """Difference of the turns over a window that is no slip [rad]."""
+        """Largest difference of the turns over a window that is not slip [rad]."""
         middle = 0.5 * (begin + end)
         first, second = self._turns.turn(begin, middle), self._turns.turn(middle, end)
         change = abs(second - first) / (middle - begin)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Odometry of a whole recorded run at once: what `Odometer` does row by row."""
+"""Odometry of a whole recorded run at once: the result of `Odometer` row by row."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from werrimbi_odom.model.uncertainty import known
 class Trajectory:
     """Poses and covariances at every accepted row of a run; arrays of shape (n,).
 
-    The first entry is the start; `row` tells the row of the record that each entry belongs to.
+    The first entry is the start; `row` is the row of the record of each entry.
     """
 
     time: Floats
@@ -39,20 +39,20 @@ class Trajectory:
     x: Floats
     y: Floats
     yaw: Floats
-    """Goes on counting past a whole turn [rad]."""
+    """Unwrapped [rad]."""
     covariance: PoseCovariance[Floats]
     """In the odometry frame."""
     mean_shift: tuple[Floats, Floats] | None
-    """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
+    """Mean of the true position minus the pose (x, y) [m]; None without exact moments."""
     row: NDArray[np.intp]
     """Rows of the record."""
     tally: EncoderTally
-    """What became of the rows."""
+    """Counts of accepted and rejected rows."""
     pieces: Sequence[Piece]
-    """The run cut into lines, arcs and spins; the last one is cut off by the run's end."""
+    """Lines, arcs and spins; the last piece is cut off by the end of the run."""
 
     def expanded(self, rows: int) -> NDArray[np.intp]:
-        """For each of the record's `rows`, the index of the latest entry (0 before the first)."""
+        """Index of the latest entry for each of the record's `rows` (0 before the first)."""
         return np.maximum(np.searchsorted(self.row, np.arange(rows), side="right") - 1, 0)
 
 
@@ -78,13 +78,13 @@ def trajectory(
     start, covariance
         Pose before the first row and its covariance.
     channels : mapping of name to ndarray, shape (rows,), optional
-        Extra measured channels; NaN where not measured, which is interpolated.
+        Extra measured channels; NaN (not measured) is interpolated.
 
     Raises
     ------
     ValueError
-        When no row can be used (empty, or none with finite numbers), or an effect looks at a
-        channel that was not measured.
+        If no row is usable (empty, or without finite numbers), or an effect reads a channel that
+        was not measured.
     """
     left, right = wiring_of(robot.effects).wheels(left, right)
     steps = wheel_steps(robot, time, left, right, limits)
@@ -121,7 +121,7 @@ def _driven(
     channels: Mapping[str, Span[Floats]],
     start: Pose,
 ) -> AfterEffects:
-    """Travel and motion of the steps; nothing is worked out for effects that are not there."""
+    """Travel and motion of the steps; without effects, nothing is computed for them."""
     if not acts(robot):
         return AfterEffects(raw, wheels_to_body(raw, robot.track))
     drive = features(robot, duration, raw, first_counts, channels)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a pose's error, to first order (the paper) or by exact moments; piece by piece.
+"""Errors of a pose, to first order (the paper) or by exact moments, piece by piece.
 
-Both orders chain the same pieces; only what is carried along differs. All functions take floats,
-or arrays of one shape, alike.
+Both orders use the same pieces; they differ only in what is propagated. All functions take floats
+or arrays of one shape.
 """
 
 from __future__ import annotations
@@ -25,16 +25,15 @@ class Uncertainty(NamedTuple, Generic[Number]):
     """Errors of a pose in the odometry frame."""
 
     covariance: PoseCovariance[Number]
-    """Mean square of the error about the nominal pose: to first order, or exact."""
+    """Second moments of the error about the nominal pose: to first order, or exact."""
     moments: PathMoments | None = None
-    """Exact moments, where these are carried."""
+    """Exact moments, if they are propagated."""
 
     @property
     def mean_shift(self) -> tuple[Number, Number] | None:
-        """How far the mean of the true position lies from the nominal pose [m].
+        """Mean of the true position minus the nominal pose [m]; None without exact moments.
 
-        Known by exact moments alone. It is for information: poses stay nominal, and
-        `covariance` contains its square.
+        It is informative only: poses stay nominal, and `covariance` contains its square.
         """
         if self.moments is None:
             return None
@@ -44,7 +43,7 @@ class Uncertainty(NamedTuple, Generic[Number]):
 def known(
     order: CovarianceOrder, covariance: PoseCovariance[float] = CERTAIN
 ) -> Uncertainty[float]:
-    """A pose given with Gaussian errors."""
+    """Errors of a pose with this covariance, Gaussian."""
     return Uncertainty(covariance, from_covariance(covariance) if order == "exact" else None)
 
 
@@ -61,16 +60,17 @@ def after_piece(
     Parameters
     ----------
     start
-        Errors at its start.
+        Errors at the start.
     motion, noise
         Of the whole piece.
     yaw : float or ndarray
         Nominal heading at its start [rad].
     dx, dy : float or ndarray
-        Displacement that was integrated message by message, odometry frame [m].
+        Displacement, integrated message by message, odometry frame [m].
     """
     if start.moments is not None:
-        # The lever of the earlier heading error is what was driven, not the arc that stands for it.
+        # The lever arm of the earlier heading error is the driven displacement, not that of the
+        # arc.
         driven = displacement(BodyMotion(dx, dy, 0.0 * dx), -yaw)
         piece = piece_moments(motion, noise)._replace(nominal=driven[0] + 1j * driven[1])
         moments = chained(start.moments, piece, yaw)

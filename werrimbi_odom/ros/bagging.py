@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Records what is on some topics as a rosbag2 (MCAP), as it comes, without `ros2 bag`."""
+"""Records topics as a rosbag2 (MCAP) as messages arrive, without `ros2 bag`."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from werrimbi_odom.files.bag_writing import BagWriter
 
 
 class Bagging:
-    """A bag that is being written.
+    """A bag being recorded.
 
     Parameters
     ----------
     node : Node
-        That listens.
+        Node that subscribes.
     folder : Path
-        Of the bag; must not exist.
+        Folder of the bag; must not exist.
     topics : sequence of str
-        Full names; those of which nobody says what they are, are left out.
+        Full topic names; topics of unknown type are skipped.
 
     Raises
     ------
     InputError
-        When rosbags is not installed, or the folder cannot be written.
+        If rosbags is not installed, or the folder cannot be written.
     """
 
     def __init__(self, node: Node, folder: Path, topics: Sequence[str]) -> None:
@@ -64,7 +64,7 @@ class Bagging:
         return keep
 
     def close(self) -> None:
-        """Write what is still to be written, and listen no more."""
+        """Write pending messages and unsubscribe."""
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
         self._subscriptions = []
@@ -81,7 +81,7 @@ def _class_of(kind: str) -> Any:
 
 
 def _qos(latched: bool) -> QoSProfile:
-    """Best effort takes from every publisher; what is latched comes also if it was sent before."""
+    """Best effort matches every publisher; transient local also delivers latched messages."""
     if latched:
         return QoSProfile(
             depth=100,

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Planar readings out of what publishes poses: of odometry, and of a reference of four types."""
+"""Planar readings from messages: of odometry, and of a reference of four types."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ _VARIANCES = (0, 7, 35)  # of x, y and yaw among the 36 entries
 
 
 class Clockwork:
-    """Stamps as seconds since the first one: of those since 1970 a float resolves but 0.2 µs."""
+    """Stamps as seconds since the first: since 1970, a float resolves only 0.2 µs."""
 
     def __init__(self) -> None:
         self._origin: int | None = None
 
     def seconds(self, stamp: Any) -> float:
-        """A stamp in seconds since the first that was seen.
+        """Convert a stamp to seconds since the first one.
 
         Raises
         ------
         InputError
-            When it is none; arguments are the cause and the detail.
+            If the stamp is invalid; arguments are the cause and the detail.
         """
         if self._origin is None:
             self._origin = stamp.sec
@@ -49,19 +49,19 @@ class Clockwork:
         return float(stamp.sec - self._origin) + 1e-9 * float(stamp.nanosec)
 
     def stamp(self, seconds: float) -> Stamp:
-        """The stamp of such a time."""
+        """Convert such a time to a stamp."""
         whole, part = divmod(round(1e9 * seconds), 10**9)
-        second = min(whole + (self._origin or 0), 2**31 - 1)  # which it may be rounded beyond
+        second = min(whole + (self._origin or 0), 2**31 - 1)  # rounding may exceed the range
         return Stamp(sec=second, nanosec=part)
 
 
 def odometry_of(message: Any, clockwork: Clockwork) -> tuple[TimedPose, BodyMotion[float]]:
-    """Pose and twist in a nav_msgs/Odometry.
+    """Pose and twist of a nav_msgs/Odometry.
 
     Raises
     ------
     InputError
-        When a number cannot be used; arguments are the cause and the detail.
+        If a number is invalid; arguments are the cause and the detail.
     """
     covariance = covariance_of(message.pose.covariance)
     pose = _pose(message.pose.pose.position, message.pose.pose.orientation)
@@ -73,18 +73,18 @@ def odometry_of(message: Any, clockwork: Clockwork) -> tuple[TimedPose, BodyMoti
 def reference_reader(
     kind: str, usual: PoseCovariance[float]
 ) -> Callable[[Any, Clockwork], TimedPose]:
-    """What makes a reading of a message of one of `REFERENCE_TYPES`.
+    """Create a function that reads one of `REFERENCE_TYPES`.
 
     Parameters
     ----------
     kind : str
     usual : PoseCovariance
-        Taken where a message states no covariance of its own: a variance that is not positive.
+        Covariance for messages without one of their own (a variance is not positive).
 
     Returns
     -------
     callable
-        It raises an InputError when a number cannot be used.
+        It raises InputError if a number is invalid.
     """
 
     def read(message: Any, clockwork: Clockwork) -> TimedPose:

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Legs, live: measured relative pose against that of the odometry, and what was promised for it.
+"""Legs, live: error of the odometry's relative pose against the reference, and its covariance.
 
-As in `werrimbi compare`, but that what the odometry promises is all in its messages: of two of its
-covariances P₁ and P₂ the stretch between them has P₂ - J P₁ Jᵀ (docs/model.md).
+As in `werrimbi compare`, but the predicted covariance comes from the odometry messages: with pose
+covariances P₁ and P₂, that of the stretch between is P₂ - J P₁ Jᵀ (docs/model.md).
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from werrimbi_odom.model.pose import Floats, between, wrap
 from werrimbi_odom.ros.compare_track import TimedPose
 
 _KEPT = 200
-"""Intervals of the reference by which it is known what is usual."""
+"""Intervals of the reference that define a usual one."""
 
-_ROUNDING = 1e-9  # of a covariance: what the difference of two large ones may leave
-_SHARE = 0.1  # of its largest entry, which pieces may be off by; a constant's growth is -1 of it
+_ROUNDING = 1e-9  # of a covariance: rounding error in the difference of two large ones
+_SHARE = 0.1  # of its largest entry: error of pieces; if P is constant, the growth is -1 of it
 
 
 class Both(NamedTuple):
-    """What odometry and reference say of one instant, each in its own frame."""
+    """Poses of odometry and reference at one instant, each in its own frame."""
 
     odometry: TimedPose
     reference: TimedPose
@@ -49,15 +49,15 @@ class LegError:
     error: Floats
     """Shape (3,)."""
     covariance: Floats
-    """Of the error, odometry's and reference's together, shape (3, 3)."""
+    """Covariance of the error, from odometry and reference, shape (3, 3)."""
     grows: bool
-    """Whether the odometry's covariance grew as that of a path does."""
+    """Whether the odometry's covariance grew as it does along a path."""
 
     @property
     def deviation(self) -> float:
-        """Squared Mahalanobis distance error' Σ⁻¹ error: chi-squared if honest.
+        """Squared Mahalanobis distance error' Σ⁻¹ error: chi-squared if Σ is consistent.
 
-        Infinite where Σ has no inverse: something is promised to be without any error.
+        Infinite if Σ is singular (some direction is claimed to be without error).
         """
         try:
             return float(squared_deviation(self.error[None], self.covariance[None])[0])
@@ -68,15 +68,15 @@ class LegError:
 class LegCutter:
     """Cuts a drive into legs, each of which begins at the pose after the end of the last.
 
-    No pose of the reference is in two legs, so that their errors are independent. None spans a gap:
-    a silence much longer than usual in which the robot drove on.
+    No reference pose belongs to two legs, so their errors are independent. No leg spans a gap: an
+    unusually long interval without reference in which the robot moved.
 
     Parameters
     ----------
     length : float
-        Path of a leg [m].
+        Path length of a leg [m].
     turn : float
-        Turning on the spot that makes a leg too [rad]; path and turning add up.
+        Turn on the spot that also makes a leg [rad]; path and turn add up.
     """
 
     def __init__(self, length: float, turn: float = QUARTER_TURN) -> None:
@@ -86,11 +86,11 @@ class LegCutter:
         self._intervals: deque[tuple[float, float]] = deque(maxlen=_KEPT)
 
     def restart(self) -> None:
-        """Forget the leg that has begun."""
+        """Discard the current leg."""
         self._start = self._last = None
 
     def take(self, both: Both) -> tuple[LegError | None, bool]:
-        """The error so far of the leg that is being driven, and whether this pose ends it."""
+        """Error of the current leg so far, and whether this pose ends it."""
         last, self._last = self._last, both
         if last is not None and self._is_gap(last, both):
             self._start = None
@@ -109,7 +109,7 @@ class LegCutter:
         return legs_worth(path, turned, self._length, self._turn)
 
     def _is_gap(self, last: Both, both: Both) -> bool:
-        """Whether the reference fell silent; what is no gap is what is usual."""
+        """Whether there is a gap in the reference, compared with its usual intervals."""
         duration = both.reference.time - last.reference.time
         way = self._way(last, both)
         if way >= GAP_LEG and len(self._intervals) >= GAP_FEWEST:
@@ -122,7 +122,7 @@ class LegCutter:
 
 
 def leg_error(start: Both, end: Both) -> LegError:
-    """The error between two instants."""
+    """Error of the relative pose between two instants."""
     predicted = between(start.odometry.pose, end.odometry.pose)
     measured = between(start.reference.pose, end.reference.pose)
     error = np.array(
@@ -141,10 +141,10 @@ def leg_error(start: Both, end: Both) -> LegError:
 
 
 def _of_stretch(start: TimedPose, end: TimedPose, sign: float) -> Floats:
-    """Covariance of the pose at `end` as seen from `start`, in the frame of `start`.
+    """Covariance of the pose at `end` relative to `start`, in the frame of `start`.
 
-    `sign` is -1 where the end's error holds the start's (odometry), and +1 where both are
-    independent (a reference that measures each pose anew).
+    `sign` is -1 if the error at the end contains that at the start (odometry), and +1 if both are
+    independent (a reference that measures each pose separately).
     """
     dx, dy = end.pose.x - start.pose.x, end.pose.y - start.pose.y
     swung = np.array(carried(start.covariance, dx, dy))
@@ -154,7 +154,7 @@ def _of_stretch(start: TimedPose, end: TimedPose, sign: float) -> Floats:
 
 
 def _turned(error: Floats, covariance: Floats, angle: float) -> tuple[Floats, Floats]:
-    """An error and its covariance in a frame that is turned by -`angle` against theirs."""
+    """Rotate an error and its covariance by `angle`."""
     cos, sin = math.cos(angle), math.sin(angle)
     turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     return turn @ error, turn @ covariance @ turn.T

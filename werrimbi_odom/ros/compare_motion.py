@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the robot drives as its wheels turn, now: or is held, carried, or slips.
+"""Whether the robot currently moves as its wheels turn, or is held, carried, or slips.
 
-What is left out of a recording (`inference.legs.no_driving`) is known from all of the drive; here
-it is told by the last second, once it has lasted.
+A recording is classified with hindsight (`inference.legs.no_driving`). Here the state is derived
+from the last second, and reported once it has lasted.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from werrimbi_odom.ros.compare_legs import Both
 State = Literal["standing", "driving", "held", "carried", "slipping"]
 
 SPAN = 2.0 * NO_DRIVING_WINDOW
-"""Over which wheels and reference are compared [s]: where noise is large, as long as its legs."""
+"""Window over which wheels and reference are compared [s]; with large noise, as long as a leg."""
 REMEMBERED = 600
-"""Instants of driving by which it is known whether wheels and reference agree at all."""
+"""Number of instants of driving that show whether wheels and reference agree at all."""
 
 WORDS: dict[State, str] = {
     "standing": "the robot stands",
@@ -43,7 +43,7 @@ WORDS: dict[State, str] = {
 
 
 class Motion:
-    """What odometry and reference say together, instant by instant."""
+    """Classifies the motion from odometry and reference, instant by instant."""
 
     def __init__(self) -> None:
         self.state: State = "standing"
@@ -54,17 +54,17 @@ class Motion:
 
     @property
     def ever_agrees(self) -> bool:
-        """Whether wheels and reference mostly go together: else something is set up wrongly."""
+        """Whether wheels and reference usually agree; otherwise something is set up wrongly."""
         few = len(self._agreed) < NO_DRIVING_FEWEST
         return few or sum(self._agreed) > 0.5 * len(self._agreed)
 
     def restart(self) -> None:
-        """Forget: the pose was set."""
+        """Restart, after the pose was set."""
         self._kept.clear()
         self._since = -math.inf
 
     def take(self, both: Both) -> State:
-        """The state at an instant; what is no driving counts once it has lasted."""
+        """State at an instant; abnormal states are reported once they have lasted."""
         kept, time = self._kept, both.odometry.time
         if kept and time - kept[-1].odometry.time > SPAN:
             self.restart()
@@ -83,7 +83,7 @@ class Motion:
         return self.state
 
     def told(self) -> tuple[bool, str]:
-        """Whether all is well, and what to say."""
+        """Whether all is well, and the message."""
         if not self.ever_agrees:
             return False, (
                 "wheels and reference hardly ever go together: is something set up wrongly? Record "
@@ -93,7 +93,7 @@ class Motion:
 
 
 def _state(start: Both, end: Both) -> State:
-    """What the time between two instants was."""
+    """Classify the motion between two instants."""
     wheels = between(start.odometry.pose, end.odometry.pose)
     seen = between(start.reference.pose, end.reference.pose)
     noise = [start.reference.covariance, end.reference.covariance]
@@ -107,7 +107,7 @@ def _state(start: Both, end: Both) -> State:
     if rolled < STANDS * least_way and turned < STANDS * least_turn:
         return "carried" if seen_way > least_way or seen_turn > least_turn else "standing"
     if way < least_way and turn < least_turn:
-        return "standing"  # or too slow to say
+        return "standing"  # or too slow to decide
     stopped_way = seen_way < NO_DRIVING_STOPPED * way + noise_way
     stopped_turn = seen_turn < NO_DRIVING_STOPPED * turn + noise_turn
     if stopped_way and stopped_turn:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Odometry against a reference, live: the error, and whether the covariance promised it.
+"""Odometry against a reference, live: the error, and whether the covariance is consistent with it.
 
     ros2 run werrimbi_odom compare_node --ros-args -r reference:=/vrpn/robot/pose
 
-`CompareNode._compare` is the whole way of a reference pose; everything else is set-up and reports.
+`CompareNode._compare` processes a reference pose; everything else is set-up and reporting.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.watching import watching_of
 
 WAITING = 1_000
-"""Reference poses that may wait for the odometry of their instant."""
+"""Largest number of reference poses that wait for odometry."""
 SILENT = 2.0
-"""Seconds without a message after which a topic counts as silent."""
+"""Time without a message after which a topic counts as silent [s]."""
 PERIOD = 1.0
-"""Seconds from one /diagnostics to the next."""
+"""Period of /diagnostics [s]."""
 
 
 class CompareNode(Node):  # type: ignore[misc]
@@ -59,7 +59,7 @@ class CompareNode(Node):  # type: ignore[misc]
     Raises
     ------
     InputError
-        When a parameter or a QoS override is wrong.
+        If a parameter or a QoS override is invalid.
     """
 
     def __init__(self) -> None:
@@ -136,7 +136,7 @@ class CompareNode(Node):  # type: ignore[misc]
             if reading.time > self._latest - 1.0:
                 self._counts["old references"] += 1
                 return
-            self._forget_waiting()  # its clock was put back
+            self._forget_waiting()  # its clock was set back
             self._cutter.restart()
             self._motion.restart()
         self._latest = reading.time
@@ -150,7 +150,7 @@ class CompareNode(Node):  # type: ignore[misc]
             self._counts["without odometry"] += 1
 
     def _compare(self, reference: TimedPose) -> None:
-        """The whole way of a reference pose, from the odometry at its instant to the verdict."""
+        """Process a reference pose: odometry at its instant, then motion, leg and window."""
         odometry = self._track.at(reference.time)
         if odometry is None:
             self._counts["without odometry"] += 1
@@ -171,7 +171,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._counts["without odometry"] += len(self._waiting)
         self._waiting.clear()
 
-    # ------------------------------------------------------------------------- out
+    # ------------------------------------------------------------------------- publications
 
     def _publish_error(self, leg: LegError) -> None:
         x, y, yaw = leg.error.tolist()
@@ -234,7 +234,7 @@ class CompareNode(Node):  # type: ignore[misc]
         return diagnostic(level, name, words, {"state": self._motion.state})
 
     def _verdict(self) -> tuple[bytes, str]:
-        """Level and words: of what is compared, unless who is there makes that meaningless."""
+        """Level and message of the comparison, unless other publishers make it meaningless."""
         level, words = self._verdict_on_messages()
         wrong = self._company.look()
         if wrong and level == DiagnosticStatus.OK:
@@ -250,7 +250,7 @@ class CompareNode(Node):  # type: ignore[misc]
         if silent:
             topics = " and ".join(self.resolve_topic_name(name) for name in silent)
             return DiagnosticStatus.STALE, f"nothing to compare: {topics} silent{before}"
-        if min(self._heard.values()) - self._compared_at > SILENT:  # both talk, past each other
+        if min(self._heard.values()) - self._compared_at > SILENT:  # disjoint stamps
             refused = ", ".join(f"{key} ({n})" for key, n in new.items() if " refused: " in key)
             if refused:
                 return DiagnosticStatus.ERROR, f"nothing to compare: {refused}{before}"
@@ -265,7 +265,7 @@ class CompareNode(Node):  # type: ignore[misc]
     # ------------------------------------------------------------------------- set-up
 
     def destroy_node(self) -> None:
-        """End, and what is under way with it."""
+        """End the node and its diagnosis process."""
         self._watching.close()
         super().destroy_node()
 
@@ -304,7 +304,7 @@ class CompareNode(Node):  # type: ignore[misc]
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop; returns the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return run(CompareNode, "compare_node", args)
 
 

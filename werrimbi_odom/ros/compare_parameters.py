@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters of compare_node, declared once."""
+"""Parameters of compare_node."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declaring import table
 
 LEAST, MOST = 1e-9, 1e6
-"""Of a standard deviation of the reference, so that its square is a number, and no zero."""
+"""Range of a standard deviation of the reference: its square must be finite and not zero."""
 
 PARAMETERS: tuple[NodeParameter, ...] = (
     NodeParameter(
@@ -83,7 +83,7 @@ PARAMETERS: tuple[NodeParameter, ...] = (
 
 
 def squared(values: dict[str, Value], name: str) -> float:
-    """A standard deviation's square."""
+    """Square of a standard deviation."""
     return math.pow(float(values[name]), 2)  # type: ignore[arg-type]
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The odometry of the last while, and where it says that the robot was at any instant of it."""
+"""Recent odometry, and its pose at any instant by interpolation."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from werrimbi_odom.model.motion import BodyMotion, displacement, sinc
 from werrimbi_odom.model.pose import Pose, between, wrap
 
 KEPT = 2_000
-"""Odometry messages that are kept: 40 s at 50 Hz, 2 s at 1 kHz."""
+"""Number of odometry messages kept: 40 s at 50 Hz, 2 s at 1 kHz."""
 GAP = 1.0
-"""Interval of the odometry [s] across which nobody knows where the robot was in between."""
+"""Longest interval of the odometry [s] that is interpolated."""
 
-# A pose that moves otherwise than its twist says has been set: by ~/reset, set_pose, a restart.
+# A pose that contradicts its twist was set: by ~/reset, set_pose, a restart.
 _SET_BY = 0.05  # m
 _SET_BY_TURN = 0.1  # rad
 
@@ -34,16 +34,16 @@ class TimedPose(NamedTuple):
     pose: Pose
     covariance: PoseCovariance[float]
     path: float = 0.0
-    """Driven since the beginning, whatever the sense [m]; of odometry alone."""
+    """Path length since the beginning, both directions counted positive [m]; odometry only."""
     turned: float = 0.0
-    """Turned since the beginning, whatever the sense [rad]; of odometry alone."""
+    """Absolute turn since the beginning [rad]; odometry only."""
 
 
 class OdometryTrack:
-    """Odometry as it comes, and its readings at instants between the messages.
+    """Stores odometry, and interpolates it between messages.
 
-    `generation` grows each time that the pose was set or the clock put back: readings of two
-    generations have nothing to do with each other.
+    `generation` increases each time the pose was set or the clock set back; readings of different
+    generations are not comparable.
     """
 
     def __init__(self) -> None:
@@ -52,29 +52,29 @@ class OdometryTrack:
 
     @property
     def oldest(self) -> float:
-        """Time of the first reading that is kept [s]; infinite where there is none."""
+        """Time of the first stored reading [s]; infinite if there is none."""
         return self._kept[0].time if self._kept else math.inf
 
     @property
     def newest(self) -> float:
-        """Time of the last reading [s]; minus infinity where there is none."""
+        """Time of the last reading [s]; minus infinity if there is none."""
         return self._kept[-1].time if self._kept else -math.inf
 
     def add(self, reading: TimedPose, twist: BodyMotion[float]) -> Added:
-        """Take a reading.
+        """Add a reading.
 
         Parameters
         ----------
-        reading : Reading
-            Its `path` and `turned` are not looked at.
+        reading : TimedPose
+            Its `path` and `turned` are ignored.
         twist : BodyMotion
-            Speeds that the same message states [m/s, m/s, rad/s].
+            Speeds in the same message [m/s, m/s, rad/s].
 
         Returns
         -------
         str
-            first; next: it goes on from the last; old: not newer than the last, left out; set: it
-            does not follow from the last one and the twist; back: the clock was put back.
+            first; next: it continues the last; old: not newer than the last, ignored; set: it
+            contradicts the last reading and the twist; back: the clock was set back.
         """
         if not self._kept:
             self._kept.append(reading._replace(path=0.0, turned=0.0))
@@ -97,10 +97,10 @@ class OdometryTrack:
         return "next"
 
     def at(self, time: float) -> TimedPose | None:
-        """The reading at an instant; None where there was none, or in a gap.
+        """Reading at an instant; None outside the stored span or in a gap.
 
-        Between two messages the robot is taken to go on along one arc, and the noise of the
-        interval to come evenly.
+        Between two messages the robot is assumed to move along one arc, with its noise distributed
+        evenly.
         """
         if not self.oldest <= time <= self.newest:
             return None
@@ -116,7 +116,7 @@ class OdometryTrack:
 
 
 def motion_between(moved: Pose) -> BodyMotion[float]:
-    """The constant twist that makes a relative pose, by less than half a turn."""
+    """Constant twist that produces a relative pose, with less than half a turn."""
     turn = wrap(moved.yaw)
     cos, sin, shrink = math.cos(0.5 * turn), math.sin(0.5 * turn), sinc(0.5 * turn)
     along = (cos * moved.x + sin * moved.y) / shrink
@@ -124,14 +124,14 @@ def motion_between(moved: Pose) -> BodyMotion[float]:
 
 
 def _was_set(moved: Pose, motion: BodyMotion[float], twist: BodyMotion[float], dt: float) -> bool:
-    """Whether a pose went elsewhere than its twist, allowing for a twist that is smoothed."""
+    """Whether a pose contradicts its twist, with a tolerance for a smoothed twist."""
     said = BodyMotion(*(dt * part for part in twist))
     if not all(map(math.isfinite, said)):
         return False
     x, y = displacement(said, 0.0)
     way = max(math.hypot(said.along, said.sideways), math.hypot(motion.along, motion.sideways))
     turn = max(abs(said.turn), abs(motion.turn))
-    # The half: of a twist that is a mean over the last few intervals, speeding up from rest.
+    # Half the path: a twist averaged over some intervals, during acceleration from rest.
     apart = math.hypot(moved.x - x, moved.y - y)
     turned = abs(wrap(moved.yaw - said.turn))
     return apart > _SET_BY + 0.5 * min(way, 0.5) or turned > _SET_BY_TURN + 0.5 * min(turn, 0.5)

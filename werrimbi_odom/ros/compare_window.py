@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the covariance is honest, over the last so many legs."""
+"""Consistency of the covariance (NEES) over a window of recent legs."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
 FREEDOM = 3
 """Degrees of freedom of a leg: x, y, yaw."""
 LEAST = 5
-"""Legs before anything is said."""
+"""Number of legs needed for a verdict."""
 LASTS = 5
-"""Windows in a row that must be outside before it is said: of an honest covariance that is one in
-260,000 legs, a week of driving, where a single window is once in 24,000, a day's (simulated)."""
+"""Consecutive windows outside the bounds before it is reported. With a consistent covariance this
+happens once in 260,000 legs, a week of driving; a single window is outside once in 24,000, a day of
+driving (simulated)."""
 
-_ONE_LEG = 0.7  # share of a window's NEES from which on one leg is said to be the cause
+_ONE_LEG = 0.7  # share of a window's NEES from which one leg is named as the cause
 
 
 class Window:
@@ -27,17 +28,17 @@ class Window:
     Parameters
     ----------
     size : int
-        How many.
+        Number of legs.
     """
 
     def __init__(self, size: int) -> None:
         self._deviations: deque[float] = deque(maxlen=size)
         self._grew: deque[bool] = deque(maxlen=size)
         self._outside = 0
-        """Windows in a row whose NEES is not honest."""
+        """Consecutive windows with a NEES outside the bounds."""
 
     def take(self, deviation: float, grows: bool) -> None:
-        """Take a leg; where the covariance did not grow its deviation means nothing."""
+        """Add a leg; if the covariance did not grow, its deviation means nothing."""
         grows = grows and math.isfinite(deviation)
         self._grew.append(grows)
         if grows:
@@ -48,28 +49,28 @@ class Window:
 
     @property
     def count(self) -> int:
-        """Legs that tell."""
+        """Number of legs with a meaningful deviation."""
         return len(self._deviations)
 
     @property
     def nees(self) -> float:
-        """Mean of error' Σ⁻¹ error over its degrees of freedom: 1 where honest; NaN of nothing."""
+        """Mean of error' Σ⁻¹ error per degree of freedom: 1 if consistent; NaN without legs."""
         return sum(self._deviations) / (FREEDOM * self.count) if self.count else math.nan
 
     @property
     def coverage(self) -> float:
-        """Share of legs inside their 95 % ellipsoid; NaN of nothing."""
+        """Share of legs inside their 95 % ellipsoid; NaN without legs."""
         if not self.count:
             return math.nan
         inside = float(CHI2_95[FREEDOM])
         return sum(each <= inside for each in self._deviations) / self.count
 
     def bounds(self, share: float = 0.95) -> tuple[float, float]:
-        """Between which the NEES of an honest covariance is with this probability."""
+        """Interval that contains the NEES of a consistent covariance with this probability."""
         return chance_bounds(FREEDOM * max(self.count, 1), share)
 
     def verdict(self) -> tuple[bool, str]:
-        """Whether all is well, and what to say."""
+        """Whether all is well, and the message."""
         legs = len(self._grew)
         if legs < LEAST:
             return True, f"{legs} of the {LEAST} legs driven that a verdict needs"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters of the nodes beside odom_node; a robot file given to them as well is let pass."""
+"""Declares the parameters of the other nodes; entries of a robot file are ignored."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value
     Raises
     ------
     InputError
-        When one is unknown or wrong; the message names all of them.
+        If any is unknown or invalid; the message names all of them.
     """
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Given).items()}
@@ -50,7 +50,7 @@ def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value
 
 
 def _is_for_others(node: Node, name: str) -> bool:
-    """Whether it is ROS's own, or stands in a robot file whose top key is /**."""
+    """Whether the parameter is ROS's own, or comes from a robot file with the top key /**."""
     if name.startswith("qos_overrides.") or node.has_parameter(name):
         return True
     return "." in name or name in {EFFECTS, *(item.name for item in robot_file.PARAMETERS)}
@@ -63,14 +63,14 @@ def _unknown(name: str, known: list[str]) -> str:
 
 
 def _told(default: Value | None) -> str:
-    """A default as YAML has it."""
+    """A default value in YAML notation."""
     if isinstance(default, tuple):
         return f"[{', '.join(default)}]"
     return str(default).lower() if isinstance(default, bool) else str(default)
 
 
 def table(parameters: Sequence[NodeParameter]) -> str:
-    """The parameters as Markdown, for the docs."""
+    """Table of the parameters in Markdown, for the docs."""
     lines = ["| parameter | type | default | unit | what it is |", "|---|---|---|---|---|"]
     for item in parameters:
         says = item.says

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How things stand, for /diagnostics and the log."""
+"""Status messages for /diagnostics and the log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 def diagnostic(
     level: bytes, name: str, words: str, values: Mapping[str, object], of: str = "wheel encoders"
 ) -> DiagnosticStatus:
-    """A status; `of` is the hardware."""
+    """Create a status; `of` is the hardware."""
     return DiagnosticStatus(
         level=level,
         name=name,
@@ -24,9 +24,9 @@ def diagnostic(
 
 
 def tell(log: Any, words: str, *, fine: bool) -> None:
-    """Say it, as a warning where not all is well.
+    """Log a message, as a warning unless all is well.
 
-    In two lines, because rclpy knows a logging call by its line and its severity.
+    In two statements, because rclpy identifies a logging call by its line and severity.
     """
     if fine:
         log.info(words)

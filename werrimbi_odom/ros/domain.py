@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""ROS domains that nobody else on this machine hears, for demos and tests."""
+"""Exclusive ROS domains for demos and tests on this machine."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from typing import TextIO
 from werrimbi_odom.errors import InputError
 
 DOMAINS = range(1, 102)
-"""All that every operating system has ports for, but 0, in which everybody is."""
+"""Domains with ports on every operating system, except the default 0."""
 
 
 def free_domain() -> tuple[int, TextIO]:
-    """A ROS domain that no other demo or test on this machine uses while the file stays open.
+    """Reserve a ROS domain for as long as the returned file stays open.
 
     Raises
     ------
     InputError
-        When all are in use.
+        If all are in use.
     """
     for domain in DOMAINS:
         path = Path(tempfile.gettempdir()) / f"werrimbi_odom_ros_domain_{domain}"
         try:
             lock = path.open("a", encoding="ascii")
-        except OSError:  # another user's
+        except OSError:  # owned by another user
             continue
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

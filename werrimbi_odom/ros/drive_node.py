@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Drives a manoeuvre by cmd_vel, in closed loop on the odometry, within limits that a user gives.
+"""Drives a manoeuvre through cmd_vel, in closed loop on the odometry, within user-given limits.
 
     ros2 run werrimbi_odom drive_node --ros-args -p manoeuvre:=square -p area_radius:=4.0
     ros2 service call /drive_node/start std_srvs/srv/Trigger
 
-It judges nothing itself: `werrimbi_odom.driving.driver.Driver` says when to move, and when to stop.
+All decisions are made by `werrimbi_odom.driving.driver.Driver`: when to move, and when to stop.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 TICK = 0.02
-"""Seconds between two looks at the time."""
+"""Period of the timer [s]."""
 HOLD = 1.0
-"""Seconds for which zeros are repeated after a drive; then `cmd_vel` is left to others."""
+"""Time for which zeros are repeated after a drive [s]; then `cmd_vel` is free for others."""
 UNNAMED = "_NODE_NAME_UNKNOWN_"
-"""What rmw calls a node whose publisher was found before its name."""
+"""Name that rmw gives to a node while only its publisher has been discovered."""
 LEVELS = {
     "waiting": DiagnosticStatus.OK,
     "driving": DiagnosticStatus.OK,
@@ -57,12 +57,12 @@ LEVELS = {
 
 
 class DriveNode(Node):  # type: ignore[misc]
-    """A Driver on topics and services.
+    """A `Driver` behind topics and services.
 
     Raises
     ------
     InputError
-        When a parameter is wrong, or no area is given.
+        If a parameter is invalid, or no area is given.
     """
 
     def __init__(self) -> None:
@@ -102,7 +102,7 @@ class DriveNode(Node):  # type: ignore[misc]
             f"{full_name(self)}/start, and shows the path on {full_name(self)}/path"
         )
 
-    # ------------------------------------------------------------------------- what comes in
+    # ------------------------------------------------------------------------- subscriptions
 
     def _on_odometry(self, message: Any) -> None:
         driver, now = self._driver, time.monotonic()
@@ -131,7 +131,7 @@ class DriveNode(Node):  # type: ignore[misc]
             self._after()
 
     def _tick(self) -> None:
-        """Look at the time and at who else is there; repeat zeros after a drive."""
+        """Check time and other publishers; repeat zeros after a drive."""
         driver, now = self._driver, time.monotonic()
         if driver.state == "driving":
             others = self._others()
@@ -146,7 +146,7 @@ class DriveNode(Node):  # type: ignore[misc]
         self._records.look()
         self._show(again=False)
 
-    # ------------------------------------------------------------------------- asked for
+    # ------------------------------------------------------------------------- services
 
     def _on_start(self, _: Any, response: Any) -> Any:
         asked = time.monotonic()
@@ -189,7 +189,7 @@ class DriveNode(Node):  # type: ignore[misc]
         return response
 
     def _stop(self, why: str) -> None:
-        """Zeros at once, whatever was before."""
+        """Send zeros at once."""
         was_driving = self._driver.state == "driving"
         self._driver.stop(why)
         if was_driving:
@@ -197,7 +197,7 @@ class DriveNode(Node):  # type: ignore[misc]
         self._after()
 
     def farewell(self) -> None:
-        """Stop, for good: what to do before the node ends."""
+        """Stop the robot before the node ends."""
         if self._driver.state == "driving":
             self._stop("told to end (Ctrl-C)")
             until = time.monotonic() + 0.3
@@ -206,7 +206,7 @@ class DriveNode(Node):  # type: ignore[misc]
                 time.sleep(TICK)
         self._records.close()
 
-    # ------------------------------------------------------------------------- out
+    # ------------------------------------------------------------------------- publications
 
     def _send(self, command: Command | None) -> None:
         if command is None:
@@ -222,7 +222,7 @@ class DriveNode(Node):  # type: ignore[misc]
             self._commands.publish(twist)
 
     def _after(self) -> None:
-        """Say how a drive ended, once."""
+        """Report the end of a drive, once."""
         driver = self._driver
         if driver.state == self._told:
             return
@@ -242,7 +242,7 @@ class DriveNode(Node):  # type: ignore[misc]
         return f"{driver.plan.name} takes {least:.0f} s; {self._records.words()}"
 
     def _show(self, *, again: bool) -> None:
-        """Publish the path, where the robot stands elsewhere than when it was last shown."""
+        """Publish the path, if the robot moved since it was last shown."""
         driver = self._driver
         if driver.last is None or driver.state == "driving":
             return
@@ -277,7 +277,7 @@ class DriveNode(Node):  # type: ignore[misc]
     # ------------------------------------------------------------------------- set-up
 
     def _others(self) -> str:
-        """Who else commands the robot; "" if nobody."""
+        """Other publishers on the command topic, in words; "" if there are none."""
         topic = self._commands.topic_name
         if self.count_publishers(topic) <= 1:
             return ""
@@ -316,7 +316,7 @@ def _seconds(stamp: Stamp) -> float:
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop; returns the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return run(DriveNode, "drive_node", args, farewell=DriveNode.farewell)
 
 

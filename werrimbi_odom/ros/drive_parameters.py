@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters of drive_node, declared once."""
+"""Parameters of drive_node."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from werrimbi_odom.files.parameters import NodeParameter, Value
 from werrimbi_odom.ros.declaring import table
 
 FASTEST = 5.0
-"""More than this no drive needs [m/s], [rad/s]."""
+"""Upper limit of all speeds [m/s], [rad/s]."""
 
 
 def _length(name: str, says: str) -> NodeParameter:
@@ -135,18 +135,18 @@ PARAMETERS: tuple[NodeParameter, ...] = (
 
 
 def limits_of(values: Mapping[str, Value]) -> Limits:
-    """How fast, and how briskly."""
+    """Limits of speed and acceleration."""
     names = ("max_vel_x", "max_vel_theta", "acc_lim_x", "acc_lim_theta")
     return Limits(*(_number(values, name) for name in names))
 
 
 def area_of(values: Mapping[str, Value]) -> Area:
-    """Where the robot must stay.
+    """Area in which the robot must stay.
 
     Raises
     ------
     InputError
-        When no area is given, or not all of a rectangle.
+        If no area is given, or not all sides of a rectangle.
     """
     sides = {name: _number(values, f"area_{name}") for name in ("ahead", "behind", "left", "right")}
     radius = _number(values, "area_radius")
@@ -164,7 +164,7 @@ def area_of(values: Mapping[str, Value]) -> Area:
 
 
 def watch_of(values: Mapping[str, Value]) -> Watch:
-    """When to stop."""
+    """Conditions that stop the robot."""
     return Watch(
         odom_timeout=_number(values, "odom_timeout"),
         deviation=_number(values, "max_deviation"),
@@ -174,12 +174,12 @@ def watch_of(values: Mapping[str, Value]) -> Watch:
 
 
 def chosen_plan(values: Mapping[str, Value]) -> ManoeuvrePlan:
-    """What to drive.
+    """Manoeuvre to drive.
 
     Raises
     ------
     InputError
-        When the diagnosis cannot be used.
+        If the diagnosis file is not usable.
     """
     size = _number(values, "size")
     if values["diagnosis"]:

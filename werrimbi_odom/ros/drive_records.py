@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is recorded of the drives of drive_node, and what is said of it."""
+"""Recording of the drives of drive_node, and the messages about it."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.ros.bagging import Bagging
 
 LINGER = 0.5
-"""Seconds for which what comes after a drive is still recorded."""
+"""Time for which recording continues after a drive [s]."""
 
 
 class Records:
-    """A bag for each drive, where one is wanted.
+    """Records a bag for each drive, if requested.
 
     Parameters
     ----------
     node : Node
-        That drives.
+        The node that drives.
     values : mapping
         Its parameters.
 
     Raises
     ------
     InputError
-        When rosbags is needed and not installed.
+        If rosbags is needed and not installed.
     """
 
     def __init__(self, node: Node, values: Mapping[str, Value]) -> None:
@@ -45,15 +45,15 @@ class Records:
         self._bag: Bagging | None = None
         self._ends = math.inf
         if self._folder:
-            known_types()  # now: a robot that is to start does not wait for it
+            known_types()  # load it now, so that no start has to wait for it
 
     def begin(self, name: str) -> None:
-        """Record a drive, if that is wanted.
+        """Start recording a drive, if requested.
 
         Raises
         ------
         InputError
-            When it cannot be written.
+            If the bag cannot be written.
         """
         self.close()
         if self._folder:
@@ -61,22 +61,22 @@ class Records:
             self._bag = Bagging(self._node, bag, self._topics)
 
     def ending(self) -> None:
-        """Record on for a little while."""
+        """Continue recording for `LINGER`."""
         self._ends = time.monotonic() + LINGER
 
     def look(self) -> None:
-        """Close the bag when that is over."""
+        """Close the bag once that time is over."""
         if time.monotonic() > self._ends:
             self.close()
 
     def close(self) -> None:
-        """End the recording now."""
+        """Stop recording now."""
         if self._bag is not None:
             self._bag.close()
         self._bag, self._ends = None, math.inf
 
     def words(self) -> str:
-        """Where it is recorded, or how it can be."""
+        """Where the drive is recorded, or how to record it."""
         if self._bag is not None:
             return f"recorded in {self._bag.folder}: {' '.join(self._bag.topics)}"
         if self._folder:
@@ -86,7 +86,7 @@ class Records:
         return f"to record it: ros2 bag record -s mcap -o BAG {topics}"
 
     def next_command(self) -> str:
-        """What looks at the recording."""
+        """The command that diagnoses the recording."""
         bag = str(self._bag.folder) if self._bag else "BAG"
         ticks, reference = (
             next((each for each in self._topics if each.endswith(name)), name)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the robot is and how surely, in words and plain units for `ros2 topic echo`."""
+"""The estimate and its uncertainty as text, for `ros2 topic echo`."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ def status_of(
     distance: float,
     mean_shift: tuple[float, float] | None = None,
 ) -> DiagnosticStatus:
-    """The estimate in words.
+    """Create a status message from the estimate.
 
     Parameters
     ----------
     name : str
-        Of the status.
+        Name of the status.
     pose, covariance
         Present pose in the odometry frame.
     piece : Piece
-        The piece being driven.
+        The open piece.
     distance : float
         Travel since the start [m].
     mean_shift : (float, float), optional
-        Mean of the true position less the pose, where exact moments are carried [m].
+        Mean of the true position minus the pose, with exact moments [m].
     """
     along, across = sigmas_of_robot(covariance, pose.yaw)
     heading = math.degrees(math.sqrt(covariance.yawyaw))
@@ -75,12 +75,12 @@ def sigmas_of_robot(covariance: PoseCovariance[float], yaw: float) -> tuple[floa
 
 
 def length_in_words(length: float) -> str:
-    """A standard deviation in the unit in which it is easiest to read."""
+    """A standard deviation in a convenient unit."""
     return f"{length:.3f} m" if length >= 1.0 else f"{1e3 * length:.1f} mm"
 
 
 def piece_in_words(piece: Piece) -> str:
-    """Such as "arc 1.57 m, 90.0 deg to the left"."""
+    """Describe a piece, such as "arc 1.57 m, 90.0 deg to the left"."""
     side = "left" if piece.turn >= 0.0 else "right"
     turn = f"{abs(math.degrees(piece.turn)):.1f} deg to the {side}"
     if piece.kind == "spin":

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Who we are, and who else is there: publishers on a topic, other nodes of our name."""
+"""Other nodes in the ROS graph: publishers on a topic, nodes with the same name."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ import time
 from rclpy.node import Node
 
 KILLED = 21.0
-"""Seconds after which company is told: DDS lists a killed node for 20 s beside its successor."""
+"""Delay before others are reported [s]: DDS lists a killed node for 20 s."""
 
 
 def full_name(node: Node) -> str:
-    """Name with namespace, as the diagnostics of several robots need it to be told apart."""
+    """Name with namespace; it distinguishes the diagnostics of several robots."""
     return str(node.get_fully_qualified_name().lstrip("/"))
 
 
 class Company:
-    """Others where one should be alone, once they have been there for a while.
+    """Detects publishers and nodes that should not exist, once they have lasted for a while.
 
     Parameters
     ----------
     node : Node
-        Whose name should be its own.
+        Its name should be unique.
     topics : tuple of str
-        That should have one publisher each.
+        Topics that should have one publisher each.
     """
 
     def __init__(self, node: Node, topics: tuple[str, ...]) -> None:
         self.crowded: frozenset[str] = frozenset()
-        """Topics that had several publishers at the last look."""
+        """Topics that had several publishers at the last check."""
         self._node = node
         self._topics = topics
         self._since: dict[str, float] = {}
 
     def look(self, *, others_welcome: bool = False) -> list[str]:
-        """What is wrong, in words; `others_welcome`: several publishers are none of it."""
+        """Describe conflicts; `others_welcome`: several publishers are no conflict."""
         node, now = self._node, time.monotonic()
         self.crowded = frozenset(each for each in self._topics if node.count_publishers(each) > 1)
         seen = [] if others_welcome else sorted(self.crowded)

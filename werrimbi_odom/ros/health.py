@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What becomes of the input, for /diagnostics: rates, refusals with their cause, silent wheels."""
+"""State of the input, for /diagnostics: rates, rejections with their cause, silent topics."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ _UNUSABLE = {
     "implausible": "faster than max_wheel_speed",
     "unpaired": "left and right farther apart than pairing_window",
 }
-"""Readings of which no odometry comes, by what is wrong where all of them are so."""
+"""Readings that yield no odometry, with the cause if all readings are of this kind."""
 MISSED = 0.1
-"""Share of what was published and never taken from which on there is a warning: no motion is lost
-with a message, and a radio link loses some."""
+"""Share of published messages that were not received from which a warning is given: a lost message
+loses no motion, and a radio link loses some."""
 
 
 class Health:
-    """Counts since the node was started, and what they mean for the last second.
+    """Counts since the start of the node, and their evaluation over the last second.
 
     Parameters
     ----------
     logger : rclpy logger
-        Told of the first refusal of each cause; the rest is only counted.
+        Logs the first rejection of each cause; the rest is only counted.
     topics : tuple of str
-        Resolved names of the topics that must keep talking.
+        Resolved names of the required topics.
     silent_after : float
         Time without a message [s] after which a topic counts as silent.
     """
@@ -65,7 +65,7 @@ class Health:
         self._reported_at = time.monotonic()
 
     def hear(self, topic: int, info: Mapping[str, Any], *, ours: bool = True) -> None:
-        """Note that a message has arrived, and what DDS says about it."""
+        """Count a message, with its DDS sequence number."""
         self._numbers[topic].take(info.get("publication_sequence_number"))
         if not ours:
             self.foreign += 1
@@ -74,19 +74,19 @@ class Health:
         self._heard_at[topic] = time.monotonic()
 
     def refuse(self, cause: str, detail: str) -> None:
-        """Note that an input message could not be used."""
+        """Count an input message that was rejected."""
         self._note(self._refused, f"input refused: {cause}", cause, detail)
 
     def refuse_pose(self, cause: str, detail: str) -> None:
-        """Note that a message on set_pose could not be used."""
+        """Count a message on set_pose that was rejected."""
         self._note(self._refused_poses, f"set_pose refused: {cause}", cause, detail)
 
     def refuse_to_learn(self, cause: str, detail: str) -> None:
-        """Note that a message of the topic that is learnt from could not be used."""
+        """Count a rejected message of the topic for phase estimation."""
         self._note(self._not_learnt, f"not learnt from: {cause}", cause, detail)
 
     def lose(self, event: Any) -> None:
-        """Note that DDS has lost input messages."""
+        """Store the number of input messages lost by DDS."""
         self._lost = event.total_count
 
     def report(
@@ -98,22 +98,22 @@ class Health:
         crowded: Collection[str] = (),
         wrong: Sequence[str] = (),
     ) -> DiagnosticStatus:
-        """How things stand, and at which rate they went since the last report.
+        """Create the status, with the rates since the last report.
 
         Parameters
         ----------
         name : str
-            Of the status.
+            Name of the status.
         tally : EncoderTally
-            What the model's encoder made of the readings.
+            Tally of the model's encoder.
         inputs : mapping
-            Further counts of the input.
+            Further counters of the input.
         effects : mapping, optional
-            What each physical effect runs with.
+            Description of each physical effect and its values.
         crowded : collection of str
-            Topics of the input that have several publishers.
+            Input topics with several publishers.
         wrong : sequence of str
-            What else is wrong, in words.
+            Other problems, in words.
         """
         now = time.monotonic()
         for topic, numbers in zip(self._topics, self._numbers, strict=True):
@@ -162,7 +162,7 @@ class Health:
     def _verdict(
         self, now: float, new: Mapping[str, int], wrong: Sequence[str]
     ) -> tuple[bytes, str]:
-        """Level and words; no words when all is well."""
+        """Level and message; no message if all is well."""
         silences = [now - at for at in self._heard_at]
         silent = [
             f"{topic} {_for(silence)}"
@@ -180,7 +180,7 @@ class Health:
             for key, n in new.items()
             if n > 0 and key.startswith(_REFUSALS)
         ]
-        # Of one message more no odometry comes: the first, with which an interval only begins.
+        # One message more than answered is normal: the first one only starts an interval.
         unanswered = (a - b for a, b in zip(self._heard, self._answered, strict=True))
         if not new["published"] and min(unanswered) > 1:
             useless = [
@@ -202,9 +202,9 @@ class Health:
 
 
 class _Numbers:
-    """The numbers that a topic's publisher gave its messages: one left out was never taken.
+    """Sequence numbers of a topic's publisher; a gap is a message that was not received.
 
-    DDS drops the oldest of what waits where more comes than is taken, and reports no loss.
+    If messages arrive faster than they are taken, DDS drops the oldest and reports no loss.
     """
 
     def __init__(self) -> None:
@@ -213,7 +213,7 @@ class _Numbers:
         self._began_anew = False
 
     def take(self, number: int | None) -> None:
-        """Note a number; None where the middleware tells none."""
+        """Add a number; None if the middleware gives none."""
         if number is None:
             return
         if self._last is not None and number > self._last:
@@ -223,7 +223,7 @@ class _Numbers:
         self._last = number
 
     def missed(self, alone: bool) -> int:
-        """Messages left out since the last call; of several publishers nobody can say."""
+        """Messages missed since the last call; unknown, so 0, with several publishers."""
         missed = self._left_out if alone and not self._began_anew else 0
         self._left_out, self._began_anew = 0, False
         return missed

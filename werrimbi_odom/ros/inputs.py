@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""From whatever the driver publishes to a stamp and two counters.
+"""Converts the driver's messages to a stamp and two counters.
 
-Each kind of input is a class; `subscribed` picks the one of the robot file. What cannot be read is
-refused with its cause and forgotten: counters are cumulative, so the next good message holds all.
+Each kind of input is a class; `subscribed` chooses that of the robot file. Invalid messages are
+rejected with their cause. Counters are cumulative, so the next valid message contains all motion.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.wheel_side import COUNTER_LIMIT, WheelSide
 
 Take = Callable[[Stamp, float, float], None]
-"""What is done with a reading: stamp, left and right counts."""
+"""Callback for a reading: stamp, left and right counts."""
 Info = Mapping[str, Any]
-"""What DDS says about a message: stamps of sending and arrival [ns]."""
+"""DDS information on a message: source and reception stamps [ns]."""
 
 
 def sensor_qos() -> QoSProfile:
-    """Best effort and volatile match every publisher; the depth is 0.1 s of 1 kHz."""
+    """Best effort and volatile match every publisher; the depth is 0.1 s at 1 kHz."""
     return QoSProfile(
         depth=100,
         reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -50,7 +50,7 @@ def sensor_qos() -> QoSProfile:
 
 @dataclass(frozen=True)
 class InputOptions:
-    """What every kind of input needs."""
+    """Options common to all kinds of input."""
 
     node: Node
     values: Mapping[str, Value]
@@ -59,10 +59,10 @@ class InputOptions:
 
 
 def robot_at_counters(values: Mapping[str, Value]) -> Robot:
-    """The robot behind the counters that the inputs hand on.
+    """Robot parameters for the counters that the inputs deliver.
 
-    Counters of several wheels are unwrapped before they are averaged. A counter that comes as an
-    Int32 cannot but wrap at 32 bits.
+    Counters of several wheels are unwrapped before they are averaged. A counter sent as Int32
+    always wraps at 32 bits.
     """
     robot = robot_of(values)
     if _averages(values):
@@ -73,7 +73,7 @@ def robot_at_counters(values: Mapping[str, Value]) -> Robot:
 
 
 def topics_of(values: Mapping[str, Value]) -> tuple[str, ...]:
-    """Topics that a kind of input reads, before remapping."""
+    """Topics of a kind of input, before remapping."""
     return {
         "joint_state": ("joint_states",),
         "int32_pair": ("left_ticks", "right_ticks"),
@@ -83,7 +83,7 @@ def topics_of(values: Mapping[str, Value]) -> tuple[str, ...]:
 
 
 def type_of(values: Mapping[str, Value]) -> type:
-    """The messages of a kind of input."""
+    """Message type of a kind of input."""
     kinds: dict[str, type] = {
         "joint_state": JointState,
         "int32_pair": Int32,
@@ -94,12 +94,12 @@ def type_of(values: Mapping[str, Value]) -> type:
 
 
 def subscribed(wiring: InputOptions) -> JointStates | Pair | TicksArray:
-    """Subscribe to the input that the robot file names.
+    """Subscribe to the input named in the robot file.
 
     Raises
     ------
     InputError
-        When a QoS override cannot be used.
+        If a QoS override is invalid.
     """
     kind = type_of(wiring.values)
     if kind is JointState:
@@ -108,9 +108,9 @@ def subscribed(wiring: InputOptions) -> JointStates | Pair | TicksArray:
 
 
 class JointStates:
-    """Wheel angles, or counts, among any other joints and in any order (sensor_msgs/JointState).
+    """Wheel angles or counts among any other joints, in any order (sensor_msgs/JointState).
 
-    Messages without any of our joints are not for us.
+    Messages without any of the wheel joints are ignored.
     """
 
     def __init__(self, wiring: InputOptions) -> None:
@@ -127,7 +127,7 @@ class JointStates:
         _subscribe(wiring, JointState, "joint_states", self._arrived)
 
     def tally(self) -> dict[str, int]:
-        """What happened to single wheels, where a side has several."""
+        """Wraps and resets of single wheels, if a side has several."""
         if all(len(names) == 1 for names in self._wanted):
             return {}
         return {
@@ -138,7 +138,7 @@ class JointStates:
     def _arrived(self, message: Any, info: Info) -> None:
         if message.name != self._names:
             self._find(message.name)
-        # Of other joints alone: from the driver of an arm, say, on the same topic.
+        # Other joints only: for example from an arm's driver on the same topic.
         ours = len(self._absent) < sum(map(len, self._wanted))
         self._health.hear(0, info, ours=ours)
         if not ours:
@@ -172,7 +172,7 @@ class JointStates:
         self._take(stamp, left, right)
 
     def _find(self, names: list[str]) -> None:
-        """Where our wheels stand in a message; looked up anew only when its names change."""
+        """Find the wheels in a message; repeated only when its joint names change."""
         self._names = list(names)
         self._absent = [name for side in self._wanted for name in side if name not in names]
         self._twice = [name for side in self._wanted for name in side if names.count(name) > 1]
@@ -182,7 +182,7 @@ class JointStates:
 
 
 class Pair:
-    """Two topics, a wheel each (std_msgs/Int32 or Int64), paired by arrival; see `Pairing`."""
+    """Two topics, one per wheel (std_msgs/Int32 or Int64), paired by arrival; see `Pairing`."""
 
     def __init__(self, wiring: InputOptions, message_type: type) -> None:
         self._take, self._health = wiring.take, wiring.health
@@ -193,7 +193,7 @@ class Pair:
             _subscribe(wiring, message_type, topic, self._listener(side))
 
     def tally(self) -> dict[str, int]:
-        """Counts that found no partner, and those that came before theirs."""
+        """Numbers of counts without a partner, and of counts that preceded theirs."""
         return {"unpaired": self._pairing.unpaired, "earlier of a pair": self._pairing.earlier}
 
     def _listener(self, side: int) -> Callable[[Any, Info], None]:
@@ -218,7 +218,7 @@ class TicksArray:
         _subscribe(wiring, Int64MultiArray, "ticks", self._arrived)
 
     def tally(self) -> dict[str, int]:
-        """Nothing happens to them here."""
+        """No counters of its own."""
         return {}
 
     def _arrived(self, message: Any, info: Info) -> None:
@@ -231,22 +231,22 @@ class TicksArray:
 
 
 class ArrivalStamps:
-    """Stamps for messages that carry none: when they arrived, by the node's clock."""
+    """Stamps for messages without one: arrival time by the node's clock."""
 
     def __init__(self, node: Node) -> None:
         self._clock: Clock = node.get_clock()
 
     def of(self, info: Info) -> Stamp:
-        """When a message arrived."""
+        """Arrival time of a message."""
         if self._clock.ros_time_is_active:
             return self._clock.now().to_msg()
         return Time(nanoseconds=arrival_of(info)).to_msg()
 
 
 def arrival_of(info: Info) -> int:
-    """When a message arrived, by the system's clock [ns].
+    """Arrival time of a message by the system clock [ns].
 
-    What DDS noted comes before now, which is after the message has waited for its turn.
+    The time recorded by DDS precedes the message's wait in the queue.
     """
     return info["received_timestamp"] or time.time_ns()
 
@@ -276,8 +276,8 @@ def _subscribe(
             topic,
             arrived,
             sensor_qos(),
-            # Every default callback for a QoS event costs the executor some 10 µs at each message,
-            # and best effort and volatile there is no QoS to be incompatible with.
+            # Every default callback for a QoS event costs the executor some 10 µs per message, and
+            # with best effort and volatile no QoS can be incompatible.
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=wiring.health.lose, use_default_callbacks=False
             ),
@@ -287,7 +287,7 @@ def _subscribe(
 
 @contextmanager
 def qos_errors_of(topic: str) -> Iterator[None]:
-    """Turn what rclpy raises for a wrong QoS override into an error that names the topic."""
+    """Convert exceptions of rclpy on an invalid QoS override to one that names the topic."""
     try:
         yield
     except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What each drive has anew (the phase of an eccentric wheel), learnt live from a measured heading.
+"""Estimates per-run phases (of an eccentric wheel) live from a measured heading.
 
-The mathematics is in `werrimbi_odom.model.phases`; here are the subscription, and when to tell.
+The estimator is `werrimbi_odom.model.phases`; this module subscribes, and decides when to report.
 """
 
 from __future__ import annotations
@@ -27,41 +27,41 @@ from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 FINE = 0.03
-"""Standard deviation of a phase [rad] beyond which nothing is gained by telling it anew."""
+"""Standard deviation of a phase [rad] below which further updates gain nothing."""
 
 
 FASTEST = 1e4
-"""Yaw rate [rad/s] beyond which a gyro is broken: no body of a robot stands it."""
+"""Yaw rate [rad/s] beyond which a gyro is broken."""
 
 
 class NoLearning:
-    """Where nothing is to be learnt, or from nothing."""
+    """No phase to estimate, or no topic to estimate it from."""
 
     topic = ""
 
     def after(self, tracker: LiveOdometer) -> None:
-        """Take the reading that the tracker has just taken."""
+        """Process the last reading of the odometer."""
 
     def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
-        """Go on with other values of the robot."""
+        """Change the parameter values of the robot."""
 
     def news(self) -> dict[str, float]:
-        """Parameters that are known now, or much better than when they were last told."""
+        """Parameters that are newly known, or much better than last reported."""
         return {}
 
     def phase(self, effect: str) -> Phase | None:
-        """What is known so far of an effect's phase; None where it is not to be learnt."""
+        """Current estimate of an effect's phase; None if it is not estimated."""
         return None
 
 
 class Learning(NoLearning):
-    """Learns phases from a topic.
+    """Estimates phases from a topic.
 
     Parameters
     ----------
-    wiring : Wiring
+    wiring : InputOptions
     robot : Robot
-        With effects to be learnt.
+        With effects whose phase is unknown.
     topic, kind : str
         `learn_from_topic` and `learn_from_type`.
     """
@@ -75,11 +75,11 @@ class Learning(NoLearning):
         self._health = wiring.health
         self._gyro = UprightGyro(topic, self._logger)
         self._told: dict[str, float] = {}
-        """Standard deviation with which a phase was last told, by effect [rad]."""
+        """Standard deviation when a phase was last reported, by effect [rad]."""
         self._settled: set[str] = set()
-        """Effects whose phase is fine, or set by somebody else."""
+        """Effects whose phase is precise enough, or set by someone else."""
         self._telling: set[str] = set()
-        """Parameters that are about to be set because we told them."""
+        """Parameters that are about to be set by the node itself."""
         message_type, see = {
             "imu": (Imu, self._see_imu),
             "pose_stamped": (PoseStamped, self._see_pose),
@@ -101,13 +101,13 @@ class Learning(NoLearning):
             )
 
     def after(self, tracker: LiveOdometer) -> None:
-        """Take the reading that the tracker has just taken."""
+        """Process the last reading of the odometer."""
         self._tracker = tracker
         if tracker.driven_step is not None and not self._done:
             self._learner.step(tracker.seconds(tracker.stamp), tracker.driven_step)
 
     def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
-        """Go on with other values of the robot; a phase that somebody else sets is settled."""
+        """Change the parameter values of the robot; a phase set by someone else is final."""
         self._learner.retune(robot)
         for phase in self._learner.phases():
             if _key(phase) in changed and _key(phase) not in self._telling:
@@ -119,7 +119,7 @@ class Learning(NoLearning):
         return len(self._settled) == len(self._learner.effects)
 
     def news(self) -> dict[str, float]:
-        """Parameters that are known now, or twice as well as when they were last told."""
+        """Parameters that are newly known, or twice as precisely as last reported."""
         if self._done:
             return {}
         found = {}
@@ -139,12 +139,12 @@ class Learning(NoLearning):
         return found
 
     def phase(self, effect: str) -> Phase | None:
-        """What is known so far of an effect's phase; None where it is not to be learnt."""
+        """Current estimate of an effect's phase; None if it is not estimated."""
         found = (phase for phase in self._learner.phases() if phase.effect == effect)
         return next(found, None)
 
     def _see_imu(self, message: Any) -> None:
-        if message.angular_velocity_covariance[0] < 0.0:  # REP-145: it does not measure this
+        if message.angular_velocity_covariance[0] < 0.0:  # REP-145: the Imu does not measure this
             self._health.refuse_to_learn("no angular velocity", "the Imu measures none")
             return
         rate = self._gyro.rate(message)
@@ -177,7 +177,7 @@ class Learning(NoLearning):
 
 
 def learning_of(wiring: inputs.InputOptions, robot: Robot) -> NoLearning:
-    """What the robot file asks for, where there is anything to learn."""
+    """Create what the robot file requests, if any phase is unknown."""
     topic, log = str(wiring.values["learn_from_topic"]), wiring.node.get_logger()
     learnt = [applied.name for applied in learnable(robot)]
     others = {
@@ -200,7 +200,7 @@ def learning_of(wiring: inputs.InputOptions, robot: Robot) -> NoLearning:
 
 
 def told(effects: tuple[AppliedEffect, ...], learning: NoLearning) -> dict[str, str]:
-    """Which effects run, and with what, in words."""
+    """Description of each effect and its values."""
     return {f"effect {applied.name}": _words(applied, learning) for applied in effects}
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The model's odometer as a node needs it: ROS stamps, and values that change while it runs."""
+"""The model's odometer with ROS stamps, and with parameters that may change at run time."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from werrimbi_odom.ros.rehearsal import is_finite
 
 
 class Finished(NamedTuple):
-    """A piece that has come to its end, and the covariance of the pose there."""
+    """A finished piece, and the covariance of the pose at its end."""
 
     piece: Piece
     covariance: PoseCovariance[float]
 
 
 class LiveOdometer:
-    """Where the robot is, reading by reading.
+    """Pose of the robot, reading by reading.
 
     Parameters
     ----------
@@ -41,18 +41,18 @@ class LiveOdometer:
     def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
         self.pose = Pose()
         self.heading = 0.0
-        """All that was turned [rad], wherever the pose was set in between."""
+        """Cumulative turn [rad], not affected by `set_pose`."""
         self._known = CERTAIN
         self.stamp = Stamp()
-        """Of the last reading that was taken."""
+        """Stamp of the last accepted reading."""
         self._odometer = Odometer(robot, tolerance, limits)
         self._origin: int | None = None
         self.started = False
-        """Whether any reading has been taken."""
+        """Whether any reading was accepted."""
 
     @property
     def tally(self) -> EncoderTally:
-        """What became of the readings."""
+        """Counts of accepted and rejected readings."""
         return self._odometer.tally
 
     @property
@@ -62,27 +62,27 @@ class LiveOdometer:
 
     @property
     def piece(self) -> Piece:
-        """The piece being driven."""
+        """The open piece."""
         return self._odometer.piece
 
     @property
     def covariance(self) -> PoseCovariance[float]:
-        """Of the present pose."""
+        """Covariance of the present pose."""
         return self._odometer.covariance()
 
     @property
     def mean_shift(self) -> tuple[float, float] | None:
-        """Mean of the true position less the pose (x, y) [m]; known by exact moments alone."""
+        """Mean of the true position minus the pose (x, y) [m]; None without exact moments."""
         return self._odometer.errors().mean_shift
 
     def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
-        """The estimate after a reading; None for the first and for one that is refused.
+        """Process a reading; return None for the first, and for one that is rejected.
 
         Raises
         ------
         InputError
-            When a number comes out that is none, as of an effect of somebody's own at a speed that
-            nothing has; the pose stays where it was, as if the wheels had stood.
+            If the result is not finite, for example from a user's effect at an impossible speed.
+            The pose is then unchanged.
         """
         if self._origin is None:
             self._origin = stamp.sec
@@ -105,9 +105,9 @@ class LiveOdometer:
         return estimate
 
     def seconds(self, stamp: Stamp) -> float:
-        """A stamp in the odometer's time [s]; not a number before the first reading.
+        """Convert a stamp to the odometer's time [s]; NaN before the first reading.
 
-        It counts from the first stamp: of the seconds since 1970 a float resolves but 0.2 µs.
+        Time starts at the first stamp: since 1970, a float resolves only 0.2 µs.
         """
         if self._origin is None:
             return math.nan
@@ -115,24 +115,24 @@ class LiveOdometer:
 
     @property
     def driven_step(self) -> DrivenStep | None:
-        """The latest step as effects see it; None where the robot has none."""
+        """The latest step as effects see it; None for a robot without effects."""
         return self._odometer.driven_step
 
     def finished_by(self, estimate: Estimate) -> Finished | None:
-        """The piece that an estimate, the last one, brought to its end."""
+        """The piece that ended with this estimate, which must be the last one."""
         if estimate.closed is None:
             return None
         return Finished(estimate.closed, self._odometer.piece.covariance_start)
 
     def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Finished | None:
-        """Go on from another pose; returns the piece that this ends, if it had any length."""
+        """Continue from another pose; return the piece that ends here, if it is not empty."""
         end = self.covariance
         piece = self._odometer.set_pose(pose, covariance)
         self.pose, self._known = pose, covariance
         return Finished(piece, end) if any(piece.travel) else None
 
     def grow(self, missed: Missed) -> Finished | None:
-        """Be less sure from here on; returns the piece that this ends, if it had any length."""
+        """Increase the covariance; return the piece that ends here, if it is not empty."""
         known, yaw = self.covariance, self.pose.yaw
         cos, sin = math.cos(yaw), math.sin(yaw)
         more = known._replace(
@@ -144,17 +144,17 @@ class LiveOdometer:
         return self.set_pose(self.pose, more)
 
     def reset(self) -> None:
-        """Go on from the origin, with no distance driven."""
+        """Continue from the origin, with zero distance."""
         self.set_pose(Pose())
         self._odometer.distance = 0.0
 
     def retune(
         self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits
     ) -> Finished | None:
-        """Take other values for what follows; pose, covariance, counts and memory stay as they are.
+        """Change parameter values; pose, covariance, counts and state are kept.
 
-        Returns the piece that this ends, if it ended one that had any length. Counts must mean the
-        same as before: the resolution of the encoders cannot be changed.
+        Returns the piece that ends here, if any and not empty. The resolution of the encoders
+        cannot be changed.
         """
         covariance = self.covariance
         piece = self._odometer.retune(robot, tolerance, limits)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pieces driven, as markers for RViz: true arcs in three colours, with their error ellipses."""
+"""Pieces as markers for RViz: exact arcs in three colours, with their error ellipses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from werrimbi_odom.model.pose import Pose
 KEPT = 200
 """Pieces on display; each further one deletes the oldest."""
 
-# Blue, orange and reddish purple of Okabe and Ito, told apart with any colour vision.
+# Blue, orange and reddish purple of Okabe and Ito, distinguishable with any colour vision.
 COLOURS = {
     "line": (0.0, 0.447, 0.698),
     "arc": (0.902, 0.624, 0.0),
@@ -29,24 +29,24 @@ COLOURS = {
 }
 
 _SIGMAS_95 = math.sqrt(-2.0 * math.log(0.05))  # of a normal vector in the plane
-_CHORD = 0.1  # rad: an arc is drawn with a point every so often ...
-_MOST_POINTS = 128  # ... but with no more than these
-_FLAT = 1e-3  # m: thickness of an ellipse, and the least width that RViz draws
+_CHORD = 0.1  # rad: angle between the points of an arc ...
+_MOST_POINTS = 128  # ... but at most this many points
+_FLAT = 1e-3  # m: thickness of an ellipse, and the smallest width that RViz draws
 
 
 class PieceTrail:
     """The last pieces, and the messages that show them.
 
     A piece's path is in the namespace of its kind, its ellipse in "line ellipse" and so on, so that
-    RViz can show and hide them by kind; both have the piece's number. What is being driven is in
-    "open" and "open ellipse".
+    RViz can show and hide them by kind. Both have the piece's number. The open piece is in "open"
+    and "open ellipse".
 
     Parameters
     ----------
     frame : str
         Odometry frame.
     track : float
-        Distance of the wheels [m]: the size of everything that has none of its own.
+        Wheel separation [m]: the size of a spin, which has no radius of its own.
     """
 
     def __init__(self, frame: str, track: float) -> None:
@@ -59,18 +59,18 @@ class PieceTrail:
         return len(self._kept)
 
     def clear(self) -> None:
-        """Forget all pieces; numbers go on."""
+        """Delete all pieces; numbering continues."""
         self._kept.clear()
 
     def add(
         self, stamp: Stamp, piece: Piece, covariance: PoseCovariance[float], shown: bool
     ) -> MarkerArray | None:
-        """Keep a finished piece, and the covariance of the pose at its end.
+        """Store a finished piece, and the covariance of the pose at its end.
 
         Returns
         -------
         MarkerArray or None
-            What must be published for it, if it is to be shown.
+            The message to publish; None if `shown` is false.
         """
         oldest = self._kept.popleft() if len(self._kept) == KEPT else None
         self._kept.append((self._number, piece, covariance))
@@ -89,11 +89,11 @@ class PieceTrail:
     def unfinished(
         self, stamp: Stamp, piece: Piece, covariance: PoseCovariance[float]
     ) -> MarkerArray:
-        """The piece being driven, which each next message replaces."""
+        """The open piece; each message replaces the last."""
         return MarkerArray(markers=self._markers(stamp, "open", 0, piece, covariance))
 
     def everything(self, stamp: Stamp) -> MarkerArray:
-        """All pieces kept, after whatever the display held before."""
+        """All stored pieces; everything displayed before is deleted."""
         markers = [self._marker(stamp, "", 0, action=Marker.DELETEALL)]
         for number, piece, covariance in self._kept:
             markers += self._markers(stamp, piece.kind, number, piece, covariance)
@@ -131,7 +131,7 @@ class PieceTrail:
 
 
 def path_points(piece: Piece, track: float) -> list[tuple[float, float]]:
-    """Points on the path of a piece's middle; of a spin, on that of its right wheel."""
+    """Points on the path of the axle's midpoint; for a spin, on that of the right wheel."""
     turn = math.copysign(min(abs(piece.turn), 2.0 * math.pi), piece.turn)
     if piece.kind == "spin":
         radius, start = 0.5 * track, piece.start.yaw - 0.5 * math.pi
@@ -154,7 +154,7 @@ def end_of(piece: Piece) -> Pose:
 
 
 def ellipse_95(covariance: PoseCovariance[float]) -> tuple[float, float, float]:
-    """Semi-axes [m] of the ellipse that holds the position with 95 %, and the first one's angle."""
+    """Semi-axes [m] of the 95 % ellipse of the position, and the angle of the first."""
     middle = 0.5 * (covariance.xx + covariance.yy)
     half = 0.5 * (covariance.xx - covariance.yy)
     spread = math.hypot(half, covariance.xy)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Estimates as nav_msgs/Odometry, and poses out of geometry_msgs.
+"""Estimates as nav_msgs/Odometry, and poses from geometry_msgs.
 
-docs/node.md argues each entry of the covariances.
+docs/node.md explains each entry of the covariances.
 """
 
 from __future__ import annotations
@@ -21,11 +21,12 @@ from werrimbi_odom.model.slip import NOTHING, Missed
 from werrimbi_odom.ros import planar
 
 PLANAR_VARIANCE = 1e-6
-"""Of z, roll and pitch and of their rates, zero on a flat floor: (1 mm)², (1 mrad)², a second."""
+"""Variance of z, roll and pitch and of their rates, zero on a flat floor: (1 mm)², (1 mrad)², per
+second."""
 
-_OFF_UNIT = 1e-3  # by which the norm of a quaternion may differ from 1
+_OFF_UNIT = 1e-3  # tolerance of a quaternion's norm
 
-# Places in a 6 x 6 matrix, row by row, over (x, y, z, roll, pitch, yaw).
+# Indices in a 6 x 6 matrix, row by row, over (x, y, z, roll, pitch, yaw).
 _XX, _XY, _XYAW = 0, 1, 5
 _YX, _YY, _YYAW = 6, 7, 11
 _YAWX, _YAWY, _YAWYAW = 30, 31, 35
@@ -33,7 +34,7 @@ _OUT_OF_PLANE = (14, 21, 28)
 
 
 class OdometryMessage:
-    """The one message that is filled again for each estimate; publishing copies it.
+    """A message that is filled again for each estimate; publishing copies it.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ class OdometryMessage:
         self._message = Odometry()
         self._message.header.frame_id = odom_frame
         self._message.child_frame_id = base_frame
-        # Held, because each step from a message to what is in it is a call.
+        # Cached, because every access to a field of a message is a call.
         self._header = self._message.header
         self._position = self._message.pose.pose.position
         self._orientation = self._message.pose.pose.orientation
@@ -60,10 +61,10 @@ class OdometryMessage:
         self._translation = self._transform.transform.translation
 
     def filled(self, stamp: Stamp, estimate: Estimate, missed: Missed = NOTHING) -> Odometry:
-        """The message for an estimate, valid until the next call.
+        """Fill the message with an estimate; it is valid until the next call.
 
-        What was missed by wheels that slip makes the twist less sure, for filters that fuse it: by
-        as much as integrated over the interval gives the variance that the pose gains.
+        Detected wheel slip also increases the covariance of the twist, for filters that fuse it.
+        Integrated over the interval, the increase is the variance that the pose gains.
         """
         self._header.stamp = stamp
         self._position.x, self._position.y, yaw = estimate.pose
@@ -75,7 +76,7 @@ class OdometryMessage:
         return self._message
 
     def transform(self) -> TransformStamped:
-        """The pose that was filled in last as the transform between the frames, for /tf."""
+        """The pose that was filled in last, as a transform for /tf."""
         self._translation.x, self._translation.y = self._position.x, self._position.y
         return self._transform
 
@@ -91,8 +92,7 @@ class OdometryMessage:
         speed, cross, yaw_rate = estimate.twist_covariance
         speed, yaw_rate = speed * planar.UP, yaw_rate * planar.UP
         twist[_XX] = speed
-        # The wheels do not slide sideways, as surely as they do not slip along: the same patch of
-        # tyre holds both ways.
+        # Lateral and longitudinal slip are equally unlikely: the same contact patch resists both.
         twist[_YY] = speed
         twist[_YAWYAW] = yaw_rate
         twist[_XYAW] = twist[_YAWX] = cross
@@ -106,14 +106,14 @@ class OdometryMessage:
 def pose_from(
     message: PoseWithCovarianceStamped, odom_frame: str
 ) -> tuple[Pose, PoseCovariance[float]]:
-    """The planar pose in a message.
+    """Planar pose of a message.
 
     Raises
     ------
     InputError
-        When the frame is not the odometry frame, a number is not finite, the orientation is no
-        rotation about the vertical, or the covariance is none. The first argument is the cause, the
-        second the detail.
+        If the frame is not the odometry frame, a number is not finite, the orientation is not a
+        rotation about the vertical, or the covariance is invalid. The first argument is the cause,
+        the second the detail.
     """
     frame = message.header.frame_id
     if frame != odom_frame:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The node: counters in, odometry with its covariance out.
+"""The main node: counters in, odometry with its covariance out.
 
     odom_node --ros-args --params-file robot.yaml
 
-`OdomNode._take` is the whole way of a message; everything else is set-up and reports.
+`OdomNode._take` processes a message; everything else is set-up and reporting.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.transforms import transform_sender
 
 STATUS_PERIOD = 0.2
-"""Seconds from one ~/status to the next."""
+"""Period of ~/status [s]."""
 DIAGNOSTICS_EVERY = 5
-"""Times that ~/status comes for one /diagnostics."""
+"""Number of ~/status messages per message on /diagnostics."""
 
 
 class OdomNode(Node):  # type: ignore[misc]
@@ -53,7 +53,7 @@ class OdomNode(Node):  # type: ignore[misc]
     Raises
     ------
     InputError
-        When a parameter is missing, unknown or wrong; the message names all of them.
+        If a parameter is missing, unknown or invalid; the message names all of them.
     """
 
     def __init__(self) -> None:
@@ -97,15 +97,15 @@ class OdomNode(Node):  # type: ignore[misc]
             lambda changed: parameters.judged(self._changeable, self._settings, changed)
         )
         self.add_post_set_parameters_callback(self._on_parameters_set)
-        # The steady clock: /diagnostics must go on when simulated time stands still.
+        # The steady clock: /diagnostics must continue when simulated time stands still.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(STATUS_PERIOD, self._report, clock=steady)
         self._say_hello()
 
-    # ------------------------------------------------------------------------- a reading
+    # ------------------------------------------------------------------------- readings
 
     def _take(self, stamp: Stamp, left: float, right: float) -> None:
-        """The whole way of a message, from two counters to odometry."""
+        """Process a message, from two counters to odometry."""
         try:
             estimate = self._tracker.take(stamp, left, right)
         except InputError as error:
@@ -125,7 +125,7 @@ class OdomNode(Node):  # type: ignore[misc]
             self._keep(self._tracker.grow(missed))
 
     def _keep(self, finished: Finished | None) -> None:
-        """Add a piece to those that RViz shows; without a viewer nothing is drawn."""
+        """Add a piece to the trail for RViz; without a viewer, nothing is published."""
         if finished is None:
             return
         shown = self._trail.add(self._tracker.stamp, *finished, shown=self._viewers > 0)
@@ -182,7 +182,7 @@ class OdomNode(Node):  # type: ignore[misc]
             self._publish_diagnostics()
 
     def _greet_viewers(self) -> None:
-        """Show all pieces to whoever has begun to look, whatever its QoS."""
+        """Publish all pieces when a new viewer subscribes, whatever its QoS."""
         viewers = self._pieces.get_subscription_count()
         if viewers > self._viewers:
             self._show_all_pieces()
@@ -213,7 +213,7 @@ class OdomNode(Node):  # type: ignore[misc]
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
         effects = told(self._settings.effects, self._learning) | self._slip.told()
-        # Another driver on the topic may be that of an arm, whose joints come too.
+        # Another driver on the topic may be that of an arm, with other joints.
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
         self._foreign = self._health.foreign
         crowded = self._company.crowded
@@ -237,8 +237,8 @@ class OdomNode(Node):  # type: ignore[misc]
                 message_type,
                 topic,
                 QoSProfile(depth=depth),
-                # Every default callback for a QoS event costs the executor some 10 µs at each
-                # message. An incompatible subscriber warns of it on its own side.
+                # Every default callback for a QoS event costs the executor some 10 µs per message.
+                # An incompatible subscriber reports it on its own side.
                 event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
                 qos_overriding_options=overrides,
             )
@@ -262,7 +262,7 @@ class OdomNode(Node):  # type: ignore[misc]
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop; returns the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return run(OdomNode, "odom_node", args)
 
 

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The robot file as ROS parameters: refused whole when anything in it is wrong.
+"""The robot file as ROS parameters, rejected as a whole if any is invalid.
 
-Types, ranges and words come from `werrimbi_odom.files.parameters`; here they are only handed on.
+Types, ranges and descriptions come from `werrimbi_odom.files.parameters`.
 """
 
 from __future__ import annotations
@@ -43,42 +43,42 @@ CHANGEABLE = frozenset(
         "gap_duration",
     }
 )
-"""What is believed of the robot may be mended while it drives; how it is wired may not."""
+"""Parameters of the robot that may change at run time; how it is wired may not."""
 
 _QOS = "qos_overrides."
 
 Changeable = Mapping[str, table.NodeParameter]
-"""What may change while the node runs, by name."""
+"""Parameters that may change at run time, by name."""
 
 
 class Settings(NamedTuple):
-    """What is believed of the robot, and how it is wired."""
+    """Parameters of the robot and of its wiring, and its effects."""
 
     values: Mapping[str, Value]
     effects: tuple[AppliedEffect, ...]
 
     @property
     def robot(self) -> Robot:
-        """The robot behind the counters, with its effects."""
+        """Robot parameters for the counters, with the effects."""
         return replace(robot_at_counters(self.values), effects=self.effects)
 
     @property
     def tolerance(self) -> PieceTolerance:
-        """When pieces end."""
+        """Tolerances that end a piece."""
         return table.tolerance_of(self.values)
 
     @property
     def limits(self) -> EncoderLimits:
-        """When counters are doubted."""
+        """When counter readings are rejected."""
         return table.limits_of(self.values)
 
     def after(self, changes: Mapping[str, Value]) -> Settings:
-        """The settings with some of them changed.
+        """Return the settings with some values changed.
 
         Raises
         ------
         ValueError
-            When the node could not go on with them.
+            If the node could not continue with them.
         """
         own = {name: value for name, value in changes.items() if name in self.values}
         settings = Settings({**self.values, **own}, with_changes(self.effects, changes))
@@ -87,7 +87,7 @@ class Settings(NamedTuple):
 
 
 def changeable(effects: tuple[AppliedEffect, ...]) -> Changeable:
-    """What may change while the node runs: `CHANGEABLE`, and every parameter of an effect."""
+    """Parameters that may change at run time: `CHANGEABLE`, and every parameter of an effect."""
     items = [item for item in table.PARAMETERS if item.name in CHANGEABLE]
     items += [item for applied in effects for item in parameters_of(applied.effect)]
     return {item.name: item for item in items}
@@ -99,7 +99,7 @@ def declared(node: Node) -> Settings:
     Raises
     ------
     InputError
-        When one is missing, unknown or wrong; the message names all of them.
+        If any is missing, unknown or invalid; the message names all of them.
     """
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Parameter).items()}
@@ -118,7 +118,7 @@ def declared(node: Node) -> Settings:
 
 
 def _declare_effects(node: Node, effects: tuple[AppliedEffect, ...]) -> None:
-    if effects:  # rclpy cannot tell the type of an empty list
+    if effects:  # rclpy cannot infer the type of an empty list
         description = ParameterDescriptor(
             description="Physical effects, in order of application.", read_only=True
         )
@@ -129,30 +129,30 @@ def _declare_effects(node: Node, effects: tuple[AppliedEffect, ...]) -> None:
             name = item.name.partition(".")[2]
             unknown = name in applied.unknown
             descriptor = _descriptor(item, True)
-            descriptor.dynamic_typing = unknown  # it has no value yet, so no type
+            descriptor.dynamic_typing = unknown  # no value yet, so no type
             value = None if unknown else applied.values[name]
             node.declare_parameter(item.name, value, descriptor, ignore_override=True)
 
 
 def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> Mapping[str, Value]:
-    """Values of all parameters but the effects'; see `settings_of`."""
+    """Values of all parameters except those of effects; see `settings_of`."""
     return settings_of(given, node_name).values
 
 
 def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> Settings:
-    """All parameters, from those given; those that may be left out filled in.
+    """Check the given parameters, and fill in the defaults of the others.
 
     Raises
     ------
     InputError
-        When one is missing, unknown or wrong; the message names all of them in one line.
+        If any is missing, unknown or invalid; the message names all of them in one line.
     """
     values: dict[str, Value] = table.defaults()
     wrong: list[str] = []
     effects = _named(given.get(EFFECTS), wrong)
     for name, value in given.items():
         try:
-            if name == EFFECTS or is_of_diff_drive(name):  # that controller's file may be ours
+            if name == EFFECTS or is_of_diff_drive(name):  # diff_drive_controller's file
                 continue
             if "." in name or any(name == effect.name for effect in effects.effects):
                 _take_of_effect(effects, name, value)
@@ -187,19 +187,19 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
 
 
 def has_virtual_ticks(values: Mapping[str, Value]) -> bool:
-    """Whether the wheel angles come without the resolution of their encoders."""
+    """Whether wheel angles are given without the resolution of their encoders."""
     return values[table.TICKS[0]] == table.VIRTUAL_TICKS_PER_REVOLUTION
 
 
 def leftover_qos_overrides(node: Node) -> list[str]:
-    """Overrides of QoS that no topic of the node took: misspelt ones."""
+    """QoS overrides that no topic of the node uses: misspelt ones."""
     with node.handle:
         given = node.handle.get_parameters(Parameter)
     return [name for name in given if name.startswith(_QOS) and not node.has_parameter(name)]
 
 
 def with_floats(items: Changeable, parameters: list[Parameter]) -> list[Parameter]:
-    """Whole numbers given for floats (2000 for 2000.0) made floats, before types are compared."""
+    """Convert integers given for floats (2000 for 2000.0), before types are compared."""
     floats = {item.name for item in (*table.PARAMETERS, *items.values()) if item.kind == "float"}
     return [
         Parameter(item.name, value=float(item.value))
@@ -212,7 +212,7 @@ def with_floats(items: Changeable, parameters: list[Parameter]) -> list[Paramete
 def judged(
     items: Changeable, settings: Settings, parameters: list[Parameter]
 ) -> SetParametersResult:
-    """Whether a change of the settings at run time may be made, and else why not."""
+    """Whether a change at run time is allowed, and otherwise the reason."""
     try:
         settings.after(changes_of(items, parameters))
     except ValueError as error:
@@ -221,12 +221,12 @@ def judged(
 
 
 def changes_of(items: Changeable, parameters: list[Parameter]) -> dict[str, Value]:
-    """The values among `parameters` that are ours.
+    """Values among `parameters` that belong to this package.
 
     Raises
     ------
     InputError
-        When one of them cannot be had.
+        If a value is invalid.
     """
     return {
         item.name: items[item.name].checked(_plain(item.value))
@@ -238,7 +238,7 @@ def changes_of(items: Changeable, parameters: list[Parameter]) -> dict[str, Valu
 def with_changes(
     effects: tuple[AppliedEffect, ...], changes: Mapping[str, Value]
 ) -> tuple[AppliedEffect, ...]:
-    """The effects with those of the changes that are theirs; what is given is no more unknown."""
+    """Return the effects with their share of the changes; values given are no longer unknown."""
 
     def own(applied: AppliedEffect) -> dict[str, float]:
         begin = f"{applied.name}."
@@ -253,7 +253,7 @@ def _is_of_ros(node: Node, name: str) -> bool:
 
 
 def _named(names: object, wrong: list[str]) -> Named:
-    """The effects; an empty list arrives from ROS as a parameter that is not set."""
+    """The named effects; ROS delivers an empty list as a parameter that is not set."""
     try:
         return named_effects(names)
     except InputError as error:
@@ -264,12 +264,12 @@ def _named(names: object, wrong: list[str]) -> Named:
 def _take_of_effect(effects: Named, name: str, value: object) -> None:
     if "." in name:
         effects.take(name, _plain(value))
-    elif value is not None:  # an empty block, {}, arrives from ROS as a parameter that is not set
+    elif value is not None:  # ROS delivers an empty block, {}, as a parameter that is not set
         raise effects.refuse_value(name, value)
 
 
 def _without_channels(effects: Named) -> list[str]:
-    """What cannot run live: a node has nothing but the counters."""
+    """Effects that need a measured channel: a live node has only the counters."""
     return [
         f"effect {effect.name} looks at the measured channel {', '.join(effect.lacks(()))}, which "
         "the node does not have; it works on recorded runs alone. Take it out of effects"

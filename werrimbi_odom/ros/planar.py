@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Place, heading and covariance in the plane, out of messages of three dimensions; judged once.
+"""Planar position, heading and covariance from 3D messages, with all checks.
 
-Whoever sends a pose may send any 64 bits as a number. What comes out of here is finite, so small
-that no square of it is beyond all numbers, and the covariance is one.
+A message may contain any 64 bits as a number. The results of this module are finite and small
+enough for their squares not to overflow, and the covariance is valid.
 """
 
 from __future__ import annotations
@@ -18,28 +18,28 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
 
 FARTHEST = 1e12
-"""Farthest place [m] that is believed, beyond the orbit of Jupiter: squares of squares of what lies
-farther overflow."""
+"""Largest coordinate accepted [m], beyond the orbit of Jupiter; fourth powers of larger ones
+overflow."""
 LARGEST = FARTHEST**2
-"""Largest entry of a covariance that is believed; larger ones stand for "unknown"."""
+"""Largest entry of a covariance accepted; larger ones stand for "unknown"."""
 
 UP = 1.0 + 1e-12
-"""On every variance that is published, so that rounding cannot turn a semi-definite matrix into an
-indefinite one."""
+"""Factor on every published variance, so that rounding cannot make a semi-definite matrix
+indefinite."""
 
-_ASYMMETRY = 1e-6  # of two entries that should be equal, against the correlation 1
-_ROUNDING = 1e-9  # by which rounding may make a correlation matrix indefinite
-_SMALL = 1e-60  # of a variance: squares and products of two do not underflow
-_PLANE = (0, 1, 5)  # x, y and yaw among x, y, z, roll, pitch, yaw
+_ASYMMETRY = 1e-6  # tolerance of two entries that should be equal, relative to a correlation of 1
+_ROUNDING = 1e-9  # tolerance of a correlation matrix's eigenvalues for rounding
+_SMALL = 1e-60  # smallest variance for which squares and products of two do not underflow
+_PLANE = (0, 1, 5)  # indices of x, y and yaw among x, y, z, roll, pitch, yaw
 
 
 def place_of(place: Any) -> tuple[float, float]:
-    """Place [m] in the plane.
+    """Position [m] in the plane.
 
     Raises
     ------
     InputError
-        As all here: the first argument is the cause, the second the detail.
+        As all functions here: the first argument is the cause, the second the detail.
     """
     if not (math.isfinite(place.x) and math.isfinite(place.y)):
         raise InputError("pose not finite", "NaN or infinite")
@@ -49,21 +49,21 @@ def place_of(place: Any) -> tuple[float, float]:
 
 
 def yaw_of(turn: Any, slack: float) -> float:
-    """Heading [rad] of a quaternion whose norm is 1 but for a factor of 1 + `slack`."""
+    """Heading [rad] of a quaternion with norm 1 up to a factor of 1 + `slack`."""
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
     if not all(map(math.isfinite, (x, y, z, w))):
         raise InputError("pose not finite", "NaN or infinite")
-    norm = math.hypot(x, y, z, w)  # does not overflow where squares do
+    norm = math.hypot(x, y, z, w)  # hypot does not overflow as squares do
     if not 1.0 / (1.0 + slack) <= norm <= 1.0 + slack:
         raise InputError("orientation not a rotation", f"the quaternion's norm is {norm:g}, not 1")
     return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def covariance_of(entries: Any) -> PoseCovariance[float]:
-    """The covariance of x, y and yaw among the 36 entries of a message.
+    """Covariance of x, y and yaw among the 36 entries of a message.
 
-    Metres and radians may differ by any factor, so it is the matrix of correlations that must be
-    positive semi-definite; of an entry's own size there is nothing to be judged.
+    Metres and radians may have any ratio, so the correlation matrix is checked for positive
+    semi-definiteness; the size of an entry says nothing.
     """
     values = np.asarray(entries, dtype=np.float64)
     sound = _plainly_sound(values.tolist())
@@ -81,11 +81,11 @@ def covariance_of(entries: Any) -> PoseCovariance[float]:
         raise InputError("covariance not positive semi-definite", "a variance of 0 has covariances")
     sigma = np.sqrt(np.where(variances > 0.0, variances, 1.0))
     with np.errstate(over="ignore", invalid="ignore"):
-        correlation = block / sigma[:, None] / sigma  # one by one: their product may underflow
+        correlation = block / sigma[:, None] / sigma  # in two steps: the product may underflow
         apart = np.abs(correlation - correlation.T).max()
     if apart > _ASYMMETRY:
         raise InputError("covariance not symmetric", "of x, y and yaw")
-    # Larger than 1 it is none, and the eigenvalues of what is much larger overflow.
+    # A correlation above 1 is invalid, and eigenvalues of much larger ones overflow.
     if np.abs(correlation).max() > 1.0 + _ASYMMETRY or (
         np.linalg.eigvalsh(0.5 * (correlation + correlation.T))[0] < -_ROUNDING
     ):
@@ -95,9 +95,9 @@ def covariance_of(entries: Any) -> PoseCovariance[float]:
 
 
 def _plainly_sound(entries: list[float]) -> PoseCovariance[float] | None:
-    """The covariance, where a few products show that it is one: of messages that come, nearly all.
+    """Covariance that a few products show to be valid, as for nearly all messages; else None.
 
-    To judge all others takes ten times as long.
+    The complete check takes ten times as long.
     """
     xx, xy, xyaw = entries[0], entries[1], entries[5]
     yy, yyaw, yawyaw = entries[7], entries[11], entries[35]
@@ -114,14 +114,15 @@ def _plainly_sound(entries: list[float]) -> PoseCovariance[float] | None:
 
 
 def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
-    """A covariance as it can be published: semi-definite, whatever rounding has made of it.
+    """Make a covariance valid for publishing: positive semi-definite in spite of rounding.
 
-    Where a heading hardly known is carried far away and back, the square of the way cancels, and
-    what is left of a variance is rounding, of either sign: its size then stands for the variance.
+    When a poorly known heading is propagated far away and back, the squared distance cancels. What
+    remains of a variance is rounding error of either sign; its absolute value then replaces the
+    variance.
     """
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
     xx, yy, yawyaw = xx * UP, yy * UP, yawyaw * UP
-    if yawyaw > 0.0:  # what x and y vary beside what the heading explains of it
+    if yawyaw > 0.0:  # conditional covariance of x and y given the heading
         a, b, c = xx - xyaw * (xyaw / yawyaw), yy - yyaw * (yyaw / yawyaw), xyaw * (yyaw / yawyaw)
         if a >= 0.0 and b >= 0.0 and abs(xy - c) <= math.sqrt(a) * math.sqrt(b):
             return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
@@ -130,7 +131,7 @@ def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
     ):
         return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
     matrix = PoseCovariance(abs(xx), xy, xyaw, abs(yy), yyaw, abs(yawyaw)).matrix()
-    variances = matrix.diagonal()  # of the least numbers nothing is left to round
+    variances = matrix.diagonal()  # the smallest numbers have no digits left to round
     sigma = np.sqrt(np.where(variances < sys.float_info.min, 0.0, variances))
     size = np.where(sigma > 0.0, sigma, np.inf)
     with np.errstate(over="ignore"):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Plays recorded ticks to a running `odom_node` over DDS and collects what it answers."""
+"""Plays recorded ticks to a running `odom_node` over DDS, and collects its output."""
 
 from __future__ import annotations
 
@@ -23,32 +23,32 @@ from visualization_msgs.msg import Marker, MarkerArray
 Floats = NDArray[np.float64]
 
 IN_FLIGHT = 8
-"""Messages sent ahead of the node's answers: enough to keep it busy, fewer than it queues."""
+"""Messages sent ahead of the node's answers: enough to keep it busy, fewer than its queue holds."""
 PATIENCE = 0.5
-"""Seconds without an answer after which the player goes on (the node refused a message)."""
+"""Time without an answer after which the player continues [s] (the node rejected a message)."""
 
 
 @dataclass
 class Answers:
-    """What the node published while the ticks were played; arrays of shape (n,)."""
+    """Output of the node while the ticks were played; arrays of shape (n,)."""
 
     time: list[float] = field(default_factory=list)
     x: list[float] = field(default_factory=list)
     y: list[float] = field(default_factory=list)
     yaw: list[float] = field(default_factory=list)
     covariance: list[Floats] = field(default_factory=list)
-    """Of (x, y, yaw), each of shape (3, 3)."""
+    """Covariances of (x, y, yaw), each of shape (3, 3)."""
     piece_kinds: dict[tuple[str, int], None] = field(default_factory=dict)
     """(kind, number) of every piece whose marker was received."""
 
     def counts_by_kind(self) -> dict[str, int]:
-        """How many lines, arcs and spins the node made of the run."""
+        """Number of lines, arcs and spins in the node's output."""
         kinds = [kind for kind, _ in self.piece_kinds]
         return {kind: kinds.count(kind) for kind in ("line", "arc", "spin")}
 
 
 class Player(Node):  # type: ignore[misc]
-    """Publishes `joint_states`; listens to `odom` and `pieces`; all under one namespace."""
+    """Publishes `joint_states`; subscribes to `odom` and `pieces`; all in one namespace."""
 
     def __init__(self, namespace: str) -> None:
         super().__init__("werrimbi_player", namespace=namespace)
@@ -61,7 +61,7 @@ class Player(Node):  # type: ignore[misc]
         self.create_subscription(MarkerArray, "pieces", self._on_pieces, deep)
 
     def wait_for_node(self, seconds: float, alive: Callable[[], bool]) -> bool:
-        """Wait until the node listens to ticks and poses; False when it does not come up."""
+        """Wait until the node subscribes to ticks and poses; False if it does not start."""
         until = clock.monotonic() + seconds
         while clock.monotonic() < until and alive():
             if self._ticks.get_subscription_count() and self._pose.get_subscription_count():
@@ -87,11 +87,11 @@ class Player(Node):  # type: ignore[misc]
         time, left, right : ndarray, shape (n,)
             Stamps [s] and cumulative counts, as recorded.
         left_names, right_names : sequence of str
-            Joint names of the wheels; all of a side show the same count.
+            Joint names of the wheels; all wheels of a side get the same count.
         start : (x, y, yaw)
             [m, m, rad], in `frame`.
         """
-        # A stamp of zero means "not stamped" to ROS, so a record that begins at zero begins later.
+        # A stamp of zero means "no stamp" in ROS, so a record that begins at zero is shifted.
         self.offset = max(0.0, 2.0 - float(time[0]))
         names = [*left_names, *right_names]
 
@@ -106,7 +106,7 @@ class Player(Node):  # type: ignore[misc]
         self._shake_hands(tick, *first)
         self._set_pose(start, frame, first[0] + self.offset)
         last_answer, answered = clock.monotonic(), 0
-        base = 0  # messages that got no answer: refused ones
+        base = 0  # messages without an answer: rejected ones
         for row, (stamp, left_count, right_count) in enumerate(
             zip(time.tolist(), left.tolist(), right.tolist(), strict=True)
         ):
@@ -124,9 +124,9 @@ class Player(Node):  # type: ignore[misc]
     def _shake_hands(
         self, tick: Callable[[float, float, float], None], stamp: float, left: float, right: float
     ) -> None:
-        """Send the first reading, stamped ever a little later, until the node answers.
+        """Send the first reading repeatedly, with increasing stamps, until the node answers.
 
-        Until then nothing says that DDS has connected both ways; the robot does not move in it.
+        Only an answer shows that DDS has connected both ways. The robot does not move meanwhile.
         """
         for attempt in range(2000):
             tick(stamp - 0.9 + 4e-4 * attempt, left, right)
@@ -134,7 +134,7 @@ class Player(Node):  # type: ignore[misc]
             if self.answers.time:
                 break
         until = clock.monotonic() + 0.2
-        while clock.monotonic() < until:  # what is still under way
+        while clock.monotonic() < until:  # messages in flight
             rclpy.spin_once(self, timeout_sec=0.02)
         self.answers = Answers()
 
@@ -147,13 +147,13 @@ class Player(Node):  # type: ignore[misc]
         message.pose.pose.orientation.z = math.sin(0.5 * yaw)
         message.pose.pose.orientation.w = math.cos(0.5 * yaw)
         self._pose.publish(message)
-        # The first ticks must find the pose set, and nothing on the node's side says that it is.
+        # The pose must be set before the first ticks, and the node does not confirm it.
         until = clock.monotonic() + 0.3
         while clock.monotonic() < until:
             rclpy.spin_once(self, timeout_sec=0.05)
 
     def _listen_out(self) -> None:
-        """Go on listening until nothing new has come for a while."""
+        """Receive until nothing new has arrived for a while."""
         quiet_since, heard = clock.monotonic(), -1
         while clock.monotonic() - quiet_since < PATIENCE + 0.5:
             rclpy.spin_once(self, timeout_sec=0.05)
@@ -178,6 +178,6 @@ class Player(Node):  # type: ignore[misc]
 
 
 def stamp_of(seconds: float) -> Time:
-    """A ROS stamp of a time [s] that is not negative."""
+    """Convert a time [s] that is not negative to a ROS stamp."""
     nanoseconds = round(seconds * 1e9)
     return Time(sec=nanoseconds // 1_000_000_000, nanosec=nanoseconds % 1_000_000_000)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The last minutes of driving as messages, in bounded memory; of standing hardly anything."""
+"""The last minutes of driving as messages, in bounded memory; messages at rest are thinned out."""
 
 from __future__ import annotations
 
@@ -12,44 +12,45 @@ from pathlib import Path
 from typing import NamedTuple
 
 MOST_BYTES = 50_000_000
-"""That are kept at the most: ten minutes at 50 Hz take 12 MB."""
+"""Largest size kept: ten minutes at 50 Hz take 12 MB."""
 OVERHEAD = 200
-"""Bytes that Python takes for a message beside its own: a tuple, two numbers, and two heads."""
+"""Memory that Python uses per message besides the data: a tuple, two numbers, two headers."""
 MOVES, MOVES_TURN = 1e-3, 2e-3
-"""Speeds above these [m/s, rad/s] are driving: a standing robot of fine counts shows none."""
+"""Speeds above these [m/s, rad/s] count as driving; a robot at rest with fine encoders shows
+none."""
 LINGER = 1.0
-"""Seconds after driving in which all is still kept: the end of the motion, as it was seen."""
+"""Time after driving for which all messages are kept [s], to include the end of the motion."""
 RESTING = 0.5
-"""Seconds between two messages of a topic that are kept while the robot stands: of a night, few."""
+"""Interval between the messages of a topic that are kept at rest [s]."""
 PAUSE = 1.0
-"""Of two messages that are farther apart [s] nobody knows whether it drove in between."""
+"""A longer interval between two messages [s] does not count as driving."""
 
 
 class ReceivedMessage(NamedTuple):
-    """A message as it came."""
+    """A message as received."""
 
     driven: float
-    """Seconds of driving before it."""
+    """Driving time before it [s]."""
     received: int
-    """By the node's clock [ns]."""
+    """Reception time by the node's clock [ns]."""
     topic: int
     data: bytes
 
 
 class Kept:
-    """What was last said on some topics.
+    """Recent messages of some topics.
 
     Parameters
     ----------
     topics : sequence of (str, str)
-        Full names, and types of messages.
+        Full topic names, and message types.
     seconds : float
-        Of driving that are kept [s].
+        Driving time to keep [s].
     """
 
     def __init__(self, topics: Sequence[tuple[str, str]], seconds: float) -> None:
         self.driven = 0.0
-        """Seconds of driving so far, by the stamps of the odometry."""
+        """Driving time so far [s], by the stamps of the odometry."""
         self._topics = list(topics)
         self._seconds = seconds
         self._messages: deque[ReceivedMessage] = deque()
@@ -58,7 +59,7 @@ class Kept:
         self._stamp = self._moved = -math.inf
 
     def motion(self, stamp: float, speed: float, yaw_rate: float) -> None:
-        """Note a twist of the odometry [s, m/s, rad/s]."""
+        """Add a twist of the odometry [s, m/s, rad/s]."""
         step, self._stamp = stamp - self._stamp, stamp
         if abs(speed) > MOVES or abs(yaw_rate) > MOVES_TURN:
             self._moved = stamp
@@ -66,7 +67,7 @@ class Kept:
                 self.driven += step
 
     def take(self, topic: int, received: int, data: bytes) -> None:
-        """Keep a message, and let go what is too old."""
+        """Add a message, and delete those that are too old."""
         stands = self._stamp - self._moved > LINGER
         if stands and 0.0 <= 1e-9 * received - self._last[topic] < RESTING:
             return
@@ -78,7 +79,7 @@ class Kept:
             self._bytes -= len(self._messages.popleft().data) + OVERHEAD
 
     def write(self, file: Path) -> None:
-        """All that is kept: topics, and messages with when they came and their topic's number."""
+        """Write the topics, and all messages with their reception time and topic index."""
         messages = [each[1:] for each in self._messages]
         with file.open("wb") as out:
             pickle.dump((self._topics, messages), out)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A drive that was never driven: whether numbers come out, before real counters go in."""
+"""Tests parameter values on an imaginary drive, before real counters are used."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
 
 _TURNS = ((0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.5, 2.0), (-1.0, -1.0), (100.0, 100.0))
-"""Of the left and the right wheel, a second each: rest, line, spin, arc, reversal, a fast line."""
+"""Turns of the left and right wheel in one second: rest, line, spin, arc, reversal, a fast line."""
 
 
 def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
-    """Drive a robot through every kind of piece.
+    """Simulate a robot on every kind of piece.
 
     Raises
     ------
     InputError
-        When pose, twist or a covariance comes out as no number.
+        If pose, twist or a covariance is not finite.
     """
     odometer = Odometer(robot, tolerance)
     left = right = time = 0.0
@@ -45,6 +45,6 @@ def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
 
 
 def is_finite(estimate: Estimate) -> bool:
-    """Whether all of it are numbers that can be reckoned with."""
+    """Whether all numbers of an estimate are finite."""
     total = sum(estimate.pose) + sum(estimate.covariance) + sum(estimate.twist)
     return math.isfinite(total + sum(estimate.twist_covariance))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A node from its start to its end: signals and exit codes."""
+"""Runs a node from start to end: signals and exit codes."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ def run(
     *,
     farewell: Callable[[Made], None] | None = None,
 ) -> int:
-    """Run a node until it is told to stop.
+    """Run a node until it is stopped.
 
     Parameters
     ----------
     make_node : callable
-        Makes the node; raises InputError when what it was given cannot be used.
+        Creates the node; raises InputError if its input is invalid.
     name : str
-        For what is said before there is a node.
+        Prefix of messages before the node exists.
     args : list of str, optional
-        Arguments for ROS; those of the command line if left out.
+        Arguments for ROS; default: those of the command line.
     farewell : callable of the node, optional
-        What it does before it ends, whatever ends it, while it can still publish.
+        Called before the node ends, for any reason, while it can still publish.
 
     Returns
     -------
     int
-        Exit code: 0 after SIGINT and SIGTERM, 2 when something that was given cannot be used.
+        Exit code: 0 after SIGINT and SIGTERM, 2 after invalid input.
     """
     told = _Told()
     try:
@@ -61,8 +61,8 @@ def run(
         executor = SingleThreadedExecutor()
         if farewell is not None:
             return _spin_until_told(node, executor, told, farewell)
-        # Not before: rclpy's handlers shut the context down, and rclpy cannot set up anything in
-        # a context that is.
+        # Not earlier: rclpy's handlers shut the context down, and rclpy cannot create anything in
+        # such a context.
         install_signal_handlers(SignalHandlerOptions.ALL)
         if not told.to_end:
             rclpy.spin(node, executor)
@@ -72,15 +72,15 @@ def run(
         rclpy.logging.get_logger(name).fatal(str(error))
         return 2
     except Exception:
-        # A signal shuts the context down under a callback that is at work, which surfaces as an
-        # error of whatever rclpy was doing. That is no fault.
+        # A signal shuts the context down during a callback, which then raises an error of some
+        # rclpy call. This is not a fault.
         if rclpy.ok():
             raise
     finally:
         told.ignore()
         if node is not None:
             node.destroy_node()
-        rclpy.try_shutdown()  # puts the handlers back that stood before rclpy's
+        rclpy.try_shutdown()  # restores the signal handlers that preceded rclpy's
         told.ignore()
     return 0
 
@@ -88,7 +88,7 @@ def run(
 def _spin_until_told(
     node: Made, executor: SingleThreadedExecutor, told: _Told, farewell: Callable[[Made], None]
 ) -> int:
-    """Spin with our own handlers of signals: rclpy's would end the context, and all talk."""
+    """Spin with own signal handlers: those of rclpy would end the context before the farewell."""
     executor.add_node(node)
     try:
         while not told.to_end:
@@ -100,7 +100,7 @@ def _spin_until_told(
 
 
 def _not_of_ros(name: str, word: str) -> int:
-    """What is said to an argument that rclpy would leave unread; the exit code."""
+    """Report an argument that rclpy would ignore; return the exit code."""
     usage = f"{name} --ros-args [--params-file FILE.yaml] [-p NAME:=VALUE] [-r FROM:=TO]"
     if word in ("-h", "--help"):
         print(f"{usage}\n\nTopics and parameters: docs/node.md and docs/robot.md of werrimbi_odom.")
@@ -110,11 +110,11 @@ def _not_of_ros(name: str, word: str) -> int:
 
 
 class _Told:
-    """Notes that SIGINT or SIGTERM came, and lets what is being done be done.
+    """Records that SIGINT or SIGTERM arrived, without interrupting.
 
-    No exception: Python throws one away that is raised in the callback of a weak reference, as
-    there are while modules are imported, and the signal would be lost with it. Starting takes a
-    part of a second, so nobody waits for it; while the node spins, rclpy's own handlers end it.
+    It raises no exception: Python discards one that is raised in the callback of a weak reference,
+    as happens during imports, and the signal would be lost. Starting takes a fraction of a second,
+    so the delay is short. While the node spins, rclpy's own handlers end it.
     """
 
     def __init__(self) -> None:
@@ -123,10 +123,10 @@ class _Told:
             signal.signal(number, self._take)
 
     def ignore(self) -> None:
-        """Ignore everything from now on, also while Python itself clears up.
+        """Ignore all further signals, also during Python's own shutdown.
 
-        Ctrl-C in a terminal reaches a node twice, once through `ros2 run` or a launch file; the
-        second must not break the clearing up.
+        Ctrl-C in a terminal reaches a node twice, once through `ros2 run` or a launch file. The
+        second signal must not interrupt the clean-up.
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters of simulated_robot, declared once."""
+"""Parameters of simulated_robot."""
 
 from __future__ import annotations
 
@@ -103,12 +103,12 @@ PARAMETERS: tuple[NodeParameter, ...] = (
 
 
 def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
-    """The robot, what is hidden in it, and what its maker believes.
+    """The simulated robot, its hidden effects, and the nominal robot.
 
     Raises
     ------
     InputError
-        When there is no such thing to hide, or mujoco is not installed.
+        If the effect to hide is unknown, or mujoco is not installed.
     """
     try:
         from werrimbi_odom import simulation
@@ -151,12 +151,12 @@ def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRo
 
 
 def write_believed(robot: TrueRobot, path: Path) -> None:
-    """Write the robot file that a robot's maker would write.
+    """Write the nominal robot file.
 
     Raises
     ------
     InputError
-        When there is one, or it cannot be written.
+        If the file exists, or cannot be written.
     """
     from werrimbi_odom.simulation import write_robot_file
 

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A robot in the physics engine as a ROS node: commands in, what its sensors see out.
+"""A robot in the physics engine as a ROS node: commands in, sensor data out.
 
     ros2 run werrimbi_odom simulated_robot --ros-args -p hide:=castor_kick
 
-`SimulatedRobot._advance` is the whole of its time; everything else is set-up and reports.
+`SimulatedRobot._advance` advances the simulation; everything else is set-up and reporting.
 """
 
 from __future__ import annotations
@@ -40,22 +40,22 @@ if TYPE_CHECKING:
     from werrimbi_odom.simulation import AxlePose
 
 TICK = 0.01
-"""Seconds of the wall between two looks at the time."""
+"""Period of the timer, wall time [s]."""
 BEHIND = 0.5
-"""Seconds of the wall that may be made up for; beyond that the simulation is late for good."""
+"""Largest delay that the simulation catches up, wall time [s]; beyond, it stays late."""
 CLOCK_RATE = 100.0
-"""Messages on /clock in a simulated second."""
+"""Messages on /clock per simulated second."""
 BEGINS = 1.0
-"""Simulated time on /clock at the start [s]; a stamp of zero means none."""
+"""Simulated time on /clock at the start [s]; a stamp of zero means "no stamp"."""
 
 
 class SimulatedRobot(Node):  # type: ignore[misc]
-    """A robot that is driven by `cmd_vel`.
+    """A simulated robot driven by `cmd_vel`.
 
     Raises
     ------
     InputError
-        When a parameter is wrong, or mujoco is not installed.
+        If a parameter is invalid, or mujoco is not installed.
     """
 
     def __init__(self) -> None:
@@ -121,7 +121,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
     # ------------------------------------------------------------------------- time
 
     def _advance(self) -> None:
-        """Let the robot's time catch up with the wall's, and its sensors speak on the way."""
+        """Advance the simulation to the present wall time, and publish sensor data on the way."""
         from werrimbi_odom.simulation import UnstableError
         from werrimbi_odom.simulation.engine import PERIOD
 
@@ -152,7 +152,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         self._asked = speed, yaw_rate
         self._commanded = self._robot.time
 
-    # ------------------------------------------------------------------------- out
+    # ------------------------------------------------------------------------- publications
 
     def _publish_clock(self, time: float, _: float) -> None:
         self._clock_out.publish(ClockMessage(clock=self._stamp(time)))
@@ -170,7 +170,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         message = Imu()
         message.header.stamp = self._stamp(time)
         message.header.frame_id = "imu_link"
-        message.orientation_covariance[0] = -1.0  # it has none
+        message.orientation_covariance[0] = -1.0  # no orientation
         message.angular_velocity.z = self._robot.gyro(since, time)
         message.linear_acceleration.z = 9.81
         self._imu.publish(message)
@@ -190,7 +190,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
             self._send(self._transform("base_scan", self._robot.lidar.mount, "base_link"))
 
     def _publish_scan(self, time: float, _: float) -> None:
-        """A turn, stamped with the time of its first beam."""
+        """Publish one sweep, stamped with the time of its first beam."""
         lidar = self._robot.lidar
         message = LaserScan(
             angle_max=lidar.increment * (lidar.beams - 1),
@@ -257,14 +257,14 @@ class SimulatedRobot(Node):  # type: ignore[misc]
 
 
 class _Due:
-    """A sensor that speaks at its own rate, once what it says can be had.
+    """A sensor that publishes at its own rate, as soon as its data are available.
 
     Parameters
     ----------
     rate : float
         [Hz]
     lag : float
-        Time after a stamp until it can be published [s].
+        Delay from a stamp until its data are available [s].
     publish : callable of (time, time before)
     """
 
@@ -273,7 +273,7 @@ class _Due:
         self._count = 0
 
     def look(self, now: float) -> None:
-        """Publish if it is time."""
+        """Publish if it is due."""
         time = (self._count + 1) / self._rate
         if time + self._lag <= now + 1e-9:
             self._publish(time, self._count / self._rate)
@@ -281,7 +281,7 @@ class _Due:
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop; returns the exit code."""
+    """Run the node until it is stopped; return the exit code."""
     return run(SimulatedRobot, "simulated_robot", args)
 
 

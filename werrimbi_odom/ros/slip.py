@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A gyro beside the wheels: where they slip, the covariance grows by what was missed.
+"""Increases the covariance when a gyro shows that the wheels slip.
 
-The reckoning is in `werrimbi_odom.model.slip`; here is the subscription, and what is told of it.
+The method is in `werrimbi_odom.model.slip`; this module subscribes and reports.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 
 class NoSlip:
-    """Where no gyro is given."""
+    """No gyro is given."""
 
     def missed(self, tracker: LiveOdometer) -> Missed:
-        """What the reading that the tracker has just taken adds to the covariance."""
+        """Variance added by the last reading of the odometer."""
         return NOTHING
 
     def retune(self, robot: Robot) -> None:
-        """Go on with other values of the robot."""
+        """Change the parameter values of the robot."""
 
     def told(self) -> dict[str, str]:
-        """What of it stands on /diagnostics."""
+        """Entries for /diagnostics."""
         return {}
 
 
@@ -41,10 +41,10 @@ class Slip(NoSlip):
 
     Parameters
     ----------
-    wiring : Wiring
+    wiring : InputOptions
     robot : Robot
     topic : str
-        Of sensor_msgs/Imu.
+        Topic of sensor_msgs/Imu.
     """
 
     def __init__(self, wiring: inputs.InputOptions, robot: Robot, topic: str) -> None:
@@ -62,16 +62,16 @@ class Slip(NoSlip):
         )
 
     def missed(self, tracker: LiveOdometer) -> Missed:
-        """What the reading that the tracker has just taken adds to the covariance."""
+        """Variance added by the last reading of the odometer."""
         self._tracker = tracker
         return self._guard.wheels(tracker.seconds(tracker.stamp), tracker.heading)
 
     def retune(self, robot: Robot) -> None:
-        """Go on with another base."""
+        """Change the track."""
         self._guard.track = robot.track
 
     def told(self) -> dict[str, str]:
-        """What of it stands on /diagnostics."""
+        """Entries for /diagnostics."""
         if not self._heard:
             return {"slip": f"no gyro heard on {self._topic}"}
         turn = math.degrees(self._guard.missed)
@@ -89,6 +89,6 @@ class Slip(NoSlip):
 
 
 def slip_of(wiring: inputs.InputOptions, robot: Robot) -> NoSlip:
-    """What the robot file asks for."""
+    """Create what the robot file requests."""
     topic = str(wiring.values["slip_imu_topic"])
     return Slip(wiring, robot, topic) if topic else NoSlip()

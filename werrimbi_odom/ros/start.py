@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes' executables: where there is no ROS they say how to get it."""
+"""Executables of the nodes; without ROS they explain how to install it."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from importlib import import_module
 
 
 def odom_node() -> int:
-    """Run `odom_node`; returns the exit code."""
+    """Run `odom_node`; return the exit code."""
     return _started("odom_node")
 
 
 def compare_node() -> int:
-    """Run `compare_node`; returns the exit code."""
+    """Run `compare_node`; return the exit code."""
     return _started("compare_node")
 
 
 def simulated_robot() -> int:
-    """Run `simulated_robot`; returns the exit code."""
+    """Run `simulated_robot`; return the exit code."""
     return _started("simulated_robot")
 
 
 def drive_node() -> int:
-    """Run `drive_node`; returns the exit code."""
+    """Run `drive_node`; return the exit code."""
     return _started("drive_node")
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What sends transforms on /tf, where tf2_ros is installed."""
+"""Broadcasts transforms on /tf, where tf2_ros is installed."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ SendTransform = Callable[[TransformStamped], None]
 
 
 def transform_sender(node: Node, parameter: str) -> SendTransform:
-    """A function that broadcasts a transform.
+    """Create a function that broadcasts a transform.
 
     Raises
     ------
     InputError
-        When tf2_ros is not installed; `parameter` is what asked for it.
+        If tf2_ros is not installed; `parameter` is the one that requests it.
     """
     try:
         from tf2_ros import TransformBroadcaster

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The yaw rate of sensor_msgs/Imu messages, whichever way the sensor is mounted (REP-145: raw)."""
+"""Yaw rate from sensor_msgs/Imu messages, for any mounting of the sensor (REP-145: raw data)."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.model.pose import Floats
 
 LISTENED = 50
-"""Messages whose accelerations tell what is upwards; from then on it stays."""
+"""Number of messages from which the vertical is estimated, once."""
 
 
 class UprightGyro:
-    """Turning about what the accelerometer says is upwards; about z until that is known."""
+    """Rate about the vertical by the accelerometer; about z until that is estimated."""
 
     def __init__(self, topic: str, logger: Any) -> None:
         self._topic, self._logger = topic, logger
@@ -24,7 +24,7 @@ class UprightGyro:
         self._up: Floats = np.array([0.0, 0.0, 1.0])
 
     def rate(self, message: Any) -> float:
-        """Of one message [rad/s]; as finite as what it holds."""
+        """Yaw rate of one message [rad/s]; as finite as its content."""
         if len(self._forces) < LISTENED and message.linear_acceleration_covariance[0] != -1.0:
             force = message.linear_acceleration
             self._forces.append((force.x, force.y, force.z))

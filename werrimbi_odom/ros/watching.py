@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is missing in the robot file that runs: told while the robot drives, with compare_node.
+"""Live diagnosis with compare_node: what is missing in the robot file in use.
 
-Messages of the last minutes of driving are kept (`recent_messages`); now and then a process of its
-own with a low priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
+Messages of the last minutes of driving are stored (`recent_messages`). From time to time a separate
+process with low priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
 """
 
 from __future__ import annotations
@@ -37,30 +37,31 @@ from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.recent_messages import Kept
 
 LOOKER = "werrimbi_odom.api.watched"
-"""Run as a process, never imported: the node knows neither scipy nor any diagnosis."""
+"""Run as a process, never imported: the node loads neither scipy nor the diagnosis."""
 LOOKS_BACK = 2.0
-"""Times the driving between two looks: what sets in is all that the second one after it sees."""
+"""Length of the stored drive, in intervals between two diagnoses: a new effect fills the whole
+drive at the second diagnosis after its onset."""
 
 
 class NoWatching:
-    """Where no robot file is given."""
+    """No robot file is given."""
 
     def odometry(self, time: float, twist: BodyMotion[float]) -> None:
-        """Take the time and the twist of an odometry message."""
+        """Add time and twist of an odometry message."""
 
     def reference(self, message: Any) -> None:
-        """Take a message of the reference."""
+        """Add a message of the reference."""
 
     def look(self) -> list[DiagnosticStatus]:
-        """Once a second: go on with the diagnosis, and say how things stand."""
+        """Called once a second: advance the diagnosis, and return its status."""
         return []
 
     def close(self) -> None:
-        """End what is under way."""
+        """Terminate a running diagnosis."""
 
 
 class Watching(NoWatching):
-    """Diagnoses, again and again.
+    """Diagnoses repeatedly.
 
     Parameters
     ----------
@@ -68,14 +69,14 @@ class Watching(NoWatching):
     values : mapping
         Parameters of compare_node.
     kind : type
-        Of the messages of the reference.
+        Message type of the reference.
     subscribe : callable
-        Of the node.
+        Method of the node that subscribes.
 
     Raises
     ------
     InputError
-        When the robot file cannot be used, or the new one would take its place.
+        If the robot file is invalid, or the new one would overwrite it.
     """
 
     def __init__(
@@ -117,20 +118,20 @@ class Watching(NoWatching):
     # ------------------------------------------------------------------------- messages
 
     def odometry(self, time: float, twist: BodyMotion[float]) -> None:
-        """Take the time and the twist of an odometry message."""
+        """Add time and twist of an odometry message."""
         self._kept.motion(time, twist.along, twist.turn)
 
     def reference(self, message: Any) -> None:
-        """Take a message of the reference."""
+        """Add a message of the reference."""
         self._take(self._reference, serialize_message(message))
 
     def _take(self, topic: int, data: bytes) -> None:
         self._kept.take(topic, self._node.get_clock().now().nanoseconds, data)
 
-    # ------------------------------------------------------------------------- looking
+    # ------------------------------------------------------------------------- diagnosis
 
     def look(self) -> list[DiagnosticStatus]:
-        """Once a second: go on with the diagnosis, and say how things stand."""
+        """Called once a second: advance the diagnosis, and return its status."""
         if self._looking is not None:
             if self._looking.poll() is not None:
                 self._end()
@@ -152,7 +153,7 @@ class Watching(NoWatching):
         )
 
     def _end(self) -> None:
-        """Take what was found, and tell it where it is news."""
+        """Read the result, and report it if it is new."""
         before, better = self._found.get("headline"), self._folder / "better.yaml"
         try:
             self._found = json.loads((self._folder / "found.json").read_text(encoding="utf-8"))
@@ -198,7 +199,7 @@ class Watching(NoWatching):
         return diagnostic(level, f"{full_name(self._node)}: what is missing", words, told)
 
     def close(self) -> None:
-        """End what is under way, and leave nothing behind."""
+        """Terminate a running diagnosis, and delete its files."""
         if self._looking is None:
             return
         self._looking.kill()
@@ -206,7 +207,7 @@ class Watching(NoWatching):
         self._looking = None
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    # ------------------------------------------------------------------------- asked for
+    # ------------------------------------------------------------------------- services
 
     def _service(self) -> str:
         return f"{self._node.get_fully_qualified_name()}/write_robot_file"
@@ -230,7 +231,7 @@ class Watching(NoWatching):
         return response
 
     def _unwritable(self) -> str:
-        """Why there is no new robot file to write; "" if there is."""
+        """Reason why there is no new robot file to write; "" if there is one."""
         if self._better:
             there = f"{self._new} is there already: move it, or start with another new_robot_file"
             return there if self._new.exists() else ""
@@ -239,14 +240,14 @@ class Watching(NoWatching):
 
 
 def _named(kind: type) -> str:
-    """The type of messages as bags name it."""
+    """Message type in the notation of bags."""
     return f"{kind.__module__.split('.')[0]}/msg/{kind.__name__}"
 
 
 def watching_of(
     node: Node, values: Mapping[str, Value], kind: type, subscribe: Callable[..., None]
 ) -> NoWatching:
-    """What is asked for."""
+    """Create what the parameters request."""
     if values["robot_file"] in ("", "none"):
         return NoWatching()
     return Watching(node, values, kind, subscribe)

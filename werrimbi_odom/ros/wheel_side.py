@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The wheels of one side of the robot as one counter."""
+"""Combines the wheels of one side of the robot into one counter."""
 
 from __future__ import annotations
 
@@ -10,25 +10,26 @@ from collections.abc import Sequence
 from werrimbi_odom.model.counter_wraps import wrapped
 
 COUNTER_LIMIT = 2.0**63
-"""No counter has more bits; what lies beyond is a broken message, and its square overflows."""
+"""Limit of all counters (64 bits); larger values are broken messages, and their squares
+overflow."""
 
 
 class WheelSide:
-    """Mean of several wheels' counters, each wrapped and reset on its own.
+    """Mean of several wheels' counters, with wraps and resets handled per wheel.
 
-    The mean of counters that wrap would jump at each wrap, and so would it when the driver of one
-    wheel restarts; so every wheel is counted on by its steps. A wheel that alone falls to near zero
-    is taken to have rolled like the others of its side. When all of them fall, the mean falls too:
-    that is a reset for the model's encoder to judge.
+    The mean of raw counters would jump when one wheel's counter wraps or its driver restarts, so
+    each wheel's increments are summed. If a single wheel falls to near zero, it is assumed to have
+    rolled like the others of its side. If all of them fall, the mean falls too, and the model's
+    encoder detects the reset.
 
     Parameters
     ----------
     counts_per_unit : float
-        Counts for one unit of position.
+        Counts per unit of position.
     counts_per_revolution : float
     bits : int
-        Width at which the counters wrap, to be unwrapped here; 0: they do not, or the model's
-        encoder does it.
+        Width at which the counters wrap, to be unwrapped here; 0: they do not wrap, or the model's
+        encoder unwraps them.
     """
 
     def __init__(self, counts_per_unit: float, counts_per_revolution: float, bits: int = 0) -> None:
@@ -41,7 +42,7 @@ class WheelSide:
         self._total: list[float] = []
 
     def count(self, positions: Sequence[float]) -> float:
-        """Counts of the side, for positions of its wheels; not a number if any of them is not."""
+        """Counts of the side, given the positions of its wheels; NaN if any is not finite."""
         if len(positions) == 1 and not self._bits:
             return positions[0] * self._scale
         counts = [position * self._scale for position in positions]
