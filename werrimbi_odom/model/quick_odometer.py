@@ -15,7 +15,7 @@ import numpy as np
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance, TwistCovariance
 from werrimbi_odom.model.driving import Channels, acts
-from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally, Reading, WheelStep
+from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.message_loop import IN_DOUBT, marching_of, take, write_marching
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.odometer import Estimate, Odometer
@@ -23,6 +23,7 @@ from werrimbi_odom.model.pace import REMEMBERED
 from werrimbi_odom.model.pieces import OpenPiece, Piece, kind_of
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.reading_checks import Reading
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import Marching
 from werrimbi_odom.model.uncertainty import Uncertainty

@@ -15,17 +15,15 @@ from numpy.typing import NDArray
 from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder import (
-    RESOLUTION,
     Counts,
     Encoder,
     EncoderLimits,
     EncoderTally,
-    Reading,
-    reach_rate,
 )
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pace import CLOSE, PAUSE
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.reading_checks import RESOLUTION, Reading, reach_rate
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import Heard, read_on
 

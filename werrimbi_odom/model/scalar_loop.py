@@ -20,11 +20,12 @@ from werrimbi_odom.model.covariance import (
     after_stretch,
     path_noise_of,
 )
-from werrimbi_odom.model.encoder import CountRule, Counts, Reading, undoubted
+from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pace import REMEMBERED, seen
 from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.reading_checks import CountRule, Reading, undoubted
 from werrimbi_odom.model.robot import WheelNoise
 
 
