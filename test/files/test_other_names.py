@@ -12,7 +12,8 @@ from werrimbi_odom.api.odom import odometry
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file, write_robot_file
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_file_rewrite import write_robot_file
 from werrimbi_odom.ros.parameters import settings_of
 
 RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"

@@ -22,7 +22,8 @@ from test.hidden.sets import HiddenSet, make, runs_of
 from test.ros.conftest import DEEP, Launched, launcher
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, write_robot_file
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_file_rewrite import write_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.adding.adding import add_effects
 

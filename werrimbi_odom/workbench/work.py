@@ -20,7 +20,7 @@ from typing import Any, get_args
 from werrimbi_odom.effects.collection import Collection, all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.progress import Show
 from werrimbi_odom.workbench.job import Diagnose, Open, Task

@@ -24,10 +24,7 @@ from werrimbi_odom.inference.comparison.prepared import (
     judged_by,
     jumped_in,
 )
-from werrimbi_odom.inference.comparison.reference_noise import (
-    Residual,
-    residuals_of,
-)
+from werrimbi_odom.inference.comparison.residuals import Residual, residuals_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs

@@ -11,12 +11,8 @@ import numpy as np
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.comparison.local_map import wandering_of
-from werrimbi_odom.inference.comparison.reference_noise import (
-    Measure,
-    Residual,
-    reference_noise,
-    stamp_noise,
-)
+from werrimbi_odom.inference.comparison.reference_noise import reference_noise, stamp_noise
+from werrimbi_odom.inference.comparison.residuals import Measure, Residual
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW, TYPICAL_MATCH

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.rules import (
     DEGREES_BETTER,
     DEGREES_RANGE,

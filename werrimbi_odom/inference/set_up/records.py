@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import sizes_of
-from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.legs.counters import between_messages, summed
 from werrimbi_odom.inference.legs.cutting import leg_ends, usable_rows
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.rules import (
     ONE_WHEEL_FACTOR,
     SPARSE_APART,

@@ -8,7 +8,7 @@ import math
 
 from werrimbi_odom.inference.calibration_sizes import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
-from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
