@@ -281,6 +281,27 @@ def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
     assert found.main.all.outliers == 0
 
 
+def test_fixes_at_fifty_hertz_that_scatter_by_a_third_of_their_spacing_are_no_jumps() -> None:
+    """An RTK receiver: quiet while the robot stands, shaken while it drives at 1.2 m/s."""
+    random = np.random.default_rng(8)
+    time = np.arange(0.0, 160.0, 0.02)
+    drives = (time % 20.0) > 8.0
+    ahead = 1.2 * 0.02 * np.cumsum(drives)
+    counts = np.round(
+        ahead / (2.0 * math.pi * RIGHT.wheel_radius) * RIGHT.left_ticks_per_revolution
+    )
+    sigma = np.where(drives, 0.005, 0.001)
+    shaken = random.standard_t(4, (3, time.size)) * sigma
+    reference = Reference(time, ahead + shaken[0], shaken[1], shaken[2])
+    run = Run("rtk", Path("rtk"), Ticks(time, counts, counts), reference)
+    clean = compare([run], RIGHT)
+    assert clean.main.all.outliers <= 0.02 * clean.legs.run.size
+    lost = compare([shifted(run, 0.6, 0.3)], RIGHT)
+    assert 1 <= lost.main.all.outliers <= clean.main.all.outliers + 1
+    spiked = compare([shifted(run, 0.6, 0.3, last=2)], RIGHT)
+    assert spiked.main.all.outliers <= clean.main.all.outliers + 1
+
+
 def test_before_and_after_are_over_the_same_legs(runs: tuple[Run, ...]) -> None:
     wrong = replace(RIGHT, wheel_radius=0.06)
     prepared = prepare([shifted(runs[0], 0.4, 0.3), *runs[1:]], wrong)
