@@ -11,8 +11,9 @@ import pytest
 
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.report.diagnosis.phrases import cost, hang_together, whole
-from werrimbi_odom.report.diagnosis.remarks import not_shown
+from werrimbi_odom.report.diagnosis import phrases
+from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
+from werrimbi_odom.report.diagnosis.remarks import nearest, not_shown
 
 
 def told_of(after: float) -> Any:
@@ -37,6 +38,31 @@ def test_what_it_costs(after: float, one: str, all_of_it: str) -> None:
     told = told_of(after)
     assert one in " ".join(cost(told, "track_width"))
     assert all_of_it in " ".join(whole(told))
+
+
+def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Radii 13 % too large, and something unknown besides (a car with rear encoders)."""
+    sizes = "both wheels 12.7 % smaller"
+    monkeypatch.setattr(phrases, "sizes_found", lambda _: sizes)
+    ranking = [
+        SimpleNamespace(effect=name, holdout=Sides(0.103, after))
+        for name, after in (("wheel_radius_scale", 0.030), ("reference_heading_delay", 0.024))
+    ]
+    diagnosis: Any = SimpleNamespace(
+        holdout=Sides(0.103, 0.030), ranking=ranking, explained_by=lambda _: False
+    )
+    told: Any = SimpleNamespace(diagnosis=diagnosis, held_out=(), leg=1.0)
+    (said,) = by_sizes_alone(told)
+    assert sizes in said
+    assert "falls from 103 mm to 30.0 mm" in said
+    (said,) = nearest(diagnosis)
+    assert "reference_heading_delay: errors are 24.0 mm with it, and 30.0 mm without" in said
+    diagnosis.ranking = ranking[:1]
+    assert not nearest(diagnosis)
+    diagnosis.holdout = Sides(0.103, 0.103)
+    assert not by_sizes_alone(told)
 
 
 def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:

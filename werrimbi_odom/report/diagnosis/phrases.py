@@ -196,6 +196,18 @@ def whole(told: Told) -> list[str]:
     return [f"With all of them put in, the {error_kind(sides)} error on {judged(told)} {goes}."]
 
 
+def by_sizes_alone(told: Told) -> list[str]:
+    """Of errors that base and radii lower, where something else is missing as well."""
+    sides, words = told.diagnosis.holdout, sizes_found(told.diagnosis)
+    if not words or not sides.fell:
+        return []
+    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
+    return [
+        f"Base and radii are off: {words}. With these the {error_kind(sides)} error on "
+        f"{judged(told)} falls from {before} to {after}. What follows is of the rest."
+    ]
+
+
 def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     """How to check an effect on the robot, after some words, and what to expect there."""
     if effect is None:

@@ -11,6 +11,8 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged
@@ -160,3 +162,27 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
         "allows: it is not that effect."
         for name, value in at_bounds_words(diagnosis).items()
     ]
+
+
+def nearest(diagnosis: Diagnosis) -> list[str]:
+    """The effect of the library that lowers the error most, beside base and radii."""
+    calibrated = diagnosis.holdout
+    others = [item for item in diagnosis.ranking if item.effect not in CALIBRATED]
+    best = min(others, key=lambda item: _after(item.holdout), default=None)
+    if best is None or best.holdout is None or not best.holdout.after < calibrated.after:
+        return []
+    return [
+        f"Nearest in the library is {best.effect}: errors are "
+        f"{error_words(best.holdout.after, best.holdout.unit)} with it, and "
+        f"{error_words(calibrated.after, calibrated.unit)} without. "
+        + (
+            "Yet parts of these drives do not agree on it, or chance could do as much: look there "
+            "first, and drive more."
+            if diagnosis.explained_by(best.effect)
+            else "The above explains far more than it does, so that is not what it is."
+        )
+    ]
+
+
+def _after(sides: Sides | None) -> float:
+    return math.inf if sides is None or math.isnan(sides.after) else sides.after

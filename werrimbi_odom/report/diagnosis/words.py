@@ -14,7 +14,6 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     one_wheel,
     reference_wanders,
 )
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre
 from werrimbi_odom.inference.rules import POWER
@@ -24,6 +23,7 @@ from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
     also,
+    by_sizes_alone,
     cost,
     judged,
     ruler,
@@ -36,6 +36,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     by_headings_alone,
     instead_of_held,
     law,
+    nearest,
     not_shown,
     otherwise,
     scatter,
@@ -220,6 +221,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
         ]
     lines = _set_up(diagnosis)
     cells = significant(diagnosis)
+    lines += by_sizes_alone(told)
     lines.append("Something is missing that no effect of the library explains.")
     if cells:
         lines.append(
@@ -236,20 +238,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched "
             "scans begin anew with each drive. Motion capture or a localiser's map shows it."
         )
-    judged_ones = [item for item in diagnosis.ranking if item.holdout is not None]
-    best = min(judged_ones, key=lambda item: _after(item.holdout), default=None)
-    if best is not None and best.holdout is not None and best.holdout.after < best.holdout.before:
-        lines.append(
-            f"Nearest in the library is {best.effect}: errors are "
-            f"{error_words(best.holdout.after, best.holdout.unit)} with it, and "
-            f"{error_words(best.holdout.before, best.holdout.unit)} without. "
-            + (
-                "Yet parts of these drives do not agree on it, or chance could do as much: look "
-                "there first, and drive more."
-                if diagnosis.explained_by(best.effect)
-                else "The above explains far more than it does, so that is not what it is."
-            )
-        )
+    lines += nearest(diagnosis)
     lines += at_bounds_told(diagnosis)
     if cells:
         lines.append("Next: write it as an effect of your own, from what these drives show:")
@@ -264,10 +253,6 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
         move = told.manoeuvre
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
     return lines
-
-
-def _after(sides: Sides | None) -> float:
-    return math.inf if sides is None or math.isnan(sides.after) else sides.after
 
 
 def _things(diagnosis: Diagnosis) -> list[str]:
