@@ -211,6 +211,32 @@ def test_two_poses_a_drive_are_one_leg_each(runs: tuple[Run, ...]) -> None:
     )
 
 
+def test_two_poses_a_drive_and_radii_five_percent_off_are_no_mistake_of_the_set_up() -> None:
+    """The leg is the drive, of 2.5 m: it errs by more than a tenth of the metre asked for."""
+    random = np.random.default_rng(4)
+    ahead = np.linspace(0.0, 2.5, 200)
+    counts = np.round(ahead / RIGHT.left_tick)
+    ends = np.array([0.0, 2.5])
+    drives = [
+        Run(f"{index}", Path(f"{index}"), Ticks(ahead, counts, counts), reference)
+        for index in range(12)
+        for reference in [Reference(ends, ends + random.normal(0.0, 0.001, 2), 0 * ends, 0 * ends)]
+    ]
+    found = compare(drives, replace(RIGHT, wheel_radius=0.95 * RIGHT.wheel_radius))
+    assert found.main.all.figures.median_position_m > 0.1
+    assert not verdict_of(found).gross
+    assert verdict_of(compare(drives, replace(RIGHT, wheel_radius=0.8 * RIGHT.wheel_radius))).gross
+
+
+def test_a_counter_that_leaps_drives_no_way(runs: tuple[Run, ...]) -> None:
+    ticks = runs[0].ticks
+    left = ticks.left.copy()
+    left[left.size // 2] += 200_000  # 30 m for one message
+    leapt = replace(runs[0], ticks=replace(ticks, left=left))
+    (clean,), (found,) = compare(runs[:1], RIGHT).runs, compare([leapt], RIGHT).runs
+    assert found.distance_m == pytest.approx(clean.distance_m, rel=0.01)
+
+
 def test_one_pose_a_second_is_enough(runs: tuple[Run, ...]) -> None:
     slow = []
     for run in runs:

@@ -42,11 +42,13 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
         return np.zeros_like(errors)
     usual = _running_median(errors, JUMP_NEIGHBOURS)
     left = errors - usual
-    scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left), axis=0)
     driven = _running_max(
         np.abs(item.relative), max(JUMP_NEIGHBOURS, _intervals_within(item.time, JUMP_LATE))
     )
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
+    # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
+    under_way = driven.any(axis=1) if driven.any() else np.ones(driven.shape[0], dtype=np.bool_)
+    scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left[under_way]), axis=0)
     share = np.full(3, JUMP_SHARE)
     if not np.isfinite(item.measured).any():
         # A gyro does not jump. A delay of more than one interval causes an error of all that the

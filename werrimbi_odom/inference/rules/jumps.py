@@ -35,10 +35,10 @@ JUMP_SHARE = 0.5
 """Error of an interval relative to the motion about it, above which it is a jump. A base or a
 radius that is off by half is a set-up mistake, which causes such errors in every interval."""
 
-JUMP_SPAN = 0.1
-"""Shortest time [s] whose motion `JUMP_SHARE` refers to. Most references measure less often. A
-robot at 1 m/s goes 20 mm between the fixes of an RTK receiver at 50 Hz, which scatter by 5 mm: half
-of that is noise. What is less than half of a tenth of a second's motion spoils no leg."""
+JUMP_SPAN = 0.05
+"""Shortest time [s] whose motion `JUMP_SHARE` refers to: the interval of motion capture at 20 Hz,
+on which it was chosen. A robot at 1 m/s goes 20 mm between the fixes of an RTK receiver at 50 Hz,
+which scatter by 5 mm: half of that is noise."""
 
 JUMP_SHARE_OF_A_GYRO = 1.5
 """The same limit for headings alone. A gyro does not lose its position; a delay of more than an
