@@ -40,6 +40,16 @@ def test_what_it_costs(after: float, one: str, all_of_it: str) -> None:
     assert all_of_it in " ".join(whole(told))
 
 
+def test_where_poses_are_rare_the_legs_own_length_is_told() -> None:
+    """Two poses a drive of 2.1 m: its error is not that of a metre."""
+    told = told_of(1.2e-3)
+    sides = Sides(0.124, 0.029, length=2.1)
+    told.diagnosis.holdout = told.diagnosis.ranking[0].holdout = sides
+    told.leg = 1.0
+    (said,) = cost(told, "track_width")
+    assert "on each leg of 2.1 m; on a part put aside for judging (legs of 2.1 m)" in said
+
+
 def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

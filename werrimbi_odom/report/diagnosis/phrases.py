@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import SIGNIFICANT
+from werrimbi_odom.inference.rules import LONGER_LEG, SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
@@ -158,7 +158,7 @@ def _fall(told: Told, sides: Sides) -> list[str]:
         ]
     part = math.sqrt(before**2 - after**2)
     return [
-        f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {kind} "
+        f"What it costs: {error_words(part, sides.unit)} {_each(told, sides)}; {where} the {kind} "
         f"error falls from {told_before} to {told_after} when it is put in."
     ]
 
@@ -168,14 +168,18 @@ def error_kind(sides: Sides) -> str:
     return "heading" if sides.unit == "rad" else "position"
 
 
-def _each(told: Told) -> str:
+def _each(told: Told, sides: Sides) -> str:
+    if sides.length > LONGER_LEG * told.leg:
+        return f"on each leg of {sides.length:.2g} m"
     return f"on each {'metre' if told.leg == 1.0 else f'{told.leg:g} m'} or quarter turn"
 
 
 def judged(told: Told) -> str:
     """On which drives, over which legs."""
     which = "the drives held out" if told.held_out else "a part put aside for judging"
-    return f"{which} (legs of {told.leg:g} m)"
+    length = told.diagnosis.holdout.length
+    leg = f"{length:.2g}" if length > LONGER_LEG * told.leg else f"{told.leg:g}"
+    return f"{which} (legs of {leg} m)"
 
 
 def sizes_found(diagnosis: Diagnosis) -> str:
