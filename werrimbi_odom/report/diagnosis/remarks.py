@@ -171,10 +171,13 @@ def nearest(diagnosis: Diagnosis) -> list[str]:
     best = min(others, key=lambda item: _after(item.holdout), default=None)
     if best is None or best.holdout is None or not best.holdout.after < calibrated.after:
         return []
+    sides = (best.holdout.after, calibrated.after)
+    with_it, without = (error_words(each, calibrated.unit) for each in sides)
+    if with_it == without:
+        return []
     return [
-        f"Nearest in the library is {best.effect}: errors are "
-        f"{error_words(best.holdout.after, best.holdout.unit)} with it, and "
-        f"{error_words(calibrated.after, calibrated.unit)} without. "
+        f"Nearest in the library is {best.effect}: errors are {with_it} with it, and {without} "
+        "without. "
         + (
             "Yet parts of these drives do not agree on it, or chance could do as much: look there "
             "first, and drive more."
