@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import LONGER_LEG, SIGNIFICANT
+from werrimbi_odom.inference.rules import LONGER_LEG, ORDINARY, SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
@@ -201,9 +201,16 @@ def whole(told: Told) -> list[str]:
 
 
 def by_sizes_alone(told: Told) -> list[str]:
-    """Of errors that base and radii lower, where something else is missing as well."""
-    sides, words = told.diagnosis.holdout, sizes_found(told.diagnosis)
-    if not words or not sides.fell:
+    """Of errors that base and radii lower, where something else is missing as well.
+
+    Sizes that are off by more than calibration may stand in for what is missing.
+    """
+    diagnosis = told.diagnosis
+    sides, words = diagnosis.holdout, sizes_found(diagnosis)
+    ratios = [
+        value / getattr(diagnosis.given, n) for n, (value, _) in best_sizes(diagnosis).items()
+    ]
+    if not (words and sides.fell and all(1.0 / ORDINARY < each < ORDINARY for each in ratios)):
         return []
     before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
     return [
