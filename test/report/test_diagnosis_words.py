@@ -13,7 +13,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.report.diagnosis import phrases
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
-from werrimbi_odom.report.diagnosis.remarks import nearest, not_shown
+from werrimbi_odom.report.diagnosis.remarks import drowned, nearest, not_shown
 
 
 def told_of(after: float) -> Any:
@@ -48,6 +48,21 @@ def test_where_poses_are_rare_the_legs_own_length_is_told() -> None:
     told.leg = 1.0
     (said,) = cost(told, "track_width")
     assert "on each leg of 2.1 m; on a part put aside for judging (legs of 2.1 m)" in said
+
+
+@pytest.mark.parametrize(
+    ("sides", "said"),
+    [
+        (Sides(0.36, 0.36, length=1.1), "33 % of the way"),
+        (Sides(0.08, 0.08, length=1.1), ""),
+        (Sides(0.36, 0.36, length=16.0), ""),
+        (Sides(0.36, 0.36, "rad", length=1.1), ""),
+    ],
+)
+def test_nothing_is_missing_beside_errors_of_a_third_of_the_way(sides: Sides, said: str) -> None:
+    told: Any = SimpleNamespace(diagnosis=SimpleNamespace(holdout=sides), leg=1.0)
+    words = " ".join(drowned(told))
+    assert said in words if said else not words
 
 
 def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(

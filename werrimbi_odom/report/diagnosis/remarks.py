@@ -14,6 +14,7 @@ from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
+from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
@@ -161,6 +162,20 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
         f"But: {name} would lower the error too, only with {value}, the limit of what physics "
         "allows: it is not that effect."
         for name, value in at_bounds_words(diagnosis).items()
+    ]
+
+
+def drowned(told: Told) -> list[str]:
+    """Of a *none* whose errors are a large part of the way: of little worth."""
+    sides = told.diagnosis.holdout
+    leg = max(told.leg, sides.length)
+    if sides.unit != "m" or not sides.after > WRONG_OF_A_LEG * leg:
+        return []
+    return [
+        f"But: that is {100.0 * sides.after / leg:.0f} % of the way. If the reference errs so, it "
+        "hides all that is smaller; longer legs (--leg) or a better reference show more. If it "
+        "does not, something is wrong that looks like noise: see where both paths part, by "
+        "`werrimbi compare` with --report."
     ]
 
 

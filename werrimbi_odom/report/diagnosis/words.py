@@ -34,6 +34,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
 from werrimbi_odom.report.diagnosis.remarks import (
     at_bounds_told,
     by_headings_alone,
+    drowned,
     instead_of_held,
     law,
     nearest,
@@ -102,13 +103,15 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
     wanders = reference_wanders(diagnosis)
-    noise = diagnosis.misfit is None and not wanders
+    large = drowned(told)
+    noise = diagnosis.misfit is None and not wanders and not large
     ending = ": the model explains them to their noise." if noise else "."
     lines = [f"Nothing is missing that these drives could show{ending}", *law(told)]
     if math.isfinite(diagnosis.holdout.after):
         errors = error_words(diagnosis.holdout.after, diagnosis.holdout.unit)
         like = ", and they look like noise" if noise else ""
         lines.append(f"Its errors on {judged(told)} are {errors}{like}.")
+        lines += large
     lines += instead_of_held(diagnosis)
     if wanders:
         lines.append(
