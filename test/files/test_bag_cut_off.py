@@ -60,6 +60,28 @@ def test_files_of_a_recording_that_was_killed(tmp_path: Path, ros: Any, robot: A
     assert run.damage
 
 
+@pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
+def test_a_file_that_was_renamed_is_read_beside_its_old_metadata(
+    tmp_path: Path, ros: Any, robot: Any, plugin: str
+) -> None:
+    bag = ros.write(tmp_path / "bag", drive(ros, 30), plugin)
+    file = next(each for each in bag.iterdir() if each.suffix != ".yaml")
+    file.rename(bag / f"rosbag{file.suffix}")
+    run = read_run(bag, robot())
+    assert run.ticks.rows == 30
+    assert run.damage == ()
+
+
+def test_a_file_of_several_that_is_gone_is_missed(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """What is there is a part, and would pass for the whole."""
+    bag = ros.write(tmp_path / "bag", drive(ros, 30))
+    metadata = bag / "metadata.yaml"
+    name = next(bag.glob("*.mcap")).name
+    metadata.write_text(metadata.read_text().replace(f"- {name}", f"- {name}\n  - gone.mcap", 1))
+    with pytest.raises(InputError, match=r"gone\.mcap"):
+        read_run(bag, robot())
+
+
 def test_an_undamaged_bag_says_nothing(tmp_path: Path, ros: Any, robot: Any) -> None:
     assert read_run(ros.write(tmp_path / "bag", drive(ros, 3)), robot()).damage == ()
 

@@ -211,6 +211,32 @@ def test_two_poses_a_drive_are_one_leg_each(runs: tuple[Run, ...]) -> None:
     )
 
 
+def test_two_poses_a_drive_and_radii_five_percent_off_are_no_mistake_of_the_set_up() -> None:
+    """The leg is the drive, of 2.5 m: it errs by more than a tenth of the metre asked for."""
+    random = np.random.default_rng(4)
+    ahead = np.linspace(0.0, 2.5, 200)
+    counts = np.round(ahead / RIGHT.left_tick)
+    ends = np.array([0.0, 2.5])
+    drives = [
+        Run(f"{index}", Path(f"{index}"), Ticks(ahead, counts, counts), reference)
+        for index in range(12)
+        for reference in [Reference(ends, ends + random.normal(0.0, 0.001, 2), 0 * ends, 0 * ends)]
+    ]
+    found = compare(drives, replace(RIGHT, wheel_radius=0.95 * RIGHT.wheel_radius))
+    assert found.main.all.figures.median_position_m > 0.1
+    assert not verdict_of(found).gross
+    assert verdict_of(compare(drives, replace(RIGHT, wheel_radius=0.8 * RIGHT.wheel_radius))).gross
+
+
+def test_a_counter_that_leaps_drives_no_way(runs: tuple[Run, ...]) -> None:
+    ticks = runs[0].ticks
+    left = ticks.left.copy()
+    left[left.size // 2] += 200_000  # 30 m for one message
+    leapt = replace(runs[0], ticks=replace(ticks, left=left))
+    (clean,), (found,) = compare(runs[:1], RIGHT).runs, compare([leapt], RIGHT).runs
+    assert found.distance_m == pytest.approx(clean.distance_m, rel=0.01)
+
+
 def test_one_pose_a_second_is_enough(runs: tuple[Run, ...]) -> None:
     slow = []
     for run in runs:
@@ -279,6 +305,27 @@ def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
     run = Run("straight", Path("straight"), Ticks(time, counts, counts), Reference(time, x, y, yaw))
     found = compare([run], RIGHT, EvaluationOptions(reference_kind="incremental"))
     assert found.main.all.outliers == 0
+
+
+def test_fixes_at_fifty_hertz_that_scatter_by_a_third_of_their_spacing_are_no_jumps() -> None:
+    """An RTK receiver: quiet while the robot stands, shaken while it drives at 1.2 m/s."""
+    random = np.random.default_rng(8)
+    time = np.arange(0.0, 160.0, 0.02)
+    drives = (time % 20.0) > 8.0
+    ahead = 1.2 * 0.02 * np.cumsum(drives)
+    counts = np.round(
+        ahead / (2.0 * math.pi * RIGHT.wheel_radius) * RIGHT.left_ticks_per_revolution
+    )
+    sigma = np.where(drives, 0.005, 0.001)
+    shaken = random.standard_t(4, (3, time.size)) * sigma
+    reference = Reference(time, ahead + shaken[0], shaken[1], shaken[2])
+    run = Run("rtk", Path("rtk"), Ticks(time, counts, counts), reference)
+    clean = compare([run], RIGHT)
+    assert clean.main.all.outliers <= 0.02 * clean.legs.run.size
+    lost = compare([shifted(run, 0.6, 0.3)], RIGHT)
+    assert 1 <= lost.main.all.outliers <= clean.main.all.outliers + 1
+    spiked = compare([shifted(run, 0.6, 0.3, last=2)], RIGHT)
+    assert spiked.main.all.outliers <= clean.main.all.outliers + 1
 
 
 def test_before_and_after_are_over_the_same_legs(runs: tuple[Run, ...]) -> None:

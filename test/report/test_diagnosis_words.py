@@ -11,8 +11,9 @@ import pytest
 
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.report.diagnosis.phrases import cost, hang_together, whole
-from werrimbi_odom.report.diagnosis.remarks import not_shown
+from werrimbi_odom.report.diagnosis import phrases
+from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
+from werrimbi_odom.report.diagnosis.remarks import drowned, nearest, not_shown
 
 
 def told_of(after: float) -> Any:
@@ -37,6 +38,63 @@ def test_what_it_costs(after: float, one: str, all_of_it: str) -> None:
     told = told_of(after)
     assert one in " ".join(cost(told, "track_width"))
     assert all_of_it in " ".join(whole(told))
+
+
+def test_where_poses_are_rare_the_legs_own_length_is_told() -> None:
+    """Two poses a drive of 2.1 m: its error is not that of a metre."""
+    told = told_of(1.2e-3)
+    sides = Sides(0.124, 0.029, length=2.1)
+    told.diagnosis.holdout = told.diagnosis.ranking[0].holdout = sides
+    told.leg = 1.0
+    (said,) = cost(told, "track_width")
+    assert "on each leg of 2.1 m; on a part put aside for judging (legs of 2.1 m)" in said
+
+
+@pytest.mark.parametrize(
+    ("sides", "said"),
+    [
+        (Sides(0.36, 0.36, length=1.1), "33 % of the way"),
+        (Sides(0.08, 0.08, length=1.1), ""),
+        (Sides(0.36, 0.36, length=16.0), ""),
+        (Sides(0.36, 0.36, "rad", length=1.1), ""),
+    ],
+)
+def test_nothing_is_missing_beside_errors_of_a_third_of_the_way(sides: Sides, said: str) -> None:
+    told: Any = SimpleNamespace(diagnosis=SimpleNamespace(holdout=sides), leg=1.0)
+    words = " ".join(drowned(told))
+    assert said in words if said else not words
+
+
+def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Radii 13 % too large, and something unknown besides (a car with rear encoders)."""
+    sizes = "both wheels 12.7 % smaller"
+    factor = 0.873
+    monkeypatch.setattr(phrases, "sizes_found", lambda _: sizes)
+    monkeypatch.setattr(phrases, "best_sizes", lambda _: {"left": (factor, 0.01)})
+    ranking = [
+        SimpleNamespace(effect=name, holdout=Sides(0.103, after))
+        for name, after in (("wheel_radius_scale", 0.030), ("reference_heading_delay", 0.024))
+    ]
+    diagnosis: Any = SimpleNamespace(
+        holdout=Sides(0.103, 0.030),
+        ranking=ranking,
+        explained_by=lambda _: False,
+        given=SimpleNamespace(left=1.0),
+    )
+    told: Any = SimpleNamespace(diagnosis=diagnosis, held_out=(), leg=1.0)
+    (said,) = by_sizes_alone(told)
+    assert sizes in said
+    assert "falls from 103 mm to 30.0 mm" in said
+    (said,) = nearest(diagnosis)
+    assert "reference_heading_delay: errors are 24.0 mm with it, and 30.0 mm without" in said
+    ranking[1].holdout = Sides(0.103, 0.02999)
+    assert not nearest(diagnosis)
+    factor = 2.1  # wheels exchanged, perhaps, and too few poses to tell
+    assert not by_sizes_alone(told)
+    factor, diagnosis.holdout = 0.873, Sides(0.103, 0.103)
+    assert not by_sizes_alone(told)
 
 
 def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:

@@ -196,25 +196,30 @@ def _files(path: Path) -> list[Path]:
     return sorted(found, key=lambda each: (len(each.name), each.name))  # bag_9 before bag_10
 
 
+def named_files(folder: Path) -> list[Path]:
+    """Files that the metadata of a bag name, whether they are there or not."""
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    with suppress(YAMLError, LookupError, TypeError):
+        metadata = YAML(typ="safe").load(folder / "metadata.yaml")
+        names = list(metadata["rosbag2_bagfile_information"]["relative_file_paths"])
+        return [folder / PurePath(name).name for name in names]
+    return []
+
+
 def _refuse_repeated(folder: Path) -> None:
     """Raise if the metadata name a file repeatedly: it would be read as often.
 
     Other faults of the metadata are reported by rosbags.
     """
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    names: list[str] = []
-    with suppress(YAMLError, LookupError, TypeError):
-        metadata = YAML(typ="safe").load(folder / "metadata.yaml")
-        names = list(metadata["rosbag2_bagfile_information"]["relative_file_paths"])
     seen: set[tuple[int, int]] = set()
-    for name in names:
-        file = folder / PurePath(name).name
+    for file in named_files(folder):
         if not file.exists():
             continue
         found = file.stat()
         if (found.st_dev, found.st_ino) in seen:
+            name = file.name
             raise InputError(f"{folder / 'metadata.yaml'}: it names the file {name} more than once")
         seen.add((found.st_dev, found.st_ino))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import SUFFIXES
+from werrimbi_odom.files.bag import SUFFIXES, named_files
 from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
@@ -124,9 +124,11 @@ def _of_kind(
 
 
 def _bag_in(folder: Path) -> Path:
-    if (folder / "metadata.yaml").exists():
-        return folder
     files = sorted(each for each in folder.iterdir() if each.suffix in SUFFIXES)
+    if (folder / "metadata.yaml").exists():
+        named = named_files(folder)
+        renamed = len(files) == 1 and named and not any(file.exists() for file in named)
+        return files[0] if renamed else folder
     if files:  # the recorder was killed before it wrote the metadata
         return files[0] if len(files) == 1 else folder
     hint = ""

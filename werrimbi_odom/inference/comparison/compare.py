@@ -31,6 +31,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
@@ -184,7 +185,7 @@ def judged(
         prepared=prepared,
         model=model,
         runs=tuple(
-            _run_figures(run, driven[index], of_runs[index], model.of_run(index))
+            _run_figures(run, driven[index], of_runs[index], model.of_run(index), prepared)
             for index, run in enumerate(prepared.runs)
         ),
         lengths=tuple(lengths),
@@ -234,20 +235,22 @@ def _figures_of(
     )
 
 
-def _run_figures(run: Run, path: Residual, legs: LegFigures, robot: Robot) -> RunFigures:
+def _run_figures(
+    run: Run, path: Residual, legs: LegFigures, robot: Robot, prepared: PreparedRuns
+) -> RunFigures:
     off = np.abs(path.measured - path.predicted)
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
     if run.reference is not None and run.reference.own_axes and run.taken_out:
         off, turned = np.full_like(off, np.nan), turned[:0]  # each piece has axes of its own
     known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0
+    counters = counters_of(run, prepared.robot, prepared.options.limits)
     travel = 0.5 * (
-        np.diff(run.ticks.left.astype(np.float64)) * robot.left_tick
-        + np.diff(run.ticks.right.astype(np.float64)) * robot.right_tick
+        np.diff(counters.left) * robot.left_tick + np.diff(counters.right) * robot.right_tick
     )
     return RunFigures(
         run,
-        float(np.nansum(np.abs(travel))),
+        float(np.abs(travel).sum()),
         float(np.ptp(run.ticks.time)),
         float(off[known[-1]]) if known.size else np.nan,
         wrap(float(path.measured_yaw[last] - path.predicted_yaw[last])) if last else np.nan,

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,8 @@ from werrimbi_odom.inference.rules import (
     JUMP_SCATTER,
     JUMP_SHARE,
     JUMP_SHARE_OF_A_GYRO,
+    JUMP_SMALL,
+    JUMP_SPAN,
 )
 from werrimbi_odom.model.pose import Floats
 
@@ -29,24 +33,29 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     """Jump of the reference in each interval, (x, y, yaw); zero where there is none; (n - 1, 3).
 
     A jump is an error of one interval that exceeds the dispersion of all errors, the errors of its
-    neighbours, and a share of the motion around it. No wrong model causes such errors. Intervals in
-    a `gap` (n - 1,) are not tested.
+    neighbours, and a share of the motion around it (over `JUMP_SPAN` at least). No wrong model
+    causes such errors. Intervals in a `gap` (n - 1,) are not tested. A spike is recorded with its
+    neighbours: the poses before and after it err as well, so it comes and goes in several steps.
     """
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
     if errors.shape[0] < JUMP_FEWEST:
         return np.zeros_like(errors)
     usual = _running_median(errors, JUMP_NEIGHBOURS)
     left = errors - usual
-    scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left), axis=0)
     driven = _running_max(
         np.abs(item.relative), max(JUMP_NEIGHBOURS, _intervals_within(item.time, JUMP_LATE))
     )
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
+    # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
+    under_way = driven.any(axis=1) if driven.any() else np.ones(driven.shape[0], dtype=np.bool_)
+    scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left[under_way]), axis=0)
     share = np.full(3, JUMP_SHARE)
     if not np.isfinite(item.measured).any():
         # A gyro does not jump. A delay of more than one interval causes an error of all that the
         # robot turns in it, so a start looks like a jump until base and delay are right.
         share[2] = JUMP_SHARE_OF_A_GYRO
+    # The noise of a pose does not fall with the interval; the motion does.
+    share = share * max(1.0, JUMP_SPAN / max(float(np.median(np.diff(item.time))), 1e-9))
     least = share * (driven + np.abs(usual))
     if not np.isfinite(item.measured).any():
         least[:, 2] = np.maximum(least[:, 2], JUMP_LEAST_OF_A_GYRO)
@@ -57,7 +66,9 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     many = np.quantile(np.abs(left), 1.0 - JUMP_RARE, axis=0) / JUMP_RARE_SIGMAS
     scatter = np.where(often, np.maximum(many, scatter), scatter)
     wrong = np.abs(left) > np.maximum(JUMP_SCATTER * scatter, least)
-    return np.where(wrong, left, 0.0)
+    stays = np.abs(_running_sum(left, JUMP_NEIGHBOURS)) > JUMP_LASTS * np.abs(left)
+    returns = _running_max((wrong & ~stays).astype(np.float64), JUMP_NEIGHBOURS) > 0.0
+    return np.where(wrong | returns, left, 0.0)
 
 
 def _running_median(values: Floats, reach: int) -> Floats:
@@ -65,6 +76,12 @@ def _running_median(values: Floats, reach: int) -> Floats:
     padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
     return np.asarray(np.median(windows, axis=-1))
+
+
+def _running_sum(values: Floats, reach: int) -> Floats:
+    padded = np.pad(values, ((reach, reach), (0, 0)))
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
+    return np.asarray(np.sum(windows, axis=-1))
 
 
 def _intervals_within(time: Floats, span: float) -> int:
@@ -95,10 +112,10 @@ def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) ->
     sums = np.concatenate([np.zeros((1, 3)), np.cumsum(jumps, axis=0)])
     number = np.concatenate([[0.0], np.cumsum(happened)])
     lasting = np.abs(np.diff(sums[chosen], axis=0))
+    legs = [np.abs(jumps[a:b]).max(axis=0, initial=0.0) for a, b in pairwise(chosen)]
+    of_leg = np.reshape(legs, (-1, 3))
+    least = np.maximum(JUMP_LASTS * of_leg, JUMP_SMALL * np.abs(jumps).max(axis=0, initial=0.0))
     count = np.diff(number[chosen])
     if kind == "incremental":
         return np.asarray(count > 0.0)
-    largest = np.abs(jumps).max(axis=0, initial=0.0)
-    return np.asarray(
-        (count > 0.0) & np.any(lasting > JUMP_LASTS * np.maximum(largest, 1e-12), axis=1)
-    )
+    return np.asarray(np.any(lasting > np.maximum(least, 1e-12), axis=1))

@@ -120,7 +120,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
         return Verdict(
             enough=False, noise="unknown", factor=factor, judged_at=leg, too_short=too_short
         )
-    gross = _gross(main, systematic)
+    gross = _gross(comparison, systematic)
     few = _held_by_few(comparison)
     bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
     lengths = told([item.consistency for item in comparison.lengths])
@@ -159,18 +159,21 @@ def _too_short(comparison: Comparison) -> float:
     return noise if comparison.main.leg < SHORTEST_OF_POSITIONS * noise else 0.0
 
 
-def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
+def _gross(comparison: Comparison, systematic: tuple[Systematic, ...]) -> bool:
     """Whether errors are as large as those of a set-up mistake."""
+    main = comparison.main
     shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
     figures = main.all.figures
     if not figures.nees > WRONG_NEES:
         return False
+    # Where poses are rare, as two a drive, legs are longer than was asked for.
+    leg = max(main.leg, float(np.median(comparison.legs.errors.length)))
     return (
         any(
             (part.channel, part.per) in shares and abs(part.value) > WRONG_SHARE
             for part in systematic
         )
-        or figures.median_position_m > WRONG_OF_A_LEG * main.leg
+        or figures.median_position_m > WRONG_OF_A_LEG * leg
         or any(
             item.figures.rmse_yaw_rad > WRONG_SHARE * QUARTER_TURN
             for item in main.by_motion.values()

@@ -39,6 +39,8 @@ class Sides:
     """Radians where only headings were measured."""
     chance: float = 1.0
     """P-value of the rise of the error on these legs; 1 where it did not rise."""
+    length: float = 0.0
+    """Median path length of these legs, longer than asked for where poses are rare [m]."""
 
     @property
     def fell(self) -> bool:
@@ -62,11 +64,12 @@ def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
         "m" for errors of position, "rad" for those of heading.
     """
     errors = error_of(before, unit), error_of(after, unit)
+    length = float(np.median(before.errors.length)) if before.errors.length.size else 0.0
     quiet = ~(before.event | after.event)  # each model has its own view of which legs have an event
     before, after = before.chosen(quiet), after.chosen(quiet)
     if not error_of(after, unit) > error_of(before, unit) * (1.0 + HELD_OUT_FALL):
-        return Sides(*errors, unit)
-    return Sides(*errors, unit, _chance(before, after, unit))
+        return Sides(*errors, unit, length=length)
+    return Sides(*errors, unit, _chance(before, after, unit), length)
 
 
 def error_of(legs: Legs, unit: Unit) -> float:

@@ -35,6 +35,11 @@ JUMP_SHARE = 0.5
 """Error of an interval relative to the motion about it, above which it is a jump. A base or a
 radius that is off by half is a set-up mistake, which causes such errors in every interval."""
 
+JUMP_SPAN = 0.05
+"""Shortest time [s] whose motion `JUMP_SHARE` refers to: the interval of motion capture at 20 Hz,
+on which it was chosen. A robot at 1 m/s goes 20 mm between the fixes of an RTK receiver at 50 Hz,
+which scatter by 5 mm: half of that is noise."""
+
 JUMP_SHARE_OF_A_GYRO = 1.5
 """The same limit for headings alone. A gyro does not lose its position; a delay of more than an
 interval causes an error of all that the robot turns in it (a share of 1), and a start looks like a
@@ -52,9 +57,13 @@ JUMP_NEIGHBOURS, JUMP_FEWEST = 3, 8
 """Intervals to either side of which the median is taken, and fewest intervals in which a jump is
 found: their window of seven, and one more."""
 
-JUMP_LASTS = 0.2
-"""Share of a run's largest jump that must remain at the end of a leg for it to be spoilt. Chosen: a
-spike returns to within the noise, and a lost position stays."""
+JUMP_LASTS = 0.5
+"""Share of the largest jump on a leg that must remain at its end for the leg to be spoilt. Chosen:
+a spike returns to within the noise, and a lost position stays; half is the midpoint."""
+
+JUMP_SMALL = 0.2
+"""Share of a run's largest jump up to which a jump spoils no leg: beside a lost position it is
+noise, and what lasts is found by itself once the model is right (an event)."""
 
 JUMP_OF_A_LEG = 40.0
 """Squared deviation of a leg, relative to the median of its run, above which the reference jumped:

@@ -125,3 +125,7 @@ Chosen: three times the fewest that are judged, as a part of them is held out.""
 TURN_SHOWS, WAY_SHOWS = 3.14, 2.0
 """Turn [rad], and travel [m], above which a recording can show base and radii. Chosen: half a turn
 and two metres show them to a percent, with a reference good to a degree and to 2 cm."""
+
+LONGER_LEG = 1.5
+"""Length of the legs in multiples of what was asked for, above which their own is told. Chosen: a
+leg ends at the first pose after that length, so poses twice a leg make it half as long again."""

@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import SIGNIFICANT
+from werrimbi_odom.inference.rules import LONGER_LEG, ORDINARY, SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
@@ -158,7 +158,7 @@ def _fall(told: Told, sides: Sides) -> list[str]:
         ]
     part = math.sqrt(before**2 - after**2)
     return [
-        f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {kind} "
+        f"What it costs: {error_words(part, sides.unit)} {_each(told, sides)}; {where} the {kind} "
         f"error falls from {told_before} to {told_after} when it is put in."
     ]
 
@@ -168,14 +168,18 @@ def error_kind(sides: Sides) -> str:
     return "heading" if sides.unit == "rad" else "position"
 
 
-def _each(told: Told) -> str:
+def _each(told: Told, sides: Sides) -> str:
+    if sides.length > LONGER_LEG * told.leg:
+        return f"on each leg of {sides.length:.2g} m"
     return f"on each {'metre' if told.leg == 1.0 else f'{told.leg:g} m'} or quarter turn"
 
 
 def judged(told: Told) -> str:
     """Drives and legs of the held-out errors."""
     which = "the drives held out" if told.held_out else "a part put aside for judging"
-    return f"{which} (legs of {told.leg:g} m)"
+    length = told.diagnosis.holdout.length
+    leg = f"{length:.2g}" if length > LONGER_LEG * told.leg else f"{told.leg:g}"
+    return f"{which} (legs of {leg} m)"
 
 
 def sizes_found(diagnosis: Diagnosis) -> str:
@@ -194,6 +198,25 @@ def whole(told: Told) -> list[str]:
     if before == after:
         goes = f"stays at {before}"
     return [f"With all of them put in, the {error_kind(sides)} error on {judged(told)} {goes}."]
+
+
+def by_sizes_alone(told: Told) -> list[str]:
+    """Of errors that base and radii lower, where something else is missing as well.
+
+    Sizes that are off by more than calibration may stand in for what is missing.
+    """
+    diagnosis = told.diagnosis
+    sides, words = diagnosis.holdout, sizes_found(diagnosis)
+    ratios = [
+        value / getattr(diagnosis.given, n) for n, (value, _) in best_sizes(diagnosis).items()
+    ]
+    if not (words and sides.fell and all(1.0 / ORDINARY < each < ORDINARY for each in ratios)):
+        return []
+    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
+    return [
+        f"Base and radii are off: {words}. With these the {error_kind(sides)} error on "
+        f"{judged(told)} falls from {before} to {after}. What follows is of the rest."
+    ]
 
 
 def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:

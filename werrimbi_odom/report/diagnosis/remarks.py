@@ -11,7 +11,10 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
+from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
@@ -160,3 +163,44 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
         "allows: it is not that effect."
         for name, value in at_bounds_words(diagnosis).items()
     ]
+
+
+def drowned(told: Told) -> list[str]:
+    """Of a *none* whose errors are a large part of the way: of little worth."""
+    sides = told.diagnosis.holdout
+    leg = max(told.leg, sides.length)
+    if sides.unit != "m" or not sides.after > WRONG_OF_A_LEG * leg:
+        return []
+    return [
+        f"But: that is {100.0 * sides.after / leg:.0f} % of the way. If the reference errs so, it "
+        "hides all that is smaller; longer legs (--leg) or a better reference show more. If it "
+        "does not, something is wrong that looks like noise: see where both paths part, by "
+        "`werrimbi compare` with --report."
+    ]
+
+
+def nearest(diagnosis: Diagnosis) -> list[str]:
+    """The effect of the library that lowers the error most, beside base and radii."""
+    calibrated = diagnosis.holdout
+    others = [item for item in diagnosis.ranking if item.effect not in CALIBRATED]
+    best = min(others, key=lambda item: _after(item.holdout), default=None)
+    if best is None or best.holdout is None or not best.holdout.after < calibrated.after:
+        return []
+    sides = (best.holdout.after, calibrated.after)
+    with_it, without = (error_words(each, calibrated.unit) for each in sides)
+    if with_it == without:
+        return []
+    return [
+        f"Nearest in the library is {best.effect}: errors are {with_it} with it, and {without} "
+        "without. "
+        + (
+            "Yet parts of these drives do not agree on it, or chance could do as much: look there "
+            "first, and drive more."
+            if diagnosis.explained_by(best.effect)
+            else "The above explains far more than it does, so that is not what it is."
+        )
+    ]
+
+
+def _after(sides: Sides | None) -> float:
+    return math.inf if sides is None or math.isnan(sides.after) else sides.after

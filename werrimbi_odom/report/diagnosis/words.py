@@ -14,7 +14,6 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     one_wheel,
     reference_wanders,
 )
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre
 from werrimbi_odom.inference.rules import POWER
@@ -24,6 +23,7 @@ from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
     also,
+    by_sizes_alone,
     cost,
     judged,
     ruler,
@@ -34,8 +34,10 @@ from werrimbi_odom.report.diagnosis.phrases import (
 from werrimbi_odom.report.diagnosis.remarks import (
     at_bounds_told,
     by_headings_alone,
+    drowned,
     instead_of_held,
     law,
+    nearest,
     not_shown,
     otherwise,
     scatter,
@@ -101,13 +103,15 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
     wanders = reference_wanders(diagnosis)
-    noise = diagnosis.misfit is None and not wanders
+    large = drowned(told)
+    noise = diagnosis.misfit is None and not wanders and not large
     ending = ": the model explains them to their noise." if noise else "."
     lines = [f"Nothing is missing that these drives could show{ending}", *law(told)]
     if math.isfinite(diagnosis.holdout.after):
         errors = error_words(diagnosis.holdout.after, diagnosis.holdout.unit)
         like = ", and they look like noise" if noise else ""
         lines.append(f"Its errors on {judged(told)} are {errors}{like}.")
+        lines += large
     lines += instead_of_held(diagnosis)
     if wanders:
         lines.append(
@@ -220,6 +224,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
         ]
     lines = _set_up(diagnosis)
     cells = significant(diagnosis)
+    lines += by_sizes_alone(told)
     lines.append("Something is missing that no effect of the library explains.")
     if cells:
         lines.append(
@@ -236,20 +241,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched "
             "scans begin anew with each drive. Motion capture or a localiser's map shows it."
         )
-    judged_ones = [item for item in diagnosis.ranking if item.holdout is not None]
-    best = min(judged_ones, key=lambda item: _after(item.holdout), default=None)
-    if best is not None and best.holdout is not None and best.holdout.after < best.holdout.before:
-        lines.append(
-            f"Nearest in the library is {best.effect}: errors are "
-            f"{error_words(best.holdout.after, best.holdout.unit)} with it, and "
-            f"{error_words(best.holdout.before, best.holdout.unit)} without. "
-            + (
-                "Yet parts of these drives do not agree on it, or chance could do as much: look "
-                "there first, and drive more."
-                if diagnosis.explained_by(best.effect)
-                else "The above explains far more than it does, so that is not what it is."
-            )
-        )
+    lines += nearest(diagnosis)
     lines += at_bounds_told(diagnosis)
     if cells:
         lines.append("Next: write it as an effect of your own, from what these drives show:")
@@ -264,10 +256,6 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
         move = told.manoeuvre
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
     return lines
-
-
-def _after(sides: Sides | None) -> float:
-    return math.inf if sides is None or math.isnan(sides.after) else sides.after
 
 
 def _things(diagnosis: Diagnosis) -> list[str]:
