@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeVar
 from weakref import ref
@@ -111,6 +111,10 @@ class Reference:
         """Where yaw was measured."""
         return np.isfinite(self.yaw)
 
+    def earlier(self, delay: float) -> Reference:
+        """The same with stamps that are free of a delay [s]."""
+        return self if delay == 0.0 else replace(self, time=self.time - delay)
+
     def chosen(self, which: NDArray[np.bool_]) -> Reference:
         """Some of the poses; `which` has shape (m,)."""
         return Reference(
@@ -166,11 +170,12 @@ class Run:
     no_driving: tuple[NoDriving, ...] | None = None
     """What of it is no driving; None where nobody has looked yet."""
     taken_out: tuple[tuple[float, float], ...] = ()
-    """Stretches of the reference that were put aside on purpose, from and to [s]: legs end there,
-    and begin anew."""
+    """Stretches of the reference that were put aside on purpose, from and to in its stamps [s]:
+    legs end there, and begin anew."""
     happened: tuple[tuple[float, float], ...] = ()
-    """Stretches in which the robot, or the reference, was moved at once, from and to [s]: an event,
-    which no law explains. Legs go through it, and nothing is told of their errors."""
+    """Stretches in which the robot, or the reference, was moved at once, from and to in the stamps
+    of the reference [s]: an event, which no law explains. Legs go through it, and nothing is told
+    of their errors."""
 
 
 class Collected(NamedTuple):
