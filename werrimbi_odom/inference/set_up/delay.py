@@ -56,7 +56,7 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     lasted = [float(record.time[-1] - record.time[0]) for record in records]
     usual = float(np.median(lasted)) / DELAY_SPANS if lasted else DELAY_LONGEST
     for longest in (DELAY_LONGEST, *([usual] if usual < DELAY_LONGEST else [])):
-        lag, gain = _lag_within(records, round(longest / _PERIOD))
+        lag, gain = _lag_within(records, int(longest / _PERIOD))
         if lag != 0.0:
             return lag, gain
     return 0.0, 1.0
