@@ -7,7 +7,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,10 +16,12 @@ from werrimbi_odom.inference.rules import (
     DEGREES_BETTER,
     DEGREES_RANGE,
     DEGREES_WRAPS,
+    FASTEST_TURN,
     FEWEST_CUTS,
     RADIANS_WRAPS,
     SURE_SIZE,
 )
+from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Setting,
@@ -96,13 +98,34 @@ def degrees_gain(records: Sequence[SetUpRecord], robot: Robot, measured: Measure
             int(np.sum((jumps > low) & (jumps < high)))
             for low, high in (DEGREES_WRAPS, RADIANS_WRAPS)
         )
-        return math.inf if degrees > radians else 1.0
+        if degrees > radians or _turns_in_degrees(records, robot):
+            return math.inf
+        return 1.0
     given = regressed(records, robot)
     mended = regressed([each.in_degrees() for each in records], robot)
     if mended is None or given is None:
         return 1.0
     gain = given.moving.scatter / mended.moving.scatter
     return gain if gain > DEGREES_BETTER else 1.0
+
+
+def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
+    """Whether headings that never wrap turn as a robot does only if they are in degrees.
+
+    By the wheels alone that is the same as a radius over base that is off by 57.3. So in degrees
+    they must also agree better with the robot file.
+    """
+    # Turns that are 57 times too large look like those of a robot that is turned by hand.
+    mended = [replace(each.in_degrees(), not_driven=()) for each in records]
+    lag, _ = lag_of(mended)
+    cuts = cut([each.delayed(lag) for each in mended], robot, "heading")
+    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST_CUTS else None
+    if fit is None:
+        return False
+    ratio = math.sqrt(abs(fit.left * fit.right)) * effective_track(robot)
+    turned = np.abs(cuts.turn)
+    rate = float(np.average(turned / cuts.duration, weights=turned))
+    return ratio > 1.0 / math.sqrt(math.degrees(1.0)) and math.degrees(rate) > FASTEST_TURN
 
 
 def search_poses(
