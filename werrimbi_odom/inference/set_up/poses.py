@@ -38,6 +38,7 @@ from werrimbi_odom.inference.set_up.regression import (
     moving,
     turning,
 )
+from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -115,6 +116,10 @@ def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
     By the wheels alone that is the same as a radius over base that is off by 57.3. So in degrees
     they must also agree better with the robot file.
     """
+    turned = np.concatenate([np.abs(wrap_all(np.diff(each.yaw))) for each in records])
+    lasted = np.concatenate([np.diff(each.seen) for each in records])
+    if not np.nansum(turned**2 / lasted) > FASTEST_TURN * np.nansum(turned):
+        return False
     # Turns that are 57 times too large look like those of a robot that is turned by hand.
     mended = [replace(each.in_degrees(), not_driven=()) for each in records]
     lag, _ = lag_of(mended)
@@ -123,9 +128,7 @@ def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
     if fit is None:
         return False
     ratio = math.sqrt(abs(fit.left * fit.right)) * effective_track(robot)
-    turned = np.abs(cuts.turn)
-    rate = float(np.average(turned / cuts.duration, weights=turned))
-    return ratio > 1.0 / math.sqrt(math.degrees(1.0)) and math.degrees(rate) > FASTEST_TURN
+    return ratio > 1.0 / math.sqrt(math.degrees(1.0))
 
 
 def search_poses(
