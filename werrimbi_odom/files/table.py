@@ -29,6 +29,8 @@ MAX_LINE = 2**20
 _NUMBER = re.compile(
     r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
 )
+_BLANK = re.compile(r'[\s,"]*\Z')
+"""A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
 """Cells with nothing in them, in one line."""
 
@@ -208,10 +210,10 @@ def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _lines(path: Path, cut: int) -> Iterator[str]:
-    """Lines with `nan` written into empty cells; blank lines left out, and that which is cut."""
+    """Lines with `nan` written into empty cells; lines with no value left out, and that cut off."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in itertools.islice(file, cut - 1 if cut else None):
-            if not line.isspace():
+            if not _BLANK.match(line):
                 yield _EMPTY.sub("nan", line)
 
 
@@ -219,7 +221,7 @@ def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
     """Line number, from 1, and cells of each row below the header."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
-            if line.strip():
+            if not _BLANK.match(line):
                 yield number, next(csv.reader([line.rstrip("\n")]))
 
 
@@ -229,7 +231,10 @@ def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
             place = f"{path}, line {number}"
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):
-                    raise InputError(f"{place}, column {name}: {_shown(cell)} is not a number")
+                    raise InputError(
+                        f"{place}, column {name}: {_shown(cell)} is not a number; "
+                        "leave the cell empty where there is none"
+                    )
             if len(cells) != len(names):
                 raise InputError(f"{place}: {len(cells)} cells under {len(names)} columns")
     except csv.Error as error:
