@@ -165,6 +165,22 @@ def test_wrong_ticks(tmp_path: Path, text: str | bytes, said: str) -> None:
         (REFERENCE, "reference.csv has a header and no rows"),
         ("t_s,x_m,y_m\n0,1,2\n", "reference.csv, line 1: no column yaw_rad"),
         (REFERENCE + "0,1,2,3\n,1,2,3\n", "reference.csv, line 3, column t_s: it is empty"),
+        (
+            REFERENCE + "nan,1,2,3\n",
+            "reference.csv, line 2, column t_s: 'nan' is not a time; leave",
+        ),
+        (
+            REFERENCE + "0,,,\n1,,,\n",
+            "reference.csv: x_m, y_m and yaw_rad are empty in all 2 rows: nothing is measured",
+        ),
+        (
+            REFERENCE + "0,1,,\n1,2,,\n",
+            "reference.csv: y_m and yaw_rad are empty in all 2 rows: nothing is measured; fill",
+        ),
+        (
+            REFERENCE + "0,1,2,NULL\n",
+            "reference.csv, line 2, column yaw_rad: 'NULL' is not a number; leave the cell empty",
+        ),
         (REFERENCE + "0,1,inf,3\n", "reference.csv, line 2, column y_m: 'inf' cannot be measured"),
         (REFERENCE + "0,1,,north\n", "reference.csv, line 2, column yaw_rad: 'north' is not a nu"),
         (
@@ -179,6 +195,18 @@ def test_wrong_ticks(tmp_path: Path, text: str | bytes, said: str) -> None:
 )
 def test_wrong_references(tmp_path: Path, text: str, said: str) -> None:
     assert complaint(folder(tmp_path, FINE, text)).startswith(said)
+
+
+def test_rows_without_a_single_value_are_blank_lines(tmp_path: Path) -> None:
+    """A spreadsheet writes them between tables, and at the end."""
+    blank = ' , ,"",\n,,,\n'
+    folder(tmp_path, FINE + ",,\n0.2,5,6\n,,\n", REFERENCE + "0,1,2,3\n" + blank + "1,2,,3\n,,,\n")
+    run = read_run_folder(tmp_path)
+    assert run.reference is not None
+    np.testing.assert_array_equal(run.reference.time, [0.0, 1.0])
+    assert run.ticks.rows == 3
+    folder(tmp_path, FINE, REFERENCE + blank + "0,1,two,3\n")
+    assert complaint(tmp_path).startswith("reference.csv, line 4, column y_m: 'two' is not a nu")
 
 
 def test_folders_and_dead_links_in_the_place_of_files(tmp_path: Path) -> None:

@@ -4,17 +4,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.cutting import record_of
 from werrimbi_odom.model.robot import Robot
 
 ROBOT = Robot(0.3, 0.05, 1000.0, 1000.0)
+INCREMENTAL = EvaluationOptions(reference_kind="incremental")
 TIME = 0.05 * np.arange(400)
 
 
@@ -75,3 +79,33 @@ def test_driving_is_no_leap(seed: int) -> None:
     time = np.sort(TIME + rng.uniform(-0.024, 0.024, TIME.size))
     time[200:] += 5.0
     assert counters_of(run_of(np.rint(counts), time), ROBOT, None).leaps == ()
+
+
+def by_gyro(counts: np.ndarray, shown: np.ndarray) -> Run:
+    """A run with the headings of these counts, whose counters showed others."""
+    run = run_of(shown)
+    assert run.reference is not None
+    yaw = (counts[:, 1] - counts[:, 0]) * ROBOT.left_tick / ROBOT.track
+    return replace(run, reference=replace(run.reference, yaw=yaw))
+
+
+def gone(counts: np.ndarray) -> float:
+    return float(np.abs(np.diff(counts.mean(axis=1))).sum()) * ROBOT.left_tick
+
+
+@pytest.mark.parametrize("leap", [190_000.0, 0.0])
+def test_it_is_no_distance_that_was_driven(leap: float) -> None:
+    """A Roomba's compare said that it had driven 60 m more than it had."""
+    counts = driven()
+    leapt = counts.copy()
+    leapt[250, 1] += leap
+    (run,) = compare([by_gyro(counts, leapt)], ROBOT, INCREMENTAL).runs
+    assert run.distance_m == pytest.approx(gone(counts), rel=0.02)
+
+
+def test_a_counter_that_wraps_is_no_distance_that_was_driven() -> None:
+    counts = driven()
+    (run,) = compare(
+        [by_gyro(counts, np.mod(counts, 2.0**16))], replace(ROBOT, encoder_bits=16), INCREMENTAL
+    ).runs
+    assert run.distance_m == pytest.approx(gone(counts), rel=0.02)

@@ -301,3 +301,32 @@ def test_an_effect_of_the_file_that_looks_at_the_place_is_no_hindrance() -> None
     plain = Robot(0.35, 0.05, 2000.0, 2000.0)
     robot = replace(plain, effects=(spot.using(share=-0.1, x=0.2, y=0.1, radius=0.4),))
     assert look_for_mistakes(runs_of(robot, (1, 2)), robot).findings == ()
+
+
+# -- headings in degrees ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("late", [0.0, 1.5])
+@pytest.mark.parametrize("base", [0.35, 0.175])
+def test_headings_in_degrees_that_never_wrap(session: list[Run], base: float, late: float) -> None:
+    """A gyro's rates are summed up, and nobody wraps the sum: it was told as a radius 57 times."""
+    runs = [summed_in_degrees(gyro(run), late) for run in session]
+    found = look_for_mistakes(runs, replace(NOMINAL, wheel_separation=base))
+    assert found.findings[0].effect == "reference_yaw_in_degrees"
+    assert found.to_convert is not None
+
+
+def summed_in_degrees(run: Run, late: float) -> Run:
+    assert run.reference is not None
+    yaw = np.degrees(np.unwrap(run.reference.yaw))
+    return replace(run, reference=replace(run.reference, yaw=yaw, time=run.reference.time + late))
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.05 / math.degrees(1.0), 0.05 * math.degrees(1.0)])
+def test_headings_in_radians_that_never_wrap(session: list[Run], radius: float) -> None:
+    runs = [summed_in_degrees(gyro(run), 0.0) for run in session]
+    for run in runs:
+        assert run.reference is not None
+        run.reference.yaw[:] = np.radians(run.reference.yaw)
+    found = look_for_mistakes(runs, replace(NOMINAL, wheel_radius=radius))
+    assert [each.effect for each in found.findings] == ["wheel_radius_scale"] * (radius != 0.05)

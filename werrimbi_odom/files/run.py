@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeVar
 from weakref import ref
@@ -113,6 +113,10 @@ class Reference:
         """Where yaw was measured."""
         return np.isfinite(self.yaw)
 
+    def earlier(self, delay: float) -> Reference:
+        """The same with stamps that are free of a delay [s]."""
+        return self if delay == 0.0 else replace(self, time=self.time - delay)
+
     def chosen(self, which: NDArray[np.bool_]) -> Reference:
         """Select poses; `which` has shape (m,)."""
         return Reference(
@@ -168,11 +172,12 @@ class Run:
     no_driving: tuple[NoDriving, ...] | None = None
     """Stretches that are not driving; None if not yet determined."""
     taken_out: tuple[tuple[float, float], ...] = ()
-    """Stretches of the reference that are excluded on purpose, start and end [s]: legs end there,
-    and start again."""
+    """Stretches of the reference that are excluded on purpose, start and end in its stamps [s]:
+    legs end there, and start again."""
     happened: tuple[tuple[float, float], ...] = ()
-    """Stretches in which the robot or the reference was displaced at once, start and end [s]: an
-    event, which no model explains. Legs continue through it, and their errors are not evaluated."""
+    """Stretches in which the robot or the reference was displaced at once, start and end in the
+    stamps of the reference [s]: an event, which no model explains. Legs continue through it, and
+    their errors are not evaluated."""
 
 
 class Collected(NamedTuple):

@@ -74,10 +74,10 @@ def _times(table: CsvTable) -> Floats:
 
 def _not_a_time(text: str) -> str:
     if not text:
-        return "it is empty; every row needs its time"
+        return "it is empty; every row needs its time: fill it in, or leave the row out"
     value = float(text)
     if not math.isfinite(value):
-        return f"{text!r} is not a time"
+        return f"{text!r} is not a time; leave the row out"
     return "" if abs(value) < LATEST else f"{text!r} is not a time in seconds; is it in ns, or ms?"
 
 
@@ -115,7 +115,20 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         _measured(table, name, minimum=0.0) if name in table.names else None
         for name in SIGMA_COLUMNS
     ]
-    return Reference(_times(table), x, y, yaw, *sigmas), _cut(table)
+    reference = Reference(_times(table), x, y, yaw, *sigmas)
+    if not (reference.has_position | reference.has_yaw).any():
+        raise _nothing_measured(table)
+    return reference, _cut(table)
+
+
+def _nothing_measured(table: CsvTable) -> InputError:
+    names = REFERENCE_COLUMNS[1:]
+    empty = [name for name in names if np.isnan(table.column(name)).all()]
+    *others, last = empty if len(empty) > 1 else names
+    return InputError(
+        f"{table.path}: {', '.join(others)} and {last} are empty in all {len(table.values)} rows: "
+        "nothing is measured; fill in x_m and y_m, or yaw_rad where headings alone were measured"
+    )
 
 
 def _measured(table: CsvTable, name: str, minimum: float = -math.inf) -> Floats:

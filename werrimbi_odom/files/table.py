@@ -29,6 +29,8 @@ MAX_LINE = 2**20
 _NUMBER = re.compile(
     r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
 )
+_BLANK = re.compile(r'[\s,"]*\Z')
+"""A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
 """Empty cells of a line."""
 
@@ -207,10 +209,10 @@ def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _lines(path: Path, cut: int) -> Iterator[str]:
-    """Yield lines with `nan` in empty cells, without blank lines and the truncated one."""
+    """Yield lines with `nan` in empty cells, without lines without a value and the truncated one."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in itertools.islice(file, cut - 1 if cut else None):
-            if not line.isspace():
+            if not _BLANK.match(line):
                 yield _EMPTY.sub("nan", line)
 
 
@@ -218,7 +220,7 @@ def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
     """Yield line number, from 1, and cells of each row below the header."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
-            if line.strip():
+            if not _BLANK.match(line):
                 yield number, next(csv.reader([line.rstrip("\n")]))
 
 
@@ -228,7 +230,10 @@ def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
             place = f"{path}, line {number}"
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):
-                    raise InputError(f"{place}, column {name}: {_shown(cell)} is not a number")
+                    raise InputError(
+                        f"{place}, column {name}: {_shown(cell)} is not a number; "
+                        "leave the cell empty where there is none"
+                    )
             if len(cells) != len(names):
                 raise InputError(f"{place}: {len(cells)} cells under {len(names)} columns")
     except csv.Error as error:

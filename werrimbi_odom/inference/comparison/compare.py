@@ -31,8 +31,8 @@ from werrimbi_odom.inference.comparison.systematic import (
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.legs.counters import counters_of
-from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.legs.gaps import LeftOut, touched
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
@@ -82,7 +82,7 @@ class RunFigures:
 
     run: Run
     distance_m: float
-    """Absolute travel of the axle's midpoint."""
+    """Absolute travel of the axle's midpoint while the robot was neither held nor carried."""
     duration_s: float
     end_error_m: float
     """Error at the last reference pose, dead reckoning from the first; NaN where the path of a
@@ -178,14 +178,14 @@ def judged(
             main = legs, spread, others[len(KINDS) :]
     assert main is not None
     legs, spread, of_runs = main
-    driven = paths(prepared, model)
+    path, counters = paths(prepared, model), prepared.counters
     kept = ~legs.outlier
     chosen = legs.errors.chosen(kept)
     return Comparison(
         prepared=prepared,
         model=model,
         runs=tuple(
-            _run_figures(run, driven[index], of_runs[index], model.of_run(index), prepared)
+            _run_figures(run, counters[index], path[index], of_runs[index], model.of_run(index))
             for index, run in enumerate(prepared.runs)
         ),
         lengths=tuple(lengths),
@@ -201,7 +201,7 @@ def judged(
         ),
         legs=legs,
         left=spread,
-        paths=driven,
+        paths=path,
         left_out=prepared.left_out,
         remarks=remarks_on(prepared),
     )
@@ -236,7 +236,7 @@ def _figures_of(
 
 
 def _run_figures(
-    run: Run, path: Residual, legs: LegFigures, robot: Robot, prepared: PreparedRuns
+    run: Run, counters: Counters, path: Residual, legs: LegFigures, robot: Robot
 ) -> RunFigures:
     off = np.abs(path.measured - path.predicted)
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
@@ -244,13 +244,13 @@ def _run_figures(
         off, turned = np.full_like(off, np.nan), turned[:0]  # each piece has axes of its own
     known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0
-    counters = counters_of(run, prepared.robot, prepared.options.limits)
-    travel = 0.5 * (
-        np.diff(counters.left) * robot.left_tick + np.diff(counters.right) * robot.right_tick
-    )
+    # The counters are unwrapped, and bridged where they leapt.
+    travel = 0.5 * np.diff(counters.left * robot.left_tick + counters.right * robot.right_tick)
+    stretches = [(part.begin, part.end) for part in run.no_driving or ()]
+    no_driving = touched(counters.time, stretches)
     return RunFigures(
         run,
-        float(np.abs(travel).sum()),
+        float(np.abs(travel[~no_driving]).sum()),
         float(np.ptp(run.ticks.time)),
         float(off[known[-1]]) if known.size else np.nan,
         wrap(float(path.measured_yaw[last] - path.predicted_yaw[last])) if last else np.nan,

@@ -27,6 +27,7 @@ from werrimbi_odom.inference.comparison.residuals import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.legs.counters import Counters
 from werrimbi_odom.inference.legs.cutting import (
     AlignedRun,
     cut_for_fit,
@@ -86,6 +87,14 @@ class PreparedRuns:
         found: dict[int, Measure] = {}
         for group in self.groups:
             found.update(dict.fromkeys(group.index, group.measure))
+        return tuple(found[index] for index in range(len(self.runs)))
+
+    @property
+    def counters(self) -> tuple[Counters, ...]:
+        """Encoder counts of each run."""
+        found: dict[int, Counters] = {}
+        for group in self.groups:
+            found.update(zip(group.index, (run.counters for run in group.every.runs), strict=True))
         return tuple(found[index] for index in range(len(self.runs)))
 
     @property

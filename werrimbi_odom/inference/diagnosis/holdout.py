@@ -141,26 +141,36 @@ def begin(
         wheels stood still in all of them.
     """
 
-    def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
+    def divided(cutter: Robot) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
+        some, others = (
+            tuple(looked_at(run, cutter, options.limits) for run in each)
+            for each in (runs, holdout)
+        )
+        return (some, others) if others else set_aside(some)
+
+    def set_up_of(kept: Sequence[Run]) -> SetUp:
         set_up = look_for_mistakes(kept, robot, options)
         if set_up.to_convert is not None:
             raise InputError(f"{kept[0].path}: {set_up.to_convert}")
-        return set_up, judge_of(kept, held, given or robot, options)
+        return set_up
 
-    runs, holdout = (
-        tuple(looked_at(run, given or robot, options.limits) for run in some)
-        for some in (runs, holdout)
-    )
+    given = given or robot
     _refuse_standing((*runs, *holdout))
-    fitted, held = (runs, holdout) if holdout else set_aside(runs)
-    set_up, judge = split(fitted, held)
+    fitted, held = divided(given)
+    set_up = set_up_of(fitted)
+    # One clock before anything else is looked for: rests, held stretches, legs, noise.
+    cutter = set_up.on_its_clock(given)
+    if cutter is not given:
+        fitted, held = divided(cutter)
+    judge = judge_of(fitted, held, given, options, cutter)
     otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, options)
     sides = []
     for side, held_out in ((fitted, False), (held, True)):
         odd = {each.run for each in otherwise if each.held_out == held_out}
         sides.append(tuple(run for run in side if run.name not in odd) or side)
     if (sides[0], sides[1]) != (fitted, held):
-        set_up, judge = split(*sides)
+        set_up = set_up_of(sides[0])
+        judge = judge_of(sides[0], sides[1], given, options, set_up.on_its_clock(given))
     return Begun(judge, set_up, otherwise)
 
 
@@ -178,12 +188,16 @@ def _refuse_standing(runs: Sequence[Run]) -> None:
 
 
 def judge_of(
-    runs: Sequence[Run], holdout: Sequence[Run], robot: Robot, options: EvaluationOptions
+    runs: Sequence[Run],
+    holdout: Sequence[Run],
+    given: Robot,
+    options: EvaluationOptions,
+    cutter: Robot | None = None,
 ) -> Judge:
-    """Cut the legs of the fitted runs and of the held-out runs."""
+    """Cut the legs of the fitted runs and of the held-out runs, by the given robot or another."""
     fitted_on, kept_back = tuple(runs), tuple(holdout)
-    train, held = (prepare(some, robot, options) for some in (fitted_on, kept_back))
-    return Judge(robot, options, fitted_on, kept_back, train, held, finely(held))
+    train, held = (prepare(some, cutter or given, options) for some in (fitted_on, kept_back))
+    return Judge(given, options, fitted_on, kept_back, train, held, finely(held))
 
 
 def _legs(prepared: PreparedRuns, model: Model) -> Legs:

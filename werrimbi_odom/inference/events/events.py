@@ -241,8 +241,8 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     return Event(
         side.paths[run],
         side.held_out,
-        seen - view_of(side.point.model.robot.effects).delay,
-        seen,
+        seen + own.record.delay - view_of(side.point.model.robot.effects).delay,
+        seen + own.record.delay,
         float(own.counters.time[0]),
         name,
         size,

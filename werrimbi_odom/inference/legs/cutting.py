@@ -42,6 +42,7 @@ from werrimbi_odom.inference.rules import (
     WAY_WORTH_SAYING,
 )
 from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -57,7 +58,10 @@ class AlignedRun:
     name: str
     counters: Counters
     measured: Reference
-    """Usable poses, shape (r,)."""
+    """Usable poses, shape (r,), at the times at which they were seen."""
+    delay: float
+    """Delay of the reference by the robot that the run is cut by, which its times are free of
+    [s]."""
     gap: NDArray[np.bool_]
     """Excluded intervals between poses, shape (r - 1,)."""
     left_out: tuple[LeftOut, ...]
@@ -66,7 +70,7 @@ class AlignedRun:
     sigma_yaw: float | None
     """Stated standard deviation of the reference's heading [rad]."""
     happened: tuple[tuple[float, float], ...] = ()
-    """See `Run.happened`."""
+    """See `Run.happened`; free of the delay, as `measured`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +204,7 @@ def divided(record: AlignedRun, rows: NDArray[np.intp]) -> MatchedRun:
     measured = _poses(record.measured, rows)
     time, left, right, ends, channels = nodes_at(record.counters, measured.time)
     gap = _gaps_between(record, rows)
-    return MatchedRun(record, rows, measured, gap, 0.0, time, left, right, ends, channels)
+    return MatchedRun(record, rows, measured, gap, record.delay, time, left, right, ends, channels)
 
 
 def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
@@ -219,7 +223,8 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     if delay == run.delay:
         return run
     counters = run.counters
-    seen = np.clip(run.measured.time - delay, counters.time[0], counters.time[-1])
+    seen = run.measured.time + (run.record.delay - delay)
+    seen = np.clip(seen, counters.time[0], counters.time[-1])
     time, left, right, ends, channels = nodes_at(counters, np.maximum.accumulate(seen))
     return replace(
         run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
@@ -254,6 +259,8 @@ def record_of(
 ) -> AlignedRun:
     """Put ticks and reference on one clock, and list the stretches to exclude.
 
+    The clocks differ by the reference's delay of the robot file, if it has one.
+
     Parameters
     ----------
     run, robot, limits
@@ -273,6 +280,12 @@ def record_of(
             f"{run.path}: there is no reference to compare with "
             "(reference.csv: t_s,x_m,y_m,yaw_rad)"
         )
+    delay = view_of(robot.effects).delay
+    reference = reference.earlier(delay)
+    happened, taken_out = (
+        tuple((begin - delay, end - delay) for begin, end in parts)
+        for parts in (run.happened, run.taken_out)
+    )
     counters = counters_of(run, robot, limits)
     first, last = float(counters.time[0]), float(counters.time[-1])
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
@@ -283,16 +296,17 @@ def record_of(
             f"(t_s {first:g}) and the last ({last:g}); are both clocks the same?"
         )
     measured = _poses(reference, rows)
-    found = _silences(run, robot, counters, measured.time, leg, turn)
+    found = _silences(run, robot, counters, measured.time, taken_out, leg, turn)
     return AlignedRun(
         run.name,
         counters,
         measured,
-        touched(measured.time, [*map(_surely_around, found), *run.taken_out]),
+        delay,
+        touched(measured.time, [*map(_surely_around, found), *taken_out]),
         found,
         _typical(reference.sigma_xy),
         _typical(reference.sigma_yaw),
-        run.happened,
+        happened,
     )
 
 
@@ -303,7 +317,13 @@ def _surely_around(part: LeftOut) -> tuple[float, float]:
 
 
 def _silences(
-    run: Run, robot: Robot, counters: Counters, seen: Floats, leg: float, turn: float
+    run: Run,
+    robot: Robot,
+    counters: Counters,
+    seen: Floats,
+    taken_out: Sequence[tuple[float, float]],
+    leg: float,
+    turn: float,
 ) -> tuple[LeftOut, ...]:
     """Exclusions of a run: no driving, counter jumps, and gaps of ticks or reference."""
     way = counters.way(robot, leg, turn)
@@ -312,7 +332,7 @@ def _silences(
     parts.append(("the ticks are", counters.time[inside], way[inside]))
     found, started = [], float(counters.time[0])
     for who, time, gone in parts:
-        unheard = gaps_in(time, gone) & ~touched(time, run.taken_out)
+        unheard = gaps_in(time, gone) & ~touched(time, taken_out)
         for index in np.flatnonzero(unheard).tolist():
             begin, end = float(time[index]), float(time[index + 1])
             driven = _driven(robot, counters, begin, end)

@@ -52,6 +52,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_WAY,
     NO_DRIVING_WINDOW,
 )
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -93,6 +94,8 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
     """Attach to a run its stretches without driving, found once and kept by its parts.
 
     Scan stamps are corrected first (`even_stamps`); a gyro's bias is removed last (`gyro_bias`).
+    The delay that the robot file states is allowed for: a gyro that is late still turns while the
+    wheels stand already.
     """
     if run.no_driving is not None or run.reference is None:
         return run
@@ -102,10 +105,11 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
         counters = counters_of(run, robot, limits)
     except InputError:
         return run  # cutting into legs raises the error
-    found = no_driving(counters, seen, robot)
+    in_time = seen.earlier(view_of(robot.effects).delay)
+    found = no_driving(counters, in_time, robot)
     if not seen.has_position.any():  # a gyro
-        seen = without_bias(seen, driven(counters, robot, found).spans)
-    return replace(run, reference=seen, no_driving=found)
+        in_time = without_bias(in_time, driven(counters, robot, found).spans)
+    return replace(run, reference=replace(seen, yaw=in_time.yaw), no_driving=found)
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

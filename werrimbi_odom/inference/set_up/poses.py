@@ -7,7 +7,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,10 +16,12 @@ from werrimbi_odom.inference.rules import (
     DEGREES_BETTER,
     DEGREES_RANGE,
     DEGREES_WRAPS,
+    FASTEST_TURN,
     FEWEST_CUTS,
     RADIANS_WRAPS,
     SURE_SIZE,
 )
+from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Setting,
@@ -36,6 +38,7 @@ from werrimbi_odom.inference.set_up.regression import (
     moving,
     turning,
 )
+from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -96,13 +99,36 @@ def degrees_gain(records: Sequence[SetUpRecord], robot: Robot, measured: Measure
             int(np.sum((jumps > low) & (jumps < high)))
             for low, high in (DEGREES_WRAPS, RADIANS_WRAPS)
         )
-        return math.inf if degrees > radians else 1.0
+        if degrees > radians or _turns_in_degrees(records, robot):
+            return math.inf
+        return 1.0
     given = regressed(records, robot)
     mended = regressed([each.in_degrees() for each in records], robot)
     if mended is None or given is None:
         return 1.0
     gain = given.moving.scatter / mended.moving.scatter
     return gain if gain > DEGREES_BETTER else 1.0
+
+
+def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
+    """Whether headings that never wrap turn as a robot does only if they are in degrees.
+
+    By the wheels alone that is the same as a radius over base that is off by 57.3. So in degrees
+    they must also agree better with the robot file.
+    """
+    turned = np.concatenate([np.abs(wrap_all(np.diff(each.yaw))) for each in records])
+    lasted = np.concatenate([np.diff(each.seen) for each in records])
+    if not np.nansum(turned**2 / lasted) > FASTEST_TURN * np.nansum(turned):
+        return False
+    # Turns that are 57 times too large look like those of a robot that is turned by hand.
+    mended = [replace(each.in_degrees(), not_driven=()) for each in records]
+    lag, _ = lag_of(mended)
+    cuts = cut([each.delayed(lag) for each in mended], robot, "heading")
+    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST_CUTS else None
+    if fit is None:
+        return False
+    ratio = math.sqrt(abs(fit.left * fit.right)) * effective_track(robot)
+    return ratio > 1.0 / math.sqrt(math.degrees(1.0))
 
 
 def search_poses(

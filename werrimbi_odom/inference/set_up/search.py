@@ -10,7 +10,7 @@ degrees, a clock that is off by seconds. See docs/set_up.md.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,6 +48,7 @@ from werrimbi_odom.model.robot import Robot
 __all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
 
 
+DELAY = "reference_delay"
 IN_MILLIMETRES = (
     "the reference's positions are in millimetres, and x_m and y_m mean metres: convert these "
     "columns (divide by 1000) and diagnose again"
@@ -70,6 +71,17 @@ class SetUp:
     def wrong(self) -> tuple[SetUpFinding, ...]:
         """Findings that are mistakes; skidding wheels are none."""
         return tuple(each for each in self.findings if each.effect != "skid_steer")
+
+    def on_its_clock(self, robot: Robot) -> Robot:
+        """A robot with the delay found, if the clocks differ: drives are cut by it.
+
+        While the clocks are seconds apart, a gyro turns while the wheels stand, and legs end
+        elsewhere than the poses that are compared there.
+        """
+        late = {item.name: item for item in self.robot.effects}.get(DELAY)
+        if late is None or all(each.effect != DELAY for each in self.findings):
+            return robot
+        return replace(robot, effects=(late, *(e for e in robot.effects if e.name != DELAY)))
 
     @property
     def to_convert(self) -> str | None:
@@ -215,4 +227,4 @@ def _late(lag: float, gain: float) -> SetUpFinding:
         f"the reference's stamps are {abs(lag):.1f} s too {'late' if lag > 0.0 else 'early'} "
         "against the encoders': two computers whose clocks differ"
     )
-    return SetUpFinding("reference_delay", {"delay": lag}, None, words, (), gain)
+    return SetUpFinding(DELAY, {"delay": lag}, None, words, (), gain)

@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Clocks that are seconds apart change when things were seen, and nothing else that is told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.inference.test_gyro_bias import BIAS, INCREMENTAL, by_gyro, short_drive
+from test.model.drives import ROBOT
+from test.recorded_robots import ROBOTS, with_recordings
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.set_up.search import look_for_mistakes
+
+LATE = 1.0
+LATE_ROBOT = replace(ROBOT, effects=(find("reference_delay").using(delay=LATE),))
+
+
+def later(run: Run, delay: float) -> Run:
+    assert run.reference is not None
+    return replace(run, reference=replace(run.reference, time=run.reference.time + delay))
+
+
+def test_a_late_gyros_bias_is_told_where_the_robot_stood() -> None:
+    """It still turns by its own stamps for a second after the wheels stopped."""
+    run = short_drive()
+    seen = looked_at(later(run, LATE), LATE_ROBOT).reference
+    assert run.reference is not None
+    assert seen is not None
+    bias = (run.reference.yaw - seen.yaw)[-1] / (seen.time[-1] - seen.time[0])
+    assert bias == pytest.approx(BIAS, abs=5e-4)
+
+
+def test_the_robot_files_delay_moves_no_leg() -> None:
+    run = short_drive()
+    run = replace(run, happened=((10.0, 10.2),), taken_out=((12.0, 12.5),))
+    moved = tuple(
+        tuple((begin + LATE, end + LATE) for begin, end in parts)
+        for parts in (run.happened, run.taken_out)
+    )
+    late = replace(later(run, LATE), happened=moved[0], taken_out=moved[1])
+    (plain,) = match_for_fit([run], ROBOT, 0.5)
+    (other,) = match_for_fit([late], LATE_ROBOT, 0.5)
+    assert other.delay == LATE
+    np.testing.assert_array_equal(other.gap, plain.gap)
+    np.testing.assert_array_equal(other.stepped, plain.stepped)
+    assert plain.gap.any()
+    assert plain.stepped.any()
+    # A pose just where a leg is full may belong to either side of it: stamps are rounded.
+    np.testing.assert_allclose(other.rows, plain.rows, atol=1)
+    np.testing.assert_allclose(other.measured.time, plain.measured.time, atol=0.06)
+
+
+@with_recordings
+@pytest.mark.parametrize(
+    ("delay", "aside"),
+    [
+        (1.0, "part_2"),
+        pytest.param(-0.5, "part_2", marks=pytest.mark.evidence),
+        pytest.param(0.5, "part_2", marks=pytest.mark.evidence),
+        pytest.param(2.0, "part_0", marks=pytest.mark.evidence),
+    ],
+)
+def test_a_late_gyro_is_all_that_is_wrong_with_the_sound_kobuki(delay: float, aside: str) -> None:
+    """Legs and rests by the late clock were told as a backlash, and as a skew of the encoders."""
+    folder = ROBOTS / "kobuki_sound"
+    robot = read_robot_file(folder / "robot.yaml").robot
+    runs = [later(read_run_folder(each), delay) for each in sorted(folder.glob("part_*"))]
+    fitted = [run for run in runs if run.name != aside]
+    kept = [run for run in runs if run.name == aside]
+    found = diagnose(fitted, robot, LIBRARY, INCREMENTAL, holdout=kept)
+    assert set(found.found) == {"reference_delay", "track_width"}
+    values = {item.name: item.values for item in found.final.point.model.robot.effects}
+    assert values["reference_delay"]["delay"] == pytest.approx(delay + 0.073, abs=0.005)
+
+
+def test_short_drives_show_another_clock_too() -> None:
+    """Of drives of 15 s none was long enough for a lag of 5 s, and none was asked."""
+    runs = [later(wavy(seed, curves=10), LATE) for seed in range(3)]
+    assert all(float(np.ptp(run.ticks.time)) < 20.0 for run in runs)
+    (finding,) = look_for_mistakes(runs, ROBOT, INCREMENTAL).findings
+    assert finding.effect == "reference_delay"
+    assert finding.values["delay"] == pytest.approx(LATE, abs=0.03)
+
+
+def test_a_lag_is_told_as_well_with_parts_put_aside() -> None:
+    """Straight lines through what was put aside left four times as much unexplained."""
+    runs = [later(wavy(seed), LATE) for seed in range(2)]
+    whole, parts = (look_for_mistakes(some, ROBOT, INCREMENTAL) for some in (runs, kept(runs)))
+    (of_whole,), (of_parts,) = whole.findings, parts.findings
+    assert of_parts.values["delay"] == pytest.approx(LATE, abs=0.03)
+    assert of_parts.gain > 0.5 * of_whole.gain
+
+
+def kept(runs: list[Run]) -> list[Run]:
+    return list(set_aside(runs)[0])
+
+
+def wavy(seed: int, curves: int = 40) -> Run:
+    """Curves of one and a half seconds each, some sharper than others."""
+    rates = np.random.default_rng(seed).normal(0.0, 0.6, curves).repeat(30)
+    return by_gyro(np.full(rates.size, 0.3), rates, 1.0, 0.0, seed)
