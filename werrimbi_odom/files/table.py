@@ -209,7 +209,7 @@ def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _lines(path: Path, cut: int) -> Iterator[str]:
-    """Yield lines with `nan` in empty cells, without lines without a value and the truncated one."""
+    """Yield lines with `nan` in empty cells; skip lines without a value and the truncated one."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in itertools.islice(file, cut - 1 if cut else None):
             if not _BLANK.match(line):
