@@ -41,7 +41,8 @@ class Elements(NamedTuple):
     reach: Floats
     """How far from its centre an element goes on, shape (m,) [m]."""
     tree: cKDTree
-    """Of the centres."""
+    """Of the cells whose lines they are. Lone cells share all their echoes, and so their centre to
+    the last digit: by centres a rounding error would choose among them."""
 
 
 def line_elements(points: Floats, spacing: Floats) -> Elements | None:
@@ -74,7 +75,7 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
     along = 0.5 * np.arctan2(2.0 * xy, xx - yy)[flat]
     centres = np.column_stack([x, y])[flat] + origin
     normals = np.column_stack([-np.sin(along), np.cos(along)])
-    return Elements(centres, normals, reach[flat], cKDTree(centres))
+    return Elements(centres, normals, reach[flat], cKDTree(middles[flat] + origin))
 
 
 def _about(middles: Floats, reach: Floats, sums: Floats) -> Floats:
