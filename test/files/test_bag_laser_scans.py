@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.scans.drives import in_circles
+from test.scans.drives import ahead, in_circles
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import contents_of
@@ -105,6 +105,23 @@ def test_scans_give_poses_of_the_base(tmp_path: Path, ros: Any, robot: Any) -> N
     with opened_bag(bag) as opened:
         (source,) = contents_of(opened).independent
     assert (source.name, source.measures, source.child) == ("/scan", "poses", "laser")
+
+
+def test_a_pose_is_no_surer_along_a_corridor_than_it_is(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Its walls hold it across, and only its cupboards along; one sigma is told for both."""
+    lidar = Lidar()
+    seen = scanned(ahead(30.0), rooms.corridor_with_cupboards(), lidar, 1)
+    bag = ros.write(tmp_path / "run", entries(ros, seen, lidar, None))
+    found = read_run(bag, robot()).reference
+    assert found is not None
+    assert found.sigma_xy is not None
+    middle = seen.time + 0.5 * (lidar.beams - 1) * lidar.beam_interval
+    truth = np.interp(found.time - EPOCH - 1.0, middle, seen.truth[:, 0])
+    variance = np.asarray(found.sigma_xy) ** 2
+    nees = np.diff(found.x - truth) ** 2 / (variance[1:] + variance[:-1])
+    assert 0.7 < nees[np.diff(found.time) < 0.15].mean() < 1.3
 
 
 def test_a_lidar_that_hangs_upside_down(tmp_path: Path, ros: Any, robot: Any) -> None:

@@ -12,6 +12,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.path import ScanMatcher, ScanPath
 from werrimbi_odom.scans.scan_odometry import motion_between
 from werrimbi_odom.scans.sweep import Sweep, sweep_of
+from werrimbi_odom.simulation import free
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
 
@@ -36,6 +37,14 @@ def hops(duration: float) -> TruePath:
     """Half a second ahead and half a second back, with hard starts and stops, again and again."""
     t = np.arange(0.0, duration, PERIOD)
     return _path(t, 0.4 * np.clip(3.0 * np.sin(np.pi * t), -1.0, 1.0), 0.0 * t)
+
+
+def brisk(duration: float, seed: int) -> TruePath:
+    """By joystick, at up to 0.8 m/s and 2 rad/s, with starts and stops of up to 6 rad/s^2."""
+    knots = np.array(free(duration, seed=seed, speed=0.8, yaw_rate=2.0, acceleration=1.5).knots)
+    t = np.arange(0.0, duration, PERIOD)
+    speed, turning = (np.interp(t, knots[:, 0], knots[:, row]) for row in (1, 2))
+    return _path(t, speed, turning)
 
 
 def _path(t: Floats, speed: Floats, turning: Floats, middle: bool = True) -> TruePath:

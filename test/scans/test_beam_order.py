@@ -56,11 +56,8 @@ def test_the_walls_tell_which_way(lidar: Lidar, stated: object, order: Order) ->
     assert matcher.order == order
     rows = np.searchsorted([sweep.time for sweep in given], path.time - 1e-6)
     found = Matched(path, sweeps.truth[rows], sweeps)
-    np.testing.assert_allclose(
-        path.poses,
-        matched(given, ScanMatcher()).path().poses,
-        atol=1e-3 if stated is at_once else 1e-12,  # how long a turn takes is read off the stamps
-    )
+    # How long a turn takes is read off the stamps, to a rounding error, which must not grow.
+    np.testing.assert_allclose(path.poses, matched(given, ScanMatcher()).path().poses, atol=1e-9)
     assert max(rms(found.legs()[0])) < (2.5 if lidar is not POOR else 5.0)
 
 

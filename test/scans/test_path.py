@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.scans.drives import ahead, hops, in_circles, matched, of_sweeps, rms, seen
+from test.scans.drives import ahead, brisk, hops, in_circles, matched, of_sweeps, rms, seen
 from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.simulation import rooms
@@ -31,8 +31,11 @@ def test_a_metre_in_a_room(beams: int) -> None:
 
 
 def test_what_all_echoes_of_a_scan_err_together_is_read_off_the_drive() -> None:
-    """A lidar whose turns begin at an angle that jitters by 4 mrad: no match can see it."""
-    _, given = seen(in_circles(20.0), rooms.living_room(), Lidar())
+    """A lidar whose turns begin at an angle that jitters by 4 mrad: no match can see it.
+
+    A minute: of 20 s it is told to a fifth only.
+    """
+    _, given = seen(in_circles(60.0), rooms.living_room(), Lidar())
     rng = np.random.default_rng(3)
     matcher = ScanMatcher()
     for sweep in given:
@@ -49,6 +52,18 @@ def test_starts_and_stops_are_no_noise_of_the_lidar() -> None:
     found = matched(hops(16.0), rooms.living_room(), Lidar())
     assert found.path.common[0] < 1.5e-3
     assert 0.7 < found.steps()[1].mean() < 1.5
+
+
+def test_a_brisk_robot_is_as_sure_as_it_says() -> None:
+    """Starts of up to 6 rad/s^2 have no course that is smooth for longer than half a second."""
+    path = brisk(40.0, seed=4)
+    found = matched(path, rooms.around(path.x_m, path.y_m, 4), Lidar(), seed=4)
+    hard = np.abs(np.gradient(np.gradient(path.yaw_rad, path.t_s), path.t_s)) > 3.0
+    begin = found.path.time[:-1] - 0.05
+    changing = np.interp(begin + 0.2, path.t_s, np.cumsum(hard))
+    changing -= np.interp(begin, path.t_s, np.cumsum(hard))
+    assert 0.8 < found.steps()[1][changing > 0.0].mean() < 1.5
+    assert 0.8 < found.legs(0.25)[1].mean() < 1.25
 
 
 def test_a_robot_that_turns_while_the_lidar_turns_is_deskewed() -> None:

@@ -127,9 +127,9 @@ def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
     base = sits + (x + 1j * y) * np.exp(1j * mount.yaw) - lever
     variance = np.diagonal(found.covariances, axis1=1, axis2=2)
     sigma_yaw = np.sqrt(variance[:, 2])
-    sigma_xy = np.sqrt(
-        0.5 * (variance[:, 0] + variance[:, 1] + variance[:, 2] * np.abs(lever) ** 2)
-    )
+    # One number for both axes is that of the wider: the mean would be too sure along a corridor.
+    widest = np.linalg.eigvalsh(found.covariances[:, :2, :2])[:, 1]
+    sigma_xy = np.sqrt(widest + 0.5 * variance[:, 2] * np.abs(lever) ** 2)
     return np.column_stack([base.real, base.imag, yaw]), sigma_xy, sigma_yaw
 
 

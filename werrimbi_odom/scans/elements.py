@@ -41,7 +41,8 @@ class Elements(NamedTuple):
     reach: Floats
     """Distance from its centre up to which an element is valid, shape (m,) [m]."""
     tree: cKDTree
-    """k-d tree of the centres."""
+    """k-d tree of the elements' cells. Lone cells share all their echoes, and so their centre to the
+    last digit: among centres, a rounding error would decide."""
 
 
 def line_elements(points: Floats, spacing: Floats) -> Elements | None:
@@ -74,7 +75,7 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
     along = 0.5 * np.arctan2(2.0 * xy, xx - yy)[flat]
     centres = np.column_stack([x, y])[flat] + origin
     normals = np.column_stack([-np.sin(along), np.cos(along)])
-    return Elements(centres, normals, reach[flat], cKDTree(centres))
+    return Elements(centres, normals, reach[flat], cKDTree(middles[flat] + origin))
 
 
 def _about(middles: Floats, reach: Floats, sums: Floats) -> Floats:

@@ -32,8 +32,10 @@ from werrimbi_odom.scans.matching import MAD
 from werrimbi_odom.scans.scan_odometry import Flag, ScanTracker, motion_between, moved
 from werrimbi_odom.scans.sweep import Sweep, SweepMotion, deskewed, own_course
 
-AROUND = 3
-"""Scans before and after one, that its course in the second pass is fitted to."""
+AROUND = 2
+"""Scans before and after one, that its course in the second pass is fitted to. With three a
+parabola is smoother than a robot that starts hard (NEES of such steps 1.8 in place of 1.4), with
+one the noise of the two neighbours is felt (steps of a calm drive 1.2)."""
 USUAL = 0.1
 """Time of a turn until two scans are known [s]."""
 INTERVALS = 15
