@@ -41,8 +41,8 @@ class Elements(NamedTuple):
     reach: Floats
     """Distance from its centre up to which an element is valid, shape (m,) [m]."""
     tree: cKDTree
-    """k-d tree of the elements' cells. Lone cells share all their echoes, and so their centre to the
-    last digit: among centres, a rounding error would decide."""
+    """k-d tree of the elements' cells. Lone cells share all their echoes, and so their centre to
+    the last digit: among centres, a rounding error would decide."""
 
 
 def line_elements(points: Floats, spacing: Floats) -> Elements | None:
