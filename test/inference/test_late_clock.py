@@ -20,7 +20,6 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.legs.no_driving import looked_at
-from werrimbi_odom.inference.set_up.search import look_for_mistakes
 
 LATE = 1.0
 LATE_ROBOT = replace(ROBOT, effects=(find("reference_delay").using(delay=LATE),))
@@ -82,24 +81,6 @@ def test_a_late_gyro_is_all_that_is_wrong_with_the_sound_kobuki(delay: float, as
     assert set(found.found) == {"reference_delay", "track_width"}
     values = {item.name: item.values for item in found.final.point.model.robot.effects}
     assert values["reference_delay"]["delay"] == pytest.approx(delay + 0.073, abs=0.005)
-
-
-def test_short_drives_show_another_clock_too() -> None:
-    """Of drives of 15 s none was long enough for a lag of 5 s, and none was asked."""
-    runs = [later(wavy(seed, curves=10), LATE) for seed in range(3)]
-    assert all(float(np.ptp(run.ticks.time)) < 20.0 for run in runs)
-    (finding,) = look_for_mistakes(runs, ROBOT, INCREMENTAL).findings
-    assert finding.effect == "reference_delay"
-    assert finding.values["delay"] == pytest.approx(LATE, abs=0.03)
-
-
-def test_a_lag_is_told_as_well_with_parts_put_aside() -> None:
-    """Straight lines through what was put aside left four times as much unexplained."""
-    runs = [later(wavy(seed), LATE) for seed in range(2)]
-    whole, parts = (look_for_mistakes(some, ROBOT, INCREMENTAL) for some in (runs, kept(runs)))
-    (of_whole,), (of_parts,) = whole.findings, parts.findings
-    assert of_parts.values["delay"] == pytest.approx(LATE, abs=0.03)
-    assert of_parts.gain > 0.5 * of_whole.gain
 
 
 def kept(runs: list[Run]) -> list[Run]:

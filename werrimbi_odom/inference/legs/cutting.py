@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.inference.legs.clock import clock_offset
 from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -42,7 +43,6 @@ from werrimbi_odom.inference.rules import (
     WAY_WORTH_SAYING,
 )
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -280,7 +280,7 @@ def record_of(
             f"{run.path}: there is no reference to compare with "
             "(reference.csv: t_s,x_m,y_m,yaw_rad)"
         )
-    delay = view_of(robot.effects).delay
+    delay = clock_offset(robot)
     reference = reference.earlier(delay)
     happened, taken_out = (
         tuple((begin - delay, end - delay) for begin, end in parts)

@@ -20,6 +20,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
+from werrimbi_odom.inference.legs.clock import clock_offset
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
@@ -52,7 +53,6 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_WAY,
     NO_DRIVING_WINDOW,
 )
-from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -105,7 +105,7 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
         counters = counters_of(run, robot, limits)
     except InputError:
         return run  # cutting into legs raises the error
-    in_time = seen.earlier(view_of(robot.effects).delay)
+    in_time = seen.earlier(clock_offset(robot))
     found = no_driving(counters, in_time, robot)
     if not seen.has_position.any():  # a gyro
         in_time = without_bias(in_time, driven(counters, robot, found).spans)

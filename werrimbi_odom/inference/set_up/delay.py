@@ -29,7 +29,6 @@ from werrimbi_odom.inference.rules import (
     DELAY_UNEXPLAINED,
     DELAY_WINDOW,
     FEWEST_CUTS,
-    GAP_INTERVALS,
 )
 from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -43,9 +42,6 @@ _STEPS = round(DELAY_WINDOW / _PERIOD)
 def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     """Estimate the delay of the reference [s], and the gain in unexplained variance over no delay.
 
-    A session of short drives is also searched up to the share of its usual drive that leaves enough
-    to compare.
-
     Returns
     -------
     lag : float
@@ -53,17 +49,7 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     gain : float
         Ratio of the unexplained variance without delay to that with it; 1 for no delay.
     """
-    lasted = [float(record.time[-1] - record.time[0]) for record in records]
-    usual = float(np.median(lasted)) / DELAY_SPANS if lasted else DELAY_LONGEST
-    for longest in (DELAY_LONGEST, *([usual] if usual < DELAY_LONGEST else [])):
-        lag, gain = _lag_within(records, int(longest / _PERIOD))
-        if lag != 0.0:
-            return lag, gain
-    return 0.0, 1.0
-
-
-def _lag_within(records: Sequence[SetUpRecord], most: int) -> tuple[float, float]:
-    """As `lag_of`, of up to so many grid steps, by the drives that are long enough for them."""
+    most = round(DELAY_LONGEST / _PERIOD)
     sums = [_Sums(width, most) for width in (2, 3)]
     for record in records:
         grid = np.arange(record.time[0], record.time[-1], _PERIOD)
@@ -71,21 +57,19 @@ def _lag_within(records: Sequence[SetUpRecord], most: int) -> tuple[float, float
             continue
         left = _over(np.interp(grid, record.time, record.left))
         right = _over(np.interp(grid, record.time, record.right))
-        silent = _silences(record)
         products = np.stack([left**2, left * right, right**2])
         for total, wheels, measured in (
             (sums[0], np.stack([left, right]), _turns(record, grid)),
             (sums[1], products, _squared_steps(record, grid)),
         ):
             if measured is not None:
-                measured[_in_any(touched(grid, [*record.not_driven, *silent]))] = np.nan
+                measured[_in_any(touched(grid, record.not_driven))] = np.nan
                 total.add(wheels, measured)
-    used = [total for total in sums if total.rows[most] > DELAY_ROWS]
+    used = [total for total in sums if total.rows > DELAY_ROWS]
     if not used:
         return 0.0, 1.0
-    rows = [float(total.rows[most]) for total in used]
-    shares = [total.residual_innovations() for total in used]
-    misfit = np.average(np.log(shares), axis=0, weights=rows)
+    misfit = np.sum([total.rows * np.log(total.residual_innovations()) for total in used], axis=0)
+    misfit = misfit / sum(total.rows for total in used)
     best = int(np.argmin(misfit))
     lag = (best - most) * _PERIOD
     if 0 < best < 2 * most:
@@ -94,62 +78,46 @@ def _lag_within(records: Sequence[SetUpRecord], most: int) -> tuple[float, float
         if bend > 0.0:
             lag += 0.5 * _PERIOD * float(before - after) / float(bend)
     gain = float(np.exp(misfit[most] - misfit[best]))
-    seconds = rows[0] * _PERIOD
+    seconds = used[0].rows * _PERIOD
     if abs(lag) < DELAY_SHORTEST or gain < DELAY_BETTER or seconds * np.log(gain) < DELAY_EVIDENCE:
         return 0.0, 1.0
     return float(lag), gain
 
 
 class _Sums:
-    """Regression sums accumulated over all runs, at every lag, over what both sides tell of it."""
+    """Cross-correlations accumulated over all runs, at every lag."""
 
     def __init__(self, width: int, most: int) -> None:
         self.most = most
-        self.rows = np.zeros(2 * most + 1)
-        self.square = np.zeros(2 * most + 1)
-        self.gram = np.zeros((width, width, 2 * most + 1))
+        self.rows = 0
+        self.square = 0.0
+        self.gram = np.zeros((width, width))
         self.cross = np.zeros((width, 2 * most + 1))
 
     def add(self, wheels: Floats, measured: Floats) -> None:
         """Add a run: (p, n) of the wheels, (n,) measured on the same grid, NaN where unmeasured."""
         known = np.isfinite(measured)
-        if known.sum() < FEWEST_CUTS or np.std(measured[known]) == 0.0:
+        if known.sum() < DELAY_SPANS * self.most:
             return
         scale = np.std(measured[known])
+        if scale == 0.0:
+            return
         inputs = wheels - wheels.mean(axis=1, keepdims=True)
         output = np.where(known, measured - measured[known].mean(), 0.0) / scale
+        self.rows += int(known.sum())
+        self.square += float(output @ output)
+        self.gram += inputs @ inputs.T
         size = 1 << (output.size + 2 * self.most).bit_length()
-
-        def at_lags(seen: Floats, values: Floats) -> Floats:
-            both = np.fft.rfft(seen, size) * np.conj(np.fft.rfft(values, size))
-            found = np.fft.irfft(both, size)
-            return np.concatenate([found[-self.most :], found[: self.most + 1]])
-
-        shown, every = known.astype(np.float64), np.ones(output.size)
-        self.rows += at_lags(shown, every)
-        self.square += at_lags(output**2, every)
+        of_output = np.fft.rfft(output, size)
         for row, values in enumerate(inputs):
-            self.cross[row] += at_lags(output, values)
-            for column, others in enumerate(inputs):
-                self.gram[row, column] += at_lags(shown, values * others)
+            both = np.fft.irfft(of_output * np.conj(np.fft.rfft(values, size)), size)
+            self.cross[row] += np.concatenate([both[-self.most :], both[: self.most + 1]])
 
     def residual_innovations(self) -> Floats:
-        """Unexplained share of the variance at each lag; 1 where too few rows are left."""
-        shares = np.ones(self.rows.size)
-        enough = self.rows >= (1.0 - 1.0 / DELAY_SPANS) * self.rows.max()
-        for lag in np.flatnonzero(enough & (self.square > 0.0)).tolist():
-            cross = self.cross[:, lag]
-            explained = cross @ np.linalg.lstsq(self.gram[..., lag], cross, rcond=1e-9)[0]
-            shares[lag] = 1.0 - explained / self.square[lag]
-        return np.clip(shares, DELAY_UNEXPLAINED, 1.0)
-
-
-def _silences(record: SetUpRecord) -> list[tuple[float, float]]:
-    """Stretches of which the reference tells nothing: it was lost, or they were put aside."""
-    lasted = np.diff(record.seen)
-    usual = GAP_INTERVALS * float(np.median(lasted))
-    silent = np.flatnonzero(lasted > max(usual, DELAY_WINDOW)).tolist()
-    return [(float(record.seen[row]), float(record.seen[row + 1])) for row in silent]
+        """Unexplained share of the variance at each lag."""
+        solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
+        explained = np.sum(self.cross * solved, axis=0) / self.square
+        return np.asarray(np.clip(1.0 - explained, DELAY_UNEXPLAINED, 1.0))
 
 
 def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
