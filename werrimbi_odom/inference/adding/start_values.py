@@ -24,7 +24,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     candidates,
     parameters_of_candidate,
     scores,
-    with_candidate,
+    started_with,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
@@ -133,7 +133,7 @@ def starts(
 ) -> tuple[Start, ...]:
     """Starts for fits of an effect: at the values of its score, for the best of its shapes."""
     found = scored(drives, before, [effect], numbers)
-    return tuple(start_at(before, score, numbers) for score in _best_shapes(found))
+    return tuple(start_at(drives.laid, before, score, numbers) for score in _best_shapes(found))
 
 
 def scored(
@@ -146,10 +146,12 @@ def scored(
     return scores(runs, before.point, (*CALIBRATION, *numbers), tried)
 
 
-def start_at(before: Fitted, score: Score, numbers: Sequence[FreeParameter]) -> Start:
+def start_at(
+    runs: Concatenated, before: Fitted, score: Score, numbers: Sequence[FreeParameter]
+) -> Start:
     """A start at the values that a score suggests."""
     own = parameters_of_candidate(score.candidate)
-    point = replace(before.point, model=with_candidate(before.point.model, score))
+    point = started_with(runs, before.point, score)
     return Start(point, (*before.names, score.candidate.name), (*numbers, *own), score.gain)
 
 

@@ -19,7 +19,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     candidates,
     parameters_of_candidate,
     scores,
-    with_candidate,
+    started_with,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
@@ -63,7 +63,7 @@ def _rivals(
     near = [each for each in ordered if each.candidate.name != held.name and each.gain > least]
     found = {}
     for score in near[:INSTEAD_FITTED]:
-        start = replace(point, model=with_candidate(point.model, score))
+        start = started_with(runs, point, score)
         free = (*numbers, *parameters_of_candidate(score.candidate))
         other = fitted(runs, start, (score.candidate.name,), free, given)
         if other.told and not other.at_bound and other.total < fit.total + RIVAL * fit.scatter:

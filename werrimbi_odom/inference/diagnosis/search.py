@@ -15,7 +15,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     candidates,
     parameters_of_candidate,
     scores,
-    with_candidate,
+    started_with,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
@@ -114,7 +114,7 @@ def instead_of_calibration(
     found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
     results = []
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
-        start = replace(point, model=with_candidate(point.model, score))
+        start = started_with(runs, point, score)
         numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
@@ -146,7 +146,7 @@ def search_round(
         options = [score] + ([max(variants, key=lambda other: other.gain)] if variants else [])
         fits = []
         for option in options:
-            start = replace(point, model=with_candidate(point.model, option))
+            start = started_with(runs, point, option)
             numbers = (*before.numbers, *parameters_of_candidate(option.candidate))
             names = (*before.names, option.candidate.name)
             fits.append(fitted(runs, start, names, numbers, given))

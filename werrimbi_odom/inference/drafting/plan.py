@@ -89,7 +89,7 @@ def fitted_plan(diagnosis: Diagnosis, drives: FitDrives, plan: LawForm) -> Optio
     """Fit a draft, starting from the values that its score suggests."""
     base = diagnosis.final
     assert plan.score is not None
-    start = start_at(base, plan.score, base.numbers)
+    start = start_at(drives.laid, base, plan.score, base.numbers)
     # After one round the noise is still inflated by the missing law, which would favour some laws.
     fit = drives.fit(start.point, start.names, start.numbers, diagnosis.given, rounds=2)
     return Option(plan, fit)

@@ -29,7 +29,12 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.placed import best_angles
-from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
+from werrimbi_odom.inference.fitting.prediction import (
+    Prediction,
+    predict_all,
+    predicted_legs,
+    turns_over,
+)
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -226,6 +231,20 @@ def _slope(
         robot = replace(model.robot, effects=(*model.robot.effects, applied))
         poses.append(predicted_legs(replace(model, robot=robot), runs))
     return np.asarray(0.5 * (poses[0] - poses[1]))
+
+
+def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
+    """Add a candidate to a point, at the values that its score suggests or at a share of them.
+
+    A score is linear; far from zero an effect's formula may predict nonsense.
+    """
+    before = predicted_legs(point.model, runs)
+    for share in (1.0, 0.3, 0.1, 0.03):
+        less = replace(score, coefficients=share * score.coefficients)
+        model = with_candidate(point.model, less)
+        if not turns_over(before, predicted_legs(model, runs)):
+            break
+    return replace(point, model=model)
 
 
 def with_candidate(model: Model, score: Score) -> Model:

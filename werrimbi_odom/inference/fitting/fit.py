@@ -30,7 +30,12 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.identifiable import Directions, determined, with_held_as_given
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
-from werrimbi_odom.inference.fitting.prediction import predict, predict_all, predicted_legs
+from werrimbi_odom.inference.fitting.prediction import (
+    predict,
+    predict_all,
+    predicted_legs,
+    turns_over,
+)
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (
@@ -232,9 +237,10 @@ def _gauss_newton(
         for _ in range(5):
             tried = replace(point, model=moved(point.model, design, step))
             ahead = replace(prediction, relative=predicted_legs(tried.model, runs))
-            cost = float(np.sum(unexpected(runs, tried, ahead).whitened() ** 2))
-            if cost < best:
-                break
+            if not turns_over(prediction.relative, ahead.relative):
+                cost = float(np.sum(unexpected(runs, tried, ahead).whitened() ** 2))
+                if cost < best:
+                    break
             step = 0.3 * step
         else:
             return point, number > 0

@@ -81,6 +81,15 @@ def predicted_legs(model: Model, runs: Concatenated, looked_at: Robot | None = N
     return _shown(path, runs, view, model.drifts)
 
 
+def turns_over(before: Floats, after: Floats) -> bool:
+    """Whether a leg turns by a whole turn more or less than before, relative poses (m, 3).
+
+    No correction of a model does that, as legs are short; an effect's formula does, far from where
+    it holds.
+    """
+    return bool(np.any(~(np.abs(after[:, 2] - before[:, 2]) < 2.0 * np.pi)))
+
+
 def predict_all(model: Model, runs: Concatenated) -> Prediction:
     """Relative poses of all legs, with their covariance for unit noise of each wheel."""
     return runs.of_model(model, "prediction", lambda: _predicted(model, runs))
