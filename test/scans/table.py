@@ -101,10 +101,10 @@ def main() -> None:
     for name in CASES:
         lines.append(line(name))
         print(lines[-1], flush=True)
-    with_candidate(DOCS, lines)
+    put_into_page(DOCS, lines)
 
 
-def with_candidate(page: Path, lines: Sequence[str]) -> None:
+def put_into_page(page: Path, lines: Sequence[str]) -> None:
     """Put a table in the place of the one with the same head."""
     before, old = page.read_text(encoding="utf-8").split(lines[0])
     after = old.partition("\n\n")[2]

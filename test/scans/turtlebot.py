@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import werrimbi_odom as wo
-from test.scans.table import DOCS, with_candidate
+from test.scans.table import DOCS, put_into_page
 from werrimbi_odom.simulation import (
     AxlePose,
     FieldDrive,
@@ -162,4 +162,4 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as place:
         lines = table(Path(place))
     print("\n".join(lines))
-    with_candidate(DOCS, lines)
+    put_into_page(DOCS, lines)
