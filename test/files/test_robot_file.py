@@ -272,6 +272,12 @@ def test_the_comment_beside_the_last_wheel_stays_when_that_wheel_goes(
     assert "# rubber" in out.read_text()
 
 
+def test_a_brace_in_a_name_is_quoted_in_a_list(commented: RobotFile, tmp_path: Path) -> None:
+    out = tmp_path / "new.yaml"
+    write_robot_file(commented, {"right_wheel_names": ("A{", "b}")}, out)
+    assert read_robot_file(out).values["right_wheel_names"] == ("A{", "b}")
+
+
 @settings(
     max_examples=75,
     deadline=None,

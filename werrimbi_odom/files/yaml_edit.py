@@ -22,7 +22,7 @@ from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.files.yaml_text import plain, round_trip
 from werrimbi_odom.model.effect import AppliedEffect, Parameter
 
-_PLAIN_TEXT = re.compile(r"[A-Za-z_/~][\w/~{}-]*(\.\w+)*\Z", re.ASCII)
+_PLAIN_TEXT = re.compile(r"[A-Za-z_/~][\w/~-]*(\.\w+)*\Z", re.ASCII)
 _NOT_TEXT = re.compile(r"(y|n|yes|no|on|off|true|false|null|~)\Z", re.IGNORECASE)
 """Words that a YAML 1.1 parser, as in ROS, reads as text only if quoted."""
 _UNPRINTABLE = re.compile("[\x7f-\x9f\u2028\u2029\ufeff]")

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -87,7 +88,7 @@ def turns_over(before: Floats, after: Floats) -> bool:
     No correction of a model does that, as legs are short; an effect's formula does, far from where
     it holds.
     """
-    return bool(np.any(~(np.abs(after[:, 2] - before[:, 2]) < 2.0 * np.pi)))
+    return bool(np.any(~(np.abs(after[:, 2] - before[:, 2]) < math.tau)))
 
 
 def predict_all(model: Model, runs: Concatenated) -> Prediction:
