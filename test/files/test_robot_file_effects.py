@@ -240,6 +240,19 @@ LAYOUTS = [
 ]
 
 
+def test_a_phase_of_zero_is_written_where_the_file_left_it_open(tmp_path: Path) -> None:
+    text = (
+        BARE
+        + "    effects: [eccentric_left_wheel]\n    eccentric_left_wheel:\n      amplitude: 0.001\n"
+    )
+    source = file(tmp_path, text)
+    assert source.effects[0].unknown == ("phase",)
+    known = ECCENTRIC.using(amplitude=1e-3, phase=0.0)
+    out = tmp_path / "new.yaml"
+    write_robot_file(source, {}, out, effects=(known,))
+    assert read_robot_file(out).effects == (known,)
+
+
 @settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )

@@ -235,9 +235,11 @@ def _with_effects(block: dict[str, Any], effects: Sequence[AppliedEffect]) -> di
 def _needed(
     own: Mapping[str, Any], known: Mapping[str, float], declared: Mapping[str, Parameter]
 ) -> dict[str, float]:
-    """Values to write: those already present, and those that are not null."""
+    """Values to write: those present, those not null, and per-run ones (absent means unknown)."""
     return {
-        name: value for name, value in known.items() if name in own or value != declared[name].null
+        name: value
+        for name, value in known.items()
+        if name in own or value != declared[name].null or declared[name].per_run
     }
 
 
