@@ -126,8 +126,8 @@ def _of_kind(
 def _bag_in(folder: Path) -> Path:
     files = sorted(each for each in folder.iterdir() if each.suffix in SUFFIXES)
     if (folder / "metadata.yaml").exists():
-        named = named_files(folder)
-        renamed = len(files) == 1 and named and not any(file.exists() for file in named)
+        named = named_files(folder) if len(files) == 1 else []
+        renamed = named and not any(file.exists() for file in named)
         return files[0] if renamed else folder
     if files:  # the recorder was killed before it wrote the metadata
         return files[0] if len(files) == 1 else folder

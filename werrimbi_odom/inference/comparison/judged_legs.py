@@ -137,13 +137,14 @@ def statistics_of(legs: Legs) -> LegStatistics:
 
 def paths(prepared: PreparedRuns, model: Model) -> tuple[Residual, ...]:
     """Measured and dead-reckoned path of every run, in order."""
-    found: dict[int, Residual] = {}
-    for group in prepared.groups:
-        residuals, own = group.plain, _of_group(group, model)
-        if own.robot != prepared.robot or any(own.own):
-            residuals, _ = residuals_of(own, group.every, group.measure)
-        found.update(zip(group.index, residuals, strict=True))
-    return tuple(found[index] for index in range(len(prepared.runs)))
+
+    def of_group(group: ReferenceGroup) -> tuple[Residual, ...]:
+        own = _of_group(group, model)
+        if own.robot == prepared.robot and not any(own.own):
+            return group.plain
+        return residuals_of(own, group.every, group.measure)[0]
+
+    return prepared.in_order(of_group)
 
 
 def _of_group(group: ReferenceGroup, model: Model) -> Model:

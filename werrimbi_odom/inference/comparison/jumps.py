@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,11 +41,10 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
     if errors.shape[0] < JUMP_FEWEST:
         return np.zeros_like(errors)
-    usual = _running_median(errors, JUMP_NEIGHBOURS)
+    usual = np.median(_windows(errors, JUMP_NEIGHBOURS), axis=-1)
     left = errors - usual
-    driven = _running_max(
-        np.abs(item.relative), max(JUMP_NEIGHBOURS, _intervals_within(item.time, JUMP_LATE))
-    )
+    around = max(JUMP_NEIGHBOURS, _intervals_within(item.time, JUMP_LATE))
+    driven = _windows(np.abs(item.relative), around).max(axis=-1)
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
     # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
     under_way = driven.any(axis=1) if driven.any() else np.ones(driven.shape[0], dtype=np.bool_)
@@ -66,32 +66,22 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     many = np.quantile(np.abs(left), 1.0 - JUMP_RARE, axis=0) / JUMP_RARE_SIGMAS
     scatter = np.where(often, np.maximum(many, scatter), scatter)
     wrong = np.abs(left) > np.maximum(JUMP_SCATTER * scatter, least)
-    stays = np.abs(_running_sum(left, JUMP_NEIGHBOURS)) > JUMP_LASTS * np.abs(left)
-    returns = _running_max((wrong & ~stays).astype(np.float64), JUMP_NEIGHBOURS) > 0.0
+    total = _windows(left, JUMP_NEIGHBOURS, "constant").sum(axis=-1)
+    stays = np.abs(total) > JUMP_LASTS * np.abs(left)
+    returns = _windows(wrong & ~stays, JUMP_NEIGHBOURS).any(axis=-1)
     return np.where(wrong | returns, left, 0.0)
 
 
-def _running_median(values: Floats, reach: int) -> Floats:
-    """Median of each row and its neighbours."""
-    padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
-    return np.asarray(np.median(windows, axis=-1))
-
-
-def _running_sum(values: Floats, reach: int) -> Floats:
-    padded = np.pad(values, ((reach, reach), (0, 0)))
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
-    return np.asarray(np.sum(windows, axis=-1))
+def _windows(
+    values: NDArray[Any], reach: int, mode: Literal["edge", "constant"] = "edge"
+) -> NDArray[Any]:
+    """Each row and its neighbours, along a new last axis; beyond the ends, as `numpy.pad` says."""
+    padded = np.pad(values, ((reach, reach), (0, 0)), mode=mode)
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
 
 
 def _intervals_within(time: Floats, span: float) -> int:
     return int(min(span / max(float(np.median(np.diff(time))), 1e-9), time.size // 4))
-
-
-def _running_max(values: Floats, reach: int) -> Floats:
-    padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
-    return np.asarray(np.max(windows, axis=-1))
 
 
 def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) -> NDArray[np.bool_]:

@@ -8,9 +8,9 @@ same exclusions and the same reference noise.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,8 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
+_Each = TypeVar("_Each")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReferenceGroup:
@@ -84,17 +86,18 @@ class PreparedRuns:
     @property
     def measures(self) -> tuple[Measure, ...]:
         """What the reference of each run measures."""
-        found: dict[int, Measure] = {}
-        for group in self.groups:
-            found.update(dict.fromkeys(group.index, group.measure))
-        return tuple(found[index] for index in range(len(self.runs)))
+        return self.in_order(lambda group: [group.measure] * len(group.index))
 
     @property
     def counters(self) -> tuple[Counters, ...]:
         """Encoder counts of each run."""
-        found: dict[int, Counters] = {}
+        return self.in_order(lambda group: [run.counters for run in group.every.runs])
+
+    def in_order(self, of_group: Callable[[ReferenceGroup], Iterable[_Each]]) -> tuple[_Each, ...]:
+        """Values for the runs of each group, in the order of the runs."""
+        found: dict[int, _Each] = {}
         for group in self.groups:
-            found.update(zip(group.index, (run.counters for run in group.every.runs), strict=True))
+            found.update(zip(group.index, of_group(group), strict=True))
         return tuple(found[index] for index in range(len(self.runs)))
 
     @property

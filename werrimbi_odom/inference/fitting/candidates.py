@@ -238,11 +238,11 @@ def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
 
     A score is linear; far from zero an effect's formula may predict nonsense.
     """
-    before = predicted_legs(point.model, runs)
+    before = predict_all(point.model, runs).relative
     for share in (1.0, 0.3, 0.1, 0.03):
         less = replace(score, coefficients=share * score.coefficients)
         model = with_candidate(point.model, less)
-        if not turns_over(before, predicted_legs(model, runs)):
+        if not turns_over(before, predict_all(model, runs).relative):
             break
     return replace(point, model=model)
 

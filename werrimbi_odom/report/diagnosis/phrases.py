@@ -169,17 +169,21 @@ def error_kind(sides: Sides) -> str:
 
 
 def _each(told: Told, sides: Sides) -> str:
-    if sides.length > LONGER_LEG * told.leg:
-        return f"on each leg of {sides.length:.2g} m"
+    if longer := _longer(told, sides):
+        return f"on each leg of {longer} m"
     return f"on each {'metre' if told.leg == 1.0 else f'{told.leg:g} m'} or quarter turn"
 
 
 def judged(told: Told) -> str:
     """Drives and legs of the held-out errors."""
     which = "the drives held out" if told.held_out else "a part put aside for judging"
-    length = told.diagnosis.holdout.length
-    leg = f"{length:.2g}" if length > LONGER_LEG * told.leg else f"{told.leg:g}"
+    leg = _longer(told, told.diagnosis.holdout) or f"{told.leg:g}"
     return f"{which} (legs of {leg} m)"
+
+
+def _longer(told: Told, sides: Sides) -> str:
+    """Length of the legs as they are [m], where poses are rarer than was asked for; else ""."""
+    return f"{sides.length:.2g}" if sides.length > LONGER_LEG * told.leg else ""
 
 
 def sizes_found(diagnosis: Diagnosis) -> str:
