@@ -31,12 +31,12 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount
 from werrimbi_odom.inference.drafting.draft import Draft
-from werrimbi_odom.inference.drafting.law_of_two import LawOfTwo
-from werrimbi_odom.inference.drafting.of_two import best_draft, draft_of_two
 from werrimbi_odom.inference.drafting.plan import keeps_laws, loaded
 from werrimbi_odom.inference.drafting.regression import selections
 from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.drafting.terms import terms_of, unit_of_coefficient
+from werrimbi_odom.inference.drafting.two_variable_law import LawOfTwo
+from werrimbi_odom.inference.drafting.two_variables import best_draft, draft_of_two
 from werrimbi_odom.inference.drafting.variables import signals_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect

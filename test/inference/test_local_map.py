@@ -18,12 +18,12 @@ from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult
-from werrimbi_odom.inference.fitting.wandering import (
+from werrimbi_odom.inference.fitting.correlated_filter import (
     GaussMarkovError,
     GyroHeading,
     filtered_with_correlated_error,
 )
+from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.pose import Floats
 

@@ -15,8 +15,8 @@ from scipy import stats
 import werrimbi_odom
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.comparison.consistency import chance_bounds
+from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.set_up.positions import _grid
 from werrimbi_odom.inference.set_up.sparse import _settings
 
@@ -33,7 +33,7 @@ ELSEWHERE = {
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
     "changes/history.py": {"_MEDIAN_CHI2_1": "a quantile"},
     "changes/search.py": {"_FEW": "time that it takes"},
-    "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
+    "distributions.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
     "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
     "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
@@ -67,7 +67,7 @@ ELSEWHERE = {
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
     "diagnosis/evidence.py": {"BATCH": "size of a block", "_BLOCK": "size of a block"},
     "comparison/reference_checks.py": {"_PAIRED": "time that it takes"},
-    "diagnosis/response.py": {
+    "diagnosis/response_curve.py": {
         "PARTS": "of a figure",
         "_UNTOLD": "of a figure: which error bars are too long to draw",
         "_BLURRED": "a rank",
@@ -83,12 +83,12 @@ ELSEWHERE = {
         "_MEDIAN_CHI2_3": "a quantile",
         "_TAIL": "Student's t until jumps are known; the fit itself is without it",
     },
-    "fitting/wandering.py": {"ANEW": "as good as infinite"},
+    "fitting/correlated_filter.py": {"ANEW": "as good as infinite"},
     "fitting/free_parameters.py": {"STEP": "of a derivative"},
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",
     },
-    "fitting/placed.py": {"FINE": "a grid", "_ROUNDS": "rounds of a fit"},
+    "fitting/angle_score.py": {"FINE": "a grid", "_ROUNDS": "rounds of a fit"},
     "fitting/leg_noise.py": {"_BLOCK": "size of a block"},
     "fitting/concatenated_runs.py": {
         "MODELS": "size of a cache",
@@ -114,7 +114,7 @@ ELSEWHERE = {
     "legs/cutting.py": {"ROUNDING": "of sums"},
     "linear.py": {"DETERMINED": "a rank", "ROUNDING": "a rank", "SILENT": "rounding"},
     "manoeuvres/drives.py": {"REST": "of an ideal drive [s]", "FINE": "its steps [s]"},
-    "manoeuvres/rivals.py": {"_RELUCTANT": "a rank, by the noise", "_WILLING": "a rank"},
+    "manoeuvres/expected_evidence.py": {"_RELUCTANT": "a rank, by the noise", "_WILLING": "a rank"},
     "set_up/delay.py": {"_PERIOD": "of a grid"},
     "set_up/regression.py": {"_LARGE": "the usual one of Tukey's biweight"},
     "set_up/sparse.py": {"STEPS": "time that it takes"},

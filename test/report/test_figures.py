@@ -21,7 +21,7 @@ from werrimbi_odom.inference.comparison.over_variable import once_a_turn, over_a
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.diagnosis.response import before_after, parts_of, response
+from werrimbi_odom.inference.diagnosis.response_curve import before_after, parts_of, response
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch

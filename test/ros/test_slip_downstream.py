@@ -25,7 +25,7 @@ from builtin_interfaces.msg import Time
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.slip import NOTHING, SlipGuard
 from werrimbi_odom.ros.live_odometer import LiveOdometer
-from werrimbi_odom.ros.messages import OdometryMessage
+from werrimbi_odom.ros.odometry_messages import OdometryMessage
 from werrimbi_odom.simulation import LiveRobot, Peculiarity, TrueRobot, free
 from werrimbi_odom.simulation.engine import Shift, Shifter, Stride
 from werrimbi_odom.simulation.hidden.floor import SlipperySpot

@@ -47,7 +47,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, Pose, compose, inverse
 from werrimbi_odom.ros.compare_node import CompareNode
 from werrimbi_odom.ros.live_odometer import LiveOdometer
-from werrimbi_odom.ros.messages import OdometryMessage
+from werrimbi_odom.ros.odometry_messages import OdometryMessage
 from werrimbi_odom.simulation import LiveRobot, hide, write_robot_file
 
 BEGINS = 1_000_000

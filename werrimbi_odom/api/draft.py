@@ -20,8 +20,8 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
 from werrimbi_odom.inference.drafting.draft import Draft
-from werrimbi_odom.inference.drafting.of_two import best_draft
 from werrimbi_odom.inference.drafting.package import package_of
+from werrimbi_odom.inference.drafting.two_variables import best_draft
 from werrimbi_odom.progress import Show, silent
 from werrimbi_odom.report.adding.draft import draft_document, draft_json
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from werrimbi_odom.model.turns import Turns
+from werrimbi_odom.model.turn_comparison import Turns
 
 WINDOW = 0.2
 """Window over which wheels and gyro are compared [s]. In a shorter one, noise and quantisation hide

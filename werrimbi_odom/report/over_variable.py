@@ -15,7 +15,7 @@ from werrimbi_odom.inference.comparison.over_variable import (
     wheel_errors,
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.response import BeforeAfter
+from werrimbi_odom.inference.diagnosis.response_curve import BeforeAfter
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ROS 2 nodes: thin layers over the model, without physics of their own.
 
-`odom_node.OdomNode` is the main node. `inputs` and `wheel_side` convert any input to two counters.
-`messages`, `markers` and `estimate_status` convert an estimate to messages; `health` counts for
-/diagnostics. `parameters` reads the robot file, and `rehearsal` tests its values. `planar` checks
-incoming poses, `graph` finds other nodes, `slip` and `learning` use a gyro.
+`odom_node.OdomNode` is the main node. `counter_inputs` and `wheel_side` convert any input to two
+counters. `odometry_messages`, `markers` and `estimate_status` convert an estimate to messages;
+`health` counts for /diagnostics. `parameters` reads the robot file, and `rehearsal` tests its
+values. `planar` checks incoming poses, `graph` finds other nodes, `slip` and `learning` use a gyro.
 
 `compare_node` (the live error), `drive_node` (a manoeuvre) and `simulated_robot` (a robot in the
 physics engine) are the other nodes. `running` starts and ends all of them.

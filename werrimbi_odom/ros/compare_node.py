@@ -28,7 +28,7 @@ from std_msgs.msg import Float64
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
-from werrimbi_odom.ros import compare_parameters, inputs
+from werrimbi_odom.ros import compare_parameters, counter_inputs
 from werrimbi_odom.ros.compare_inputs import (
     REFERENCE_TYPES,
     Clockwork,
@@ -42,8 +42,8 @@ from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.graph import Company, full_name
+from werrimbi_odom.ros.live_diagnosis import watching_of
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.watching import watching_of
 
 WAITING = 1_000
 """Largest number of reference poses that wait for odometry."""
@@ -291,12 +291,12 @@ class CompareNode(Node):  # type: ignore[misc]
     def _subscribe(
         self, message_type: type, topic: str, take: Callable[[Any], None], *, raw: bool = False
     ) -> None:
-        with inputs.qos_errors_of(topic):
+        with counter_inputs.qos_errors_of(topic):
             self.create_subscription(
                 message_type,
                 topic,
                 take,
-                inputs.sensor_qos(),
+                counter_inputs.sensor_qos(),
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
                 raw=raw,

@@ -34,7 +34,7 @@ from werrimbi_odom.driving.limits import STILL, Command
 from werrimbi_odom.driving.watch import OdometryReading
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.ros import drive_parameters, inputs, planar
+from werrimbi_odom.ros import counter_inputs, drive_parameters, planar
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.drive_records import Records
@@ -306,7 +306,7 @@ class DriveNode(Node):  # type: ignore[misc]
             kind,
             topic,
             take,
-            inputs.sensor_qos(),
+            counter_inputs.sensor_qos(),
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
 

@@ -22,7 +22,7 @@ from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.ros import inputs, planar
+from werrimbi_odom.ros import counter_inputs, planar
 from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
@@ -66,7 +66,9 @@ class Learning(NoLearning):
         `learn_from_topic` and `learn_from_type`.
     """
 
-    def __init__(self, wiring: inputs.InputOptions, robot: Robot, topic: str, kind: str) -> None:
+    def __init__(
+        self, wiring: counter_inputs.InputOptions, robot: Robot, topic: str, kind: str
+    ) -> None:
         self.topic = topic
         self._learner = PhaseLearner(robot)
         self._tracker: LiveOdometer | None = None
@@ -88,14 +90,14 @@ class Learning(NoLearning):
         self._subscribe(wiring, message_type, see)
 
     def _subscribe(
-        self, wiring: inputs.InputOptions, message_type: type, see: Callable[[Any], None]
+        self, wiring: counter_inputs.InputOptions, message_type: type, see: Callable[[Any], None]
     ) -> None:
-        with inputs.qos_errors_of(self.topic):
+        with counter_inputs.qos_errors_of(self.topic):
             wiring.node.create_subscription(
                 message_type,
                 self.topic,
                 see,
-                inputs.sensor_qos(),
+                counter_inputs.sensor_qos(),
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             )
@@ -176,7 +178,7 @@ class Learning(NoLearning):
         return math.nan if self._tracker is None else self._tracker.seconds(stamp)
 
 
-def learning_of(wiring: inputs.InputOptions, robot: Robot) -> NoLearning:
+def learning_of(wiring: counter_inputs.InputOptions, robot: Robot) -> NoLearning:
     """Create what the robot file requests, if any phase is unknown."""
     topic, log = str(wiring.values["learn_from_topic"]), wiring.node.get_logger()
     learnt = [applied.name for applied in learnable(robot)]

@@ -28,7 +28,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.ros import inputs, parameters
+from werrimbi_odom.ros import counter_inputs, parameters
 from werrimbi_odom.ros.diagnostics import tell
 from werrimbi_odom.ros.estimate_status import status_of
 from werrimbi_odom.ros.graph import Company, full_name
@@ -36,7 +36,7 @@ from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
-from werrimbi_odom.ros.messages import OdometryMessage, pose_from
+from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.transforms import transform_sender
@@ -62,7 +62,9 @@ class OdomNode(Node):  # type: ignore[misc]
         values, robot, limits = self._settings.values, self._settings.robot, self._settings.limits
         self._changeable = parameters.changeable(self._settings.effects)
         self._frame = str(values["odom_frame_id"])
-        self._topics = tuple(self.resolve_topic_name(name) for name in inputs.topics_of(values))
+        self._topics = tuple(
+            self.resolve_topic_name(name) for name in counter_inputs.topics_of(values)
+        )
         self._tracker = LiveOdometer(robot, self._settings.tolerance, limits)
         self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
         self._trail = PieceTrail(self._frame, robot.track)
@@ -79,11 +81,10 @@ class OdomNode(Node):  # type: ignore[misc]
         self._send_transform = (
             transform_sender(self, "enable_odom_tf") if values["enable_odom_tf"] else None
         )
-        self._learning = learning_of(
-            inputs.InputOptions(self, values, self._take, self._health), robot
-        )
-        self._slip = slip_of(inputs.InputOptions(self, values, self._take, self._health), robot)
-        self._input = inputs.subscribed(inputs.InputOptions(self, values, self._take, self._health))
+        wiring = counter_inputs.InputOptions(self, values, self._take, self._health)
+        self._learning = learning_of(wiring, robot)
+        self._slip = slip_of(wiring, robot)
+        self._input = counter_inputs.subscribed(wiring)
         self.create_subscription(
             PoseWithCovarianceStamped,
             "set_pose",
@@ -232,7 +233,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self, message_type: type, topic: str, depth: int, *, overridable: bool = False
     ) -> Publisher:
         overrides = QoSOverridingOptions.with_default_policies() if overridable else None
-        with inputs.qos_errors_of(topic):
+        with counter_inputs.qos_errors_of(topic):
             return self.create_publisher(
                 message_type,
                 topic,

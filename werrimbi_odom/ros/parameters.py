@@ -25,7 +25,7 @@ from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.ros.inputs import robot_at_counters
+from werrimbi_odom.ros.counter_inputs import robot_at_counters
 from werrimbi_odom.ros.rehearsal import rehearse
 
 CHANGEABLE = frozenset(

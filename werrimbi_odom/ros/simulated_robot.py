@@ -29,7 +29,7 @@ from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_srvs.srv import Trigger
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.ros import inputs, simulated_parameters
+from werrimbi_odom.ros import counter_inputs, simulated_parameters
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic
 from werrimbi_odom.ros.graph import full_name
@@ -99,7 +99,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
             TwistStamped if stamped else Twist,
             "cmd_vel",
             (lambda message: self._command(message.twist)) if stamped else self._command,
-            inputs.sensor_qos(),
+            counter_inputs.sensor_qos(),
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
         self.create_service(Trigger, "~/truth", self._tell)

@@ -15,7 +15,7 @@ from sensor_msgs.msg import Imu
 
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
-from werrimbi_odom.ros import inputs
+from werrimbi_odom.ros import counter_inputs
 from werrimbi_odom.ros.learning import FASTEST
 from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.upright_gyro import UprightGyro
@@ -47,7 +47,7 @@ class Slip(NoSlip):
         Topic of sensor_msgs/Imu.
     """
 
-    def __init__(self, wiring: inputs.InputOptions, robot: Robot, topic: str) -> None:
+    def __init__(self, wiring: counter_inputs.InputOptions, robot: Robot, topic: str) -> None:
         self._topic = topic
         self._guard = SlipGuard(robot.track, max(robot.left_tick, robot.right_tick))
         self._gyro = UprightGyro(topic, wiring.node.get_logger())
@@ -57,7 +57,7 @@ class Slip(NoSlip):
             Imu,
             topic,
             self._see,
-            inputs.sensor_qos(),
+            counter_inputs.sensor_qos(),
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
 
@@ -88,7 +88,7 @@ class Slip(NoSlip):
             self._guard.gyro(self._tracker.seconds(message.header.stamp), rate)
 
 
-def slip_of(wiring: inputs.InputOptions, robot: Robot) -> NoSlip:
+def slip_of(wiring: counter_inputs.InputOptions, robot: Robot) -> NoSlip:
     """Create what the robot file requests."""
     topic = str(wiring.values["slip_imu_topic"])
     return Slip(wiring, robot, topic) if topic else NoSlip()

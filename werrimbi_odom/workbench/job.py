@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 def begin(asked: Connection) -> None:
     """Entry point of the process; see `work.work`."""
-    from werrimbi_odom.workbench.work import work
+    from werrimbi_odom.workbench.worker import work
 
     work(asked)
 
@@ -102,7 +102,7 @@ class Job:
 
     def ask(self, given: Recordings) -> None:
         """Send the task to a process that was started."""
-        from werrimbi_odom.workbench.work import packed
+        from werrimbi_odom.workbench.worker import packed
 
         data = packed((self.task, given), {})
         # The process may still be importing, and a pipe blocks until it reads.
@@ -136,7 +136,7 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
-        from werrimbi_odom.workbench.work import unpacked
+        from werrimbi_odom.workbench.worker import unpacked
 
         while True:
             what, value, words = receiving.recv()

@@ -27,8 +27,8 @@ from werrimbi_odom.workbench.job import Add, CancelledError, Diagnose, Job, Task
 from werrimbi_odom.workbench.opened import Look, Opened
 from werrimbi_odom.workbench.parts import Part
 from werrimbi_odom.workbench.saving import Target, saved
-from werrimbi_odom.workbench.steps import Session, begun
-from werrimbi_odom.workbench.work import NOT_SENT, known_before, known_to_both
+from werrimbi_odom.workbench.undo import Session, begun
+from werrimbi_odom.workbench.worker import NOT_SENT, known_before, known_to_both
 
 VIEWS = ("compare", "diagnose", "add", "save")
 

@@ -16,7 +16,7 @@ from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.held_law import Misfit
+from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED

@@ -37,8 +37,8 @@ from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.held_law import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
+from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, sizes_needed, with_sizes

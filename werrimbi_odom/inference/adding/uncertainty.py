@@ -12,10 +12,10 @@ import numpy as np
 
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
-from werrimbi_odom.inference.chances import upper_part
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, choices
+from werrimbi_odom.inference.distributions import upper_part
 from werrimbi_odom.inference.fitting.design import Costs, stacked
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,

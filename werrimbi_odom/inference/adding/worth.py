@@ -12,11 +12,11 @@ from werrimbi_odom.inference.adding.fits import Fits
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, parameters_of
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start_values import FitDrives
-from werrimbi_odom.inference.chances import chi2_survival
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.search import SetUp

@@ -27,7 +27,7 @@ from scipy import optimize, stats
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.noise_likelihood import EndErrorDesign, Likelihood
-from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.inference.rules import ADVISED_RUNS, LEAST_RUNS, SURE_WHEN_ASKED, UNKNOWN_SPLIT
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats

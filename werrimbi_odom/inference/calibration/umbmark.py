@@ -36,7 +36,7 @@ from werrimbi_odom.inference.calibration.umbmark_equations import (
     first_order_angles,
     paper_factors,
 )
-from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -24,7 +24,6 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.chances import bonferroni, chi2_survival, fisher_survival
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.numbers import (
@@ -37,6 +36,7 @@ from werrimbi_odom.inference.changes.numbers import (
 from werrimbi_odom.inference.changes.search import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import fit_calibration
+from werrimbi_odom.inference.distributions import bonferroni, chi2_survival, fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all

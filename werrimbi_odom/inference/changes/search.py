@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import bonferroni, chi2_survival
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.numbers import NumberGroup
 from werrimbi_odom.inference.changes.shapes import (
@@ -24,6 +23,7 @@ from werrimbi_odom.inference.changes.shapes import (
     gains,
     rows_of,
 )
+from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE, WHICH_DRIVE
 from werrimbi_odom.model.pose import Floats

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.consistency import AtLength
-from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
+from werrimbi_odom.inference.comparison.dependence import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs, paths
 from werrimbi_odom.inference.comparison.leg_errors import (
     LegStatistics,

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.comparison.residuals import Residual
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.rules import (
     JUMP_FEWEST,
     JUMP_LASTS,

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.rules import (
     CIRCLE_APART,

@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.residuals import Residual
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.rules import (
     ASKEW,

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA, student_survival
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, root_mean_square
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA, student_survival
 from werrimbi_odom.inference.rules import (
     LEGS_OF_A_PART,
     NOISE_FACTOR_TOLD,

@@ -9,7 +9,6 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import chi2_survival
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
@@ -19,9 +18,10 @@ from werrimbi_odom.inference.comparison.consistency import (
     told,
     trend_of,
 )
-from werrimbi_odom.inference.comparison.groups import Cell
+from werrimbi_odom.inference.comparison.dependence import Cell
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS, NoiseFactor, Systematic
+from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.rules import (
     ALIKE,
     BENT_BY_HEADING,

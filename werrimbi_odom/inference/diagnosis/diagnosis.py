@@ -21,13 +21,13 @@ from dataclasses import replace
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import robot_for_cutting
-from werrimbi_odom.inference.diagnosis.chance import chance, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting
-from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
+from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
+from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts
+from werrimbi_odom.inference.diagnosis.rivals_of_held import rivals_of_held
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,

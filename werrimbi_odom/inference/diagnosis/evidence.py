@@ -20,7 +20,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import bonferroni, chi2_survival
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -29,6 +28,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
+from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.candidates import residual_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected

@@ -21,9 +21,9 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import student_survival
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
-from werrimbi_odom.inference.fitting.parts import parts_of
+from werrimbi_odom.inference.distributions import student_survival
+from werrimbi_odom.inference.fitting.clusters import parts_of
 from werrimbi_odom.inference.rules import HELD_OUT_FALL, SURE_WHEN_ASKED
 
 Unit = Literal["m", "rad"]

@@ -24,6 +24,7 @@ from werrimbi_odom.inference.calibration_sizes import (
     std_as_effect,
 )
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.clusters import widening
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.fit import fit_model
@@ -41,7 +42,6 @@ from werrimbi_odom.inference.fitting.identifiable import (
     determined,
     every_direction,
 )
-from werrimbi_odom.inference.fitting.parts import widening
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,

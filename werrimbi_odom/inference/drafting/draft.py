@@ -22,7 +22,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
-from werrimbi_odom.inference.drafting.in_a_line import factor_of, in_a_line
+from werrimbi_odom.inference.drafting.formula import factor_of, in_a_line
 from werrimbi_odom.inference.drafting.laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.drafting.plan import (
     Claim,

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import binomial_survival, bonferroni
+from werrimbi_odom.inference.distributions import binomial_survival, bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.rules import (

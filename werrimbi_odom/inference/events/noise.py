@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import chi2_median
+from werrimbi_odom.inference.distributions import chi2_median
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Costs, Point, unexpected
 from werrimbi_odom.inference.fitting.likelihood import Variances

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.angle_score import best_angles
 from werrimbi_odom.inference.fitting.candidate import Candidate as Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
@@ -28,7 +29,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     parameters_to_fit,
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
-from werrimbi_odom.inference.fitting.placed import best_angles
 from werrimbi_odom.inference.fitting.prediction import (
     Prediction,
     predict_all,

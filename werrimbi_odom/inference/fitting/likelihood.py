@@ -18,6 +18,11 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.correlated_filter import (
+    GaussMarkovError,
+    GyroHeading,
+    filtered_with_correlated_error,
+)
 from werrimbi_odom.inference.fitting.filtering import (
     STRETCH,
     FilterInput,
@@ -27,11 +32,6 @@ from werrimbi_odom.inference.fitting.filtering import (
 )
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.wandering import (
-    GaussMarkovError,
-    GyroHeading,
-    filtered_with_correlated_error,
-)
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
 from werrimbi_odom.inference.rules import EVENT_STEP

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
+from werrimbi_odom.inference.distributions import NORMAL_95, student_quantile
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import (
     Design,

@@ -18,7 +18,7 @@ from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.clock import clock_offset
 from werrimbi_odom.inference.legs.counters import Counters, counters_of

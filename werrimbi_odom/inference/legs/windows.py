@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, median_filter
 
 from werrimbi_odom.files.run import Reference
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.counters import Counters
 from werrimbi_odom.inference.rules import (
     JUMP_NEIGHBOURS,

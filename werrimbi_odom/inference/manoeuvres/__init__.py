@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Experiment design: what to drive next to tell rivals apart, and what the drives could have shown.
 
-Reading order: `library` (the manoeuvres), `imagined` (one as this robot would record it), `rivals`
-and `proposal` (which to drive), `by_hand` (if no drive can tell), `detection_limits`.
+Reading order: `library` (the manoeuvres), `simulated_record` (one as this robot would record it),
+`expected_evidence` and `proposal` (which to drive), `by_hand` (if no drive can tell),
+`detection_limits`.
 """

@@ -23,10 +23,10 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import base_name, name_of_base
-from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import askable
+from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     OF_THE_MEASUREMENT,
@@ -38,8 +38,12 @@ from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
-from werrimbi_odom.inference.manoeuvres.imagined import imagined
-from werrimbi_odom.inference.manoeuvres.rivals import Experiment, Sensitivities, sensitivities_of
+from werrimbi_odom.inference.manoeuvres.expected_evidence import (
+    Experiment,
+    Sensitivities,
+    sensitivities_of,
+)
+from werrimbi_odom.inference.manoeuvres.simulated_record import imagined
 from werrimbi_odom.inference.rules import HIDDEN_FROM, POWER, SURE
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot

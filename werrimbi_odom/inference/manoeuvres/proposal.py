@@ -24,8 +24,7 @@ from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
-from werrimbi_odom.inference.manoeuvres.imagined import imagined, measured_in
-from werrimbi_odom.inference.manoeuvres.rivals import (
+from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
     Trace,
@@ -36,7 +35,12 @@ from werrimbi_odom.inference.manoeuvres.rivals import (
     trace_along,
     trace_at,
 )
-from werrimbi_odom.inference.manoeuvres.unknown import ProposedManoeuvre, for_the_unknown, strongest
+from werrimbi_odom.inference.manoeuvres.for_unknown import (
+    ProposedManoeuvre,
+    for_the_unknown,
+    strongest,
+)
+from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measured_in
 from werrimbi_odom.inference.rules import (
     APART_HEADING,
     APART_POSITION,

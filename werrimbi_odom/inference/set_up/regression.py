@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.rules import ARM_TOLD
 from werrimbi_odom.inference.set_up.records import Complexes, Cuts
 from werrimbi_odom.model.motion import sinc

@@ -8,7 +8,7 @@ from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.drafting.draft import Draft
-from werrimbi_odom.inference.drafting.in_a_line import symbols_of
+from werrimbi_odom.inference.drafting.formula import symbols_of
 from werrimbi_odom.report.adding.document import figures_of
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown

@@ -15,7 +15,7 @@ from werrimbi_odom.inference.calibration.squares import (
     e_max_syst,
 )
 from werrimbi_odom.inference.calibration.umbmark import Umbmark, ValueAndStd
-from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -16,7 +16,7 @@ from werrimbi_odom.inference.comparison.compare import (
     OfLength,
     RunFigures,
 )
-from werrimbi_odom.inference.comparison.groups import ByVariable, Cell
+from werrimbi_odom.inference.comparison.dependence import ByVariable, Cell
 from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import verdict_of

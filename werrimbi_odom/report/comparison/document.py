@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
-from werrimbi_odom.inference.comparison.groups import ByVariable
+from werrimbi_odom.inference.comparison.dependence import ByVariable
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.rules import SURE_OF_LEGS
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure

@@ -16,8 +16,8 @@ from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.parts import CellPart
-from werrimbi_odom.workbench.steps import Diagnosed
 from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.undo import Diagnosed
 from werrimbi_odom.workbench.views.beside import floor, why
 
 SHORT = 5

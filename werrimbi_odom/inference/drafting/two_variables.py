@@ -22,12 +22,11 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.start_values import FitDrives
-from werrimbi_odom.inference.chances import bonferroni, chi2_survival
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
+from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
-from werrimbi_odom.inference.drafting.law_of_two import LawOfTwo
 from werrimbi_odom.inference.drafting.plan import (
     Claim,
     Option,
@@ -41,6 +40,7 @@ from werrimbi_odom.inference.drafting.plan import (
 from werrimbi_odom.inference.drafting.regression import selections
 from werrimbi_odom.inference.drafting.sums import Sums, sums_of
 from werrimbi_odom.inference.drafting.terms import is_of_two, terms_of
+from werrimbi_odom.inference.drafting.two_variable_law import LawOfTwo
 from werrimbi_odom.inference.drafting.variables import signals_of
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION

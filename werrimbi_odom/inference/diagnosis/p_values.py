@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import bonferroni, fisher_survival
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.rules import LASTING_PARTS
 

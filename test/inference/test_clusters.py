@@ -11,15 +11,15 @@ import numpy as np
 
 from test.inference.test_homogeneity import ROBOT, driven, late, nothing
 from werrimbi_odom.effects import LIBRARY
-from werrimbi_odom.inference.chances import chi2_survival, fisher_survival
-from werrimbi_odom.inference.diagnosis.chance import p_value_by_parts, p_value_of_size
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
+from werrimbi_odom.inference.diagnosis.p_values import p_value_by_parts, p_value_of_size
 from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.clusters import parts_of, parts_of_innovations, widening
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
-from werrimbi_odom.inference.fitting.parts import parts_of, parts_of_innovations, widening
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 Spoil = Callable[[np.ndarray, np.random.Generator], np.ndarray]

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from werrimbi_odom.inference.diagnosis.evidence import Amount
-from werrimbi_odom.inference.drafting.in_a_line import in_a_line, symbols_of
+from werrimbi_odom.inference.drafting.formula import in_a_line, symbols_of
 from werrimbi_odom.inference.drafting.laws import INDENT, Declared, Form, Seen, wide
 from werrimbi_odom.inference.drafting.terms import Term, unit_of_coefficient
 from werrimbi_odom.inference.drafting.variables import rounded

@@ -9,7 +9,7 @@ from dataclasses import replace
 from werrimbi_odom.api.verbs import added as added_by
 from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.inference.diagnosis.response import before_after
+from werrimbi_odom.inference.diagnosis.response_curve import before_after
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.progress import Show
@@ -17,7 +17,7 @@ from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, s
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.workbench.job import Add, Diagnose
 from werrimbi_odom.workbench.opened import Opened, split
-from werrimbi_odom.workbench.steps import Diagnosed, ModelVersion
+from werrimbi_odom.workbench.undo import Diagnosed, ModelVersion
 
 
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:

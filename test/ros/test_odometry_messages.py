@@ -19,7 +19,7 @@ from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.estimate_status import length_in_words, sigmas_of_robot
-from werrimbi_odom.ros.messages import OdometryMessage
+from werrimbi_odom.ros.odometry_messages import OdometryMessage
 
 ROBOTS = {
     "usual": Robot(0.35, 0.05, 2000.0, 1000.0),

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import chi2_survival
+from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.linear import SILENT, covariance_of
 from werrimbi_odom.inference.rules import (

@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import bonferroni, fisher_survival, student_survival
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
+from werrimbi_odom.inference.distributions import bonferroni, fisher_survival, student_survival
 from werrimbi_odom.inference.rules import (
     BINS,
     CELLS_ACROSS,

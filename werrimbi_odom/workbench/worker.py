@@ -132,7 +132,7 @@ def _done(task: Task, given: Recordings, show: Show) -> bytes:
         look = here.look(given.source.robot, show)
         return packed((here, look), {**known_before(given), **left_there(here)})
     os.nice(5)  # keeps the page responsive
-    from werrimbi_odom.workbench.verbs import added, diagnosed
+    from werrimbi_odom.workbench.worker_tasks import added, diagnosed
 
     if isinstance(task, Diagnose):
         return packed(diagnosed(task, given, show), {})

@@ -14,7 +14,7 @@ from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import NUISANCES
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import DrivingLimits, Ideal, ideal_run, rates_of
-from werrimbi_odom.inference.manoeuvres.rivals import Experiment
+from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment
 from werrimbi_odom.inference.rules import (
     MOTION_CAPTURE_INTERVAL,
     MOTION_CAPTURE_XY,

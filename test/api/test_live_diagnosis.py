@@ -12,7 +12,7 @@ import pytest
 
 import werrimbi_odom as wo
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.api.watched import of_now
+from werrimbi_odom.api.live_diagnosis import of_now
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.simulation.robot import TrueRobot
 from werrimbi_odom.simulation.robot_file import write_robot_file

@@ -3,7 +3,8 @@
 """Live diagnosis with compare_node: what is missing in the robot file in use.
 
 Messages of the last minutes of driving are stored (`recent_messages`). From time to time a separate
-process with low priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
+process with low priority diagnoses them (`werrimbi_odom.api.live_diagnosis`), as the command line
+would.
 """
 
 from __future__ import annotations
@@ -31,12 +32,12 @@ from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.text_files import place_of, replacing
 from werrimbi_odom.model.motion import BodyMotion
-from werrimbi_odom.ros import inputs
+from werrimbi_odom.ros import counter_inputs
 from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.recent_messages import Kept
 
-LOOKER = "werrimbi_odom.api.watched"
+LOOKER = "werrimbi_odom.api.live_diagnosis"
 """Run as a process, never imported: the node loads neither scipy nor the diagnosis."""
 LOOKS_BACK = 2.0
 """Length of the stored drive, in intervals between two diagnoses: a new effect fills the whole
@@ -89,9 +90,9 @@ class Watching(NoWatching):
         self._new = Path(named or self._robot.with_name(f"{self._robot.stem}_better.yaml"))
         if place_of(self._new) == place_of(self._robot):
             raise InputError(f"new_robot_file: {self._new} is the robot file in use; name another")
-        wheels = [node.resolve_topic_name(topic) for topic in inputs.topics_of(robot)]
+        wheels = [node.resolve_topic_name(topic) for topic in counter_inputs.topics_of(robot)]
         reference = node.resolve_topic_name("reference")
-        of_wheels = inputs.type_of(robot)
+        of_wheels = counter_inputs.type_of(robot)
         self._reference = len(wheels)
         kind_of = str(values["reference_kind"])
         self._asked = {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Diagnosis of the messages stored by compare_node, in a separate low-priority process.
 
-    python -m werrimbi_odom.api.watched FOLDER
+    python -m werrimbi_odom.api.live_diagnosis FOLDER
 
 FOLDER contains the messages and the request; the result is written there too. Drives are read,
 diagnosed and added to as on the command line.

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from werrimbi_odom.inference.chances import (
+from werrimbi_odom.inference.distributions import (
     bonferroni,
     chi2_survival,
     fisher_survival,
