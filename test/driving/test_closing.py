@@ -22,6 +22,13 @@ def test_a_point_that_is_off_the_axle_is_told_from_a_late_clock_by_one_drive() -
 
 
 @pytest.mark.evidence
+def test_positions_of_a_point_far_off_the_axle_hold_it_after_spins() -> None:
+    found = closed("reference_lever_arm", "circle", "positions", 20261124)
+    assert found.verdicts == ("ambiguous", "named")
+    assert found.right
+
+
+@pytest.mark.evidence
 def test_what_is_left_open_is_closed() -> None:
     found = list(islice(cases(7001), 70))
     print(table(found))

@@ -15,7 +15,7 @@ from textwrap import dedent
 
 import pytest
 
-from werrimbi_odom.effects import LIBRARY, all_effects, collection, find, load_file
+from werrimbi_odom.effects import LIBRARY, all_effects, find, load_file, lookup
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.effect import twin_of
 
@@ -172,7 +172,7 @@ def test_installed_effects_and_broken_packages(
     (tmp_path / "someones_exit.py").write_text("raise SystemExit(3)\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     points = [
-        EntryPoint(name, value, collection.GROUP)
+        EntryPoint(name, value, lookup.GROUP)
         for name, value in [
             ("wobble", "someones_robot:wobble"),
             ("number", "someones_robot:number"),
@@ -183,7 +183,7 @@ def test_installed_effects_and_broken_packages(
             ("gone", "someones_gone:effect"),
         ]
     ]
-    monkeypatch.setattr(collection, "entry_points", lambda group: points)
+    monkeypatch.setattr(lookup, "entry_points", lambda group: points)
     found = all_effects()
     assert found.find("wobble").name == "wobble"
     assert find("wobble").name == "wobble"
@@ -210,7 +210,7 @@ def test_an_installed_package_is_found_through_its_entry_point(tmp_path: Path) -
     info = tmp_path / "soft_tyres-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: soft-tyres\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(f"[{collection.GROUP}]\nwobble = soft_tyres:wobble\n")
+    (info / "entry_points.txt").write_text(f"[{lookup.GROUP}]\nwobble = soft_tyres:wobble\n")
     code = "from werrimbi_odom.effects import find; print(find('wobble').summary)"
     root = Path(__file__).parents[2]
     shown = subprocess.run(

@@ -11,7 +11,7 @@ import pytest
 
 from test.effects.tracks import RADIUS, REST, TRACK, Plan, line, plan, track, turn
 from werrimbi_odom.effects import find
-from werrimbi_odom.effects.contract.rehearsal import Rehearsal
+from werrimbi_odom.effects.contract.sample_drive import Rehearsal
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.reference_view import View

@@ -11,7 +11,7 @@ import pytest
 
 from test.effects.tracks import TRACK, gone, line, plan, relative, shown, track, turn, wheels_of
 from werrimbi_odom.effects import LIBRARY, find
-from werrimbi_odom.effects.contract.rehearsal import Rehearsal
+from werrimbi_odom.effects.contract.sample_drive import Rehearsal
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import AppliedEffect, Effect, wiring_of
 from werrimbi_odom.model.motion import WheelTravel

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.driving import features
+from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import AppliedEffect, view_of
 from werrimbi_odom.model.effects_over_run import driven
 from werrimbi_odom.model.motion import WheelTravel, displacement

@@ -17,7 +17,7 @@ pytest.importorskip("rclpy")
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from sensor_msgs.msg import JointState
 
-from werrimbi_odom.ros.parameters import CHANGEABLE
+from werrimbi_odom.ros.odom_parameters import CHANGEABLE
 
 NUMBER = st.floats() | st.sampled_from(
     [0.0, 1e308, -1e308, 5e-324, math.nan, math.inf, 2.0**31, 2.0**53, -(2.0**63)]

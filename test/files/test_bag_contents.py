@@ -12,7 +12,7 @@ import pytest
 
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Contents, contents_of
-from werrimbi_odom.files.made_from_wheels import why_from_wheels
+from werrimbi_odom.files.own_odometry import why_from_wheels
 from werrimbi_odom.simulation.lidar import Lidar
 
 MS = 10**6

@@ -154,7 +154,7 @@ def test_a_reference_in_a_recording_of_its_own(tmp_path: Path, ros: Any, robot: 
 
 def test_one_for_each_run_and_clocks_that_are_apart(tmp_path: Path, ros: Any, robot: Any) -> None:
     source = robot()
-    from werrimbi_odom.effects.collection import all_effects
+    from werrimbi_odom.effects.lookup import all_effects
 
     drive = ros.write(tmp_path / "drive", wheels(ros))
     room = ros.write(tmp_path / "room", poses(ros, begin=1_700_000_000_000))

@@ -23,7 +23,8 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import cluster as ours
 from werrimbi_odom.fleet.cluster import on_cluster
-from werrimbi_odom.fleet.parcel import (
+from werrimbi_odom.fleet.robot_task import Task
+from werrimbi_odom.fleet.worker_archive import (
     EFFECTS,
     PACKAGE,
     code_here,
@@ -32,7 +33,6 @@ from werrimbi_odom.fleet.parcel import (
     refusal,
     row_of_parcel,
 )
-from werrimbi_odom.fleet.robot_task import Task
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 

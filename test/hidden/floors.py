@@ -17,15 +17,15 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
 from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidates import (
+from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.score_tests import (
     CALIBRATED,
     candidates,
     parameters_of_candidate,
     scores,
-    with_candidate,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits

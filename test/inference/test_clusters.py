@@ -16,10 +16,10 @@ from werrimbi_odom.inference.diagnosis.p_values import p_value_by_parts, p_value
 from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.clusters import parts_of, parts_of_innovations, widening
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 Spoil = Callable[[np.ndarray, np.random.Generator], np.ndarray]

@@ -15,9 +15,9 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.distributions import chi2_survival, noncentrality
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
 from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment

@@ -23,11 +23,11 @@ from werrimbi_odom.inference.diagnosis.evidence import (
 from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.support import support_of
-from werrimbi_odom.inference.fitting.candidates import candidates, scores
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict, predict_all, predicted_legs
+from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -20,7 +20,7 @@ from test.model.drives import ROBOT
 from test.soft_tyres import soft_tyres
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.contract import check_effect
-from werrimbi_odom.effects.contract.rehearsal import Rehearsal
+from werrimbi_odom.effects.contract.sample_drive import Rehearsal
 from werrimbi_odom.effects.functions import limited
 from werrimbi_odom.effects.shapes import mean_product, mean_ratio
 from werrimbi_odom.files.read_run import read_run
@@ -37,7 +37,7 @@ from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.drafting.terms import terms_of, unit_of_coefficient
 from werrimbi_odom.inference.drafting.two_variable_law import LawOfTwo
 from werrimbi_odom.inference.drafting.two_variables import best_draft, draft_of_two
-from werrimbi_odom.inference.drafting.variables import signals_of
+from werrimbi_odom.inference.drafting.variable_source import signals_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect
 from werrimbi_odom.model.robot import Robot

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks

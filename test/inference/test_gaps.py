@@ -11,7 +11,7 @@ import pytest
 
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_of, runs_of
 from test.model.drives import ROBOT
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.compare import compare

@@ -14,7 +14,7 @@ import pytest
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_of
 from test.inference.test_gaps import parts
 from test.model.drives import ROBOT
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks

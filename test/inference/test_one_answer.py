@@ -18,7 +18,7 @@ from test.inference.driven import run_of
 from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file

@@ -17,8 +17,8 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.consistency import chance_bounds
 from werrimbi_odom.inference.distributions import noncentrality
+from werrimbi_odom.inference.set_up.few_poses import _settings
 from werrimbi_odom.inference.set_up.positions import _grid
-from werrimbi_odom.inference.set_up.sparse import _settings
 
 PACKAGE = Path(werrimbi_odom.__file__).parent
 INFERENCE = PACKAGE / "inference"
@@ -38,7 +38,7 @@ ELSEWHERE = {
     "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
     "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
     "comparison/leg_errors.py": {"CHI2_95": "quantiles"},
-    "comparison/local_map.py": {
+    "comparison/local_map_errors.py": {
         "_MEDIAN_OF_A_SHARE": "a quantile",
         "_ROUNDS": "passes of the search of a doubt",
     },
@@ -73,6 +73,8 @@ ELSEWHERE = {
         "_BLURRED": "a rank",
         "_SAME": "rounding",
     },
+    "fitting/candidate_starts.py": {"_ALL_ROUND": "where a fit starts"},
+    "fitting/start_headings.py": {"_FIRST_NODES": "where a fit starts"},
     "fitting/filtering.py": {
         "STRETCH": "size of a block",
         "SIDE_BY_SIDE": "size of a block",
@@ -117,12 +119,12 @@ ELSEWHERE = {
     "manoeuvres/expected_evidence.py": {"_RELUCTANT": "a rank, by the noise", "_WILLING": "a rank"},
     "set_up/delay.py": {"_PERIOD": "of a grid"},
     "set_up/regression.py": {"_LARGE": "the usual one of Tukey's biweight"},
-    "set_up/sparse.py": {"STEPS": "time that it takes"},
+    "set_up/few_poses.py": {"STEPS": "time that it takes"},
 }
 """Named numbers that decide nothing, by file, each with what it is."""
 
 BARE = {
-    ("drafting/laws.py", 3.1415927): "half a turn",
+    ("drafting/law_forms.py", 3.1415927): "half a turn",
     ("calibration/noise_likelihood.py", 10.0): "a decade above where the search ends",
     ("diagnosis/diagnosis.py", 0.999): "a logarithm that stays finite",
     ("events/steps.py", 2.0): "either side",
@@ -132,7 +134,7 @@ BARE = {
     ("manoeuvres/drives.py", 0.2): "messages of an ideal drive [s]",
     ("manoeuvres/proposal.py", 0.1): "in mm below it, in m above",
     ("set_up/positions.py", 0.002): "the last step of a descent",
-    ("set_up/sparse.py", 50.0): "an exponential that stays finite",
+    ("set_up/few_poses.py", 50.0): "an exponential that stays finite",
     ("set_up/regression.py", 15): "rounds before the weights change",
     ("set_up/regression.py", 16): "the same, and one",
 }

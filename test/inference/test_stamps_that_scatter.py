@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point

@@ -23,8 +23,8 @@ from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.response_curve import before_after, parts_of, response
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
-from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch
+from werrimbi_odom.model.effect_declarations import DRAWINGS
 from werrimbi_odom.report import sketches
 from werrimbi_odom.report.adding.document import error_falling_figure, steps_of
 from werrimbi_odom.report.calibration.document import leg_figure

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import pytest
 
-from werrimbi_odom.inference.manoeuvres.for_unknown import ProposedManoeuvre
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.report.diagnosis.words import how_long
 
 

@@ -28,7 +28,7 @@ from std_srvs.srv import Trigger
 
 from werrimbi_odom.ros.domain import free_domain
 from werrimbi_odom.ros.odom_node import OdomNode
-from werrimbi_odom.ros.parameters import CHANGEABLE
+from werrimbi_odom.ros.odom_parameters import CHANGEABLE
 
 WILD = st.floats() | st.sampled_from(
     [0.0, 1e-160, 1e-300, 5e-324, 1e155, 1e300, 1e-9, 1e9, -1.0, 2.0**31, 2.0**62, -(2.0**62)]

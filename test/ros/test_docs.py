@@ -13,7 +13,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 from werrimbi_odom.files.parameters import PARAMETERS
-from werrimbi_odom.ros.parameters import CHANGEABLE
+from werrimbi_odom.ros.odom_parameters import CHANGEABLE
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "node.md").read_text(encoding="utf-8")

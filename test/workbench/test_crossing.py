@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.worker import packed, unpacked

@@ -15,7 +15,7 @@ import pytest
 from test.loops import awaited
 from test.workbench.conftest import ROOT
 from test.workbench.session import written
-from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.recordings import DriveOptions, Recordings

@@ -18,7 +18,7 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from werrimbi_odom.effects.collection import Collection
+    from werrimbi_odom.effects.lookup import Collection
 
 Drives = Run | str | Path | Sequence[Run | str | Path]
 """One drive or several, as paths or already read."""
@@ -107,7 +107,7 @@ def read_run(
 
 def collection_of(effects: Sequence[str | Path] = ()) -> Collection:
     """All effects: the library's, those of installed packages, and those of files."""
-    from werrimbi_odom.effects.collection import all_effects
+    from werrimbi_odom.effects.lookup import all_effects
 
     return all_effects(tuple(Path(file) for file in effects))
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from werrimbi_odom.effects.collection import Collection
+    from werrimbi_odom.effects.lookup import Collection
     from werrimbi_odom.files.recordings import DriveOptions, Recordings
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.progress import Show
@@ -217,7 +217,7 @@ def read_effects(arguments: argparse.Namespace) -> Collection:
     InputError
         If a file of --effects is not usable.
     """
-    from werrimbi_odom.effects.collection import all_effects
+    from werrimbi_odom.effects.lookup import all_effects
 
     collection = all_effects(arguments.effects)
     for warning in collection.warnings:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.declared import Twin
+from werrimbi_odom.model.effect_declarations import Twin
 
 
 def askew(name: str) -> Twin:

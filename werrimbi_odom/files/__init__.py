@@ -4,6 +4,6 @@
 
 Reading order: `robot_file` and `parameters` (the robot), `run` and `read_run` (a drive), then
 `run_folder` (CSV) or `run_bag` with `bag_ticks` and `bag_reference` (bags). `evaluation` has the
-options for evaluating drives. `made_from_wheels` and `derived_references` recognise references that
+options for evaluating drives. `own_odometry` and `derived_references` recognise references that
 are odometry under another name.
 """

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.frames import MOVED, Chain, Edge, chain, frame, is_static
-from werrimbi_odom.files.made_from_wheels import is_base
+from werrimbi_odom.files.own_odometry import is_base
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
 

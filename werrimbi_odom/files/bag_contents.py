@@ -20,7 +20,7 @@ from werrimbi_odom.files.derived_references import copies, second_hand
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
-from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_from_wheels
+from werrimbi_odom.files.own_odometry import ODOMETRY, is_asked_for, why_from_wheels
 
 Measures = Literal["poses", "positions", "yaw"]
 Gives = Literal["counts", "positions", "velocities", "odometry"]

@@ -31,7 +31,7 @@ from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
 from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.drivers import DRIVERS
-from werrimbi_odom.files.made_from_wheels import ODOMETRY
+from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks
 

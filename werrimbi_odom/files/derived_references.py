@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import stamp_of
-from werrimbi_odom.files.made_from_wheels import ODOMETRY, names_a_sensor
+from werrimbi_odom.files.own_odometry import ODOMETRY, names_a_sensor
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.bag import Bag

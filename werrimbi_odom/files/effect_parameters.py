@@ -12,7 +12,7 @@ import difflib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from werrimbi_odom.effects import collection
+from werrimbi_odom.effects import lookup
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter
@@ -113,7 +113,7 @@ def named_effects(names: object, find: Find | None = None) -> Named:
             raise InputError(f"effects must be a list of names, [] for none, not {list(names)!r}")
         if name in found:
             raise InputError(f"effects lists {name} twice; an effect acts once")
-        effect = (find or collection.find)(name)
+        effect = (find or lookup.find)(name)
         if any(item.name == name for item in PARAMETERS):
             raise InputError(f"effect {name} bears the name of another parameter; rename it")
         found[name] = effect

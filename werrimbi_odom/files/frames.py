@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from werrimbi_odom.files.made_from_wheels import is_base, why_from_wheels
+from werrimbi_odom.files.own_odometry import is_base, why_from_wheels
 
 KINDS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 """Message types with transforms, of ROS 2 and of older bags."""

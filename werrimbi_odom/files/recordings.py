@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from werrimbi_odom.effects.collection import Collection
+from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.merged_reference import with_one_scale

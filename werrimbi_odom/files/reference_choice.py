@@ -11,7 +11,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_contents import SCAN, Contents, Measured, Wheels
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, chain, frame, is_static
-from werrimbi_odom.files.made_from_wheels import is_odometry_frame
+from werrimbi_odom.files.own_odometry import is_odometry_frame
 
 NONE = "none"
 """Value in place of a topic: use no reference."""

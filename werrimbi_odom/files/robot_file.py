@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 from ruamel.yaml.comments import CommentedMap
 
-from werrimbi_odom.effects.collection import Collection
+from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.effect_parameters import (
     EFFECTS,
@@ -22,7 +22,7 @@ from werrimbi_odom.files.effect_parameters import (
     is_effect_or_near,
     named_effects,
 )
-from werrimbi_odom.files.other_names import (
+from werrimbi_odom.files.other_drivers_parameters import (
     OF_TURTLEBOT,
     TURTLEBOT,
     is_of_diff_drive,

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from werrimbi_odom.effects.collection import Collection
+from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.effect_parameters import (
     parameters_of,

@@ -3,5 +3,5 @@
 """Diagnosis of many robots, each on its own, on this machine or a cluster, in one table.
 
 Reading order: `robot_task` (the diagnosis of one robot, which never raises), `members` (the robots
-of a folder), `process_pool` (on this machine), `parcel` and `cluster` (on a Dask cluster).
+of a folder), `process_pool` (on this machine), `worker_archive` and `cluster` (on a Dask cluster).
 """

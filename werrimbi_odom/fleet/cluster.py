@@ -13,8 +13,8 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.fleet.parcel import PACKAGE, code_here, doubts, packed, refusal
 from werrimbi_odom.fleet.robot_task import Task, bug, failed
+from werrimbi_odom.fleet.worker_archive import PACKAGE, code_here, doubts, packed, refusal
 from werrimbi_odom.report.fleet import Row
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ def _work() -> Callable[[bytes, dict[str, str]], tuple[Any, str]]:
 
     def work(data: bytes, wanted: dict[str, str]) -> tuple[Any, str]:
         try:
-            from werrimbi_odom.fleet.parcel import code_here, refusal, row_of_parcel
+            from werrimbi_odom.fleet.worker_archive import code_here, refusal, row_of_parcel
         except ImportError as error:
             return None, f"cannot import werrimbi_odom ({error})"
         why = refusal(wanted, code_here())
@@ -152,7 +152,7 @@ def _probe() -> Callable[[], dict[str, str]]:
 
     def probe() -> dict[str, str]:
         try:
-            from werrimbi_odom.fleet.parcel import code_here
+            from werrimbi_odom.fleet.worker_archive import code_here
 
             return dict(code_here())
         except ImportError as error:

@@ -11,7 +11,7 @@ from threading import Lock
 
 from werrimbi_odom.api.drives import refuse_circles
 from werrimbi_odom.api.verbs import diagnosed
-from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, read
 from werrimbi_odom.report.fleet import Row

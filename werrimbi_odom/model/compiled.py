@@ -16,7 +16,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from werrimbi_odom.model.of_floats import copied_for_floats
+from werrimbi_odom.model.float_versions import copied_for_floats
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

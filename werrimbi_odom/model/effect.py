@@ -23,8 +23,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from werrimbi_odom.model.declared import Parameter, Sketch, Twin
 from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect_declarations import Parameter, Sketch, Twin
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.wiring import Wiring

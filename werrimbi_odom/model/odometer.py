@@ -16,11 +16,11 @@ from werrimbi_odom.model.covariance import (
     path_noise_of,
     twist_noise,
 )
-from werrimbi_odom.model.driving import Channels, DrivenStep, Driving
+from werrimbi_odom.model.driven_motion import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
+from werrimbi_odom.model.float_versions import of_floats
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, mean_twist
-from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, PieceTolerance
 from werrimbi_odom.model.pose import Pose

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.model.driving import DrivenStep
+from werrimbi_odom.model.driven_motion import DrivenStep
 from werrimbi_odom.model.phases import HeadingRows, Phase, Sample, Turning, learnable
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

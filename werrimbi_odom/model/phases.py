@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.driving import features
+from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import AppliedEffect, wiring_of
 from werrimbi_odom.model.effects_over_run import after_effects
 from werrimbi_odom.model.encoder import Counts, EncoderLimits

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.model.course import course_of
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.driving import acts, features
+from werrimbi_odom.model.driven_motion import acts, features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven
 from werrimbi_odom.model.encoder import Counts, EncoderLimits, EncoderTally

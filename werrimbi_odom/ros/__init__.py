@@ -4,9 +4,7 @@
 
 `odom_node.OdomNode` is the main node. `counter_inputs` and `wheel_side` convert any input to two
 counters. `odometry_messages`, `markers` and `estimate_status` convert an estimate to messages;
-`health` counts for /diagnostics. `parameters` reads the robot file, and `rehearsal` tests its
-values. `planar` checks incoming poses, `graph` finds other nodes, `slip` and `learning` use a gyro.
-
-`compare_node` (the live error), `drive_node` (a manoeuvre) and `simulated_robot` (a robot in the
-physics engine) are the other nodes. `running` starts and ends all of them.
+`health` counts for /diagnostics. `odom_parameters` reads the robot file, and `parameter_trial`
+tests its values. `planar` checks incoming poses, `graph` finds other nodes, `slip` and `learning`
+use a gyro.
 """

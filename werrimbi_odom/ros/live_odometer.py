@@ -11,7 +11,7 @@ from builtin_interfaces.msg import Time as Stamp
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
-from werrimbi_odom.model.driving import DrivenStep
+from werrimbi_odom.model.driven_motion import DrivenStep
 from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
@@ -19,7 +19,7 @@ from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import Missed
-from werrimbi_odom.ros.rehearsal import is_finite
+from werrimbi_odom.ros.parameter_trial import is_finite
 
 
 class Finished(NamedTuple):

@@ -28,7 +28,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.ros import counter_inputs, parameters
+from werrimbi_odom.ros import counter_inputs, odom_parameters
 from werrimbi_odom.ros.diagnostics import tell
 from werrimbi_odom.ros.estimate_status import status_of
 from werrimbi_odom.ros.graph import Company, full_name
@@ -58,9 +58,9 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__("odom_node")
-        self._settings = parameters.declared(self)
+        self._settings = odom_parameters.declared(self)
         values, robot, limits = self._settings.values, self._settings.robot, self._settings.limits
-        self._changeable = parameters.changeable(self._settings.effects)
+        self._changeable = odom_parameters.changeable(self._settings.effects)
         self._frame = str(values["odom_frame_id"])
         self._topics = tuple(
             self.resolve_topic_name(name) for name in counter_inputs.topics_of(values)
@@ -93,9 +93,9 @@ class OdomNode(Node):  # type: ignore[misc]
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
         self.create_service(Trigger, "~/reset", self._on_reset)
-        self.add_pre_set_parameters_callback(partial(parameters.with_floats, self._changeable))
+        self.add_pre_set_parameters_callback(partial(odom_parameters.with_floats, self._changeable))
         self.add_on_set_parameters_callback(
-            lambda changed: parameters.judged(self._changeable, self._settings, changed)
+            lambda changed: odom_parameters.judged(self._changeable, self._settings, changed)
         )
         self.add_post_set_parameters_callback(self._on_parameters_set)
         # The steady clock: /diagnostics must continue when simulated time stands still.
@@ -152,7 +152,7 @@ class OdomNode(Node):  # type: ignore[misc]
         return response
 
     def _on_parameters_set(self, changed: list[Any]) -> None:
-        changes = parameters.changes_of(self._changeable, changed)
+        changes = odom_parameters.changes_of(self._changeable, changed)
         if not changes:
             return
         settings = self._settings = self._settings.after(changes)
@@ -246,9 +246,9 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _say_hello(self) -> None:
         log, values = self.get_logger(), self._settings.values
-        for name in parameters.leftover_qos_overrides(self):
+        for name in odom_parameters.leftover_qos_overrides(self):
             log.warning(f"{name} is not used: there is no such topic or policy")
-        if parameters.has_virtual_ticks(values):
+        if odom_parameters.has_virtual_ticks(values):
             log.info(
                 "no ticks_per_revolution: wheel angles are taken as exact to a microradian. Give "
                 "left_ and right_ticks_per_revolution where you know them: then quantisation "

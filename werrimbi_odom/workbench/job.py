@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.effects.collection import Collection
+    from werrimbi_odom.effects.lookup import Collection
     from werrimbi_odom.files.recordings import Recordings
     from werrimbi_odom.model.robot import Robot
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from werrimbi_odom.effects.collection import Collection
+from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile

@@ -17,7 +17,7 @@ from multiprocessing.connection import Connection
 from types import MappingProxyType
 from typing import Any, get_args
 
-from werrimbi_odom.effects.collection import Collection, all_effects
+from werrimbi_odom.effects.lookup import Collection, all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.residuals import Measure

@@ -5,7 +5,7 @@
 Fits, the diagnosis and the node rely on them: live and recorded drives give equal results, results
 do not depend on the message rate, an effect at its null values is the identity.
 
-Begin with `check`; `laws` has the properties of effects on wheels and body.
+Begin with `check`; `wheel_and_body_laws` has the properties of effects on wheels and body.
 """
 
 from werrimbi_odom.effects.contract.check import check_effect

@@ -9,8 +9,8 @@ import re
 import numpy as np
 
 from werrimbi_odom.effects.contract.demands import corners, demand, told
-from werrimbi_odom.effects.contract.laws import LAWS
-from werrimbi_odom.effects.contract.rehearsal import Rehearsal
+from werrimbi_odom.effects.contract.sample_drive import Rehearsal
+from werrimbi_odom.effects.contract.wheel_and_body_laws import LAWS
 from werrimbi_odom.effects.page import SECTIONS, page_of
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.reference_view import View

@@ -19,9 +19,9 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
 from werrimbi_odom.inference.events.events import Events
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import UNUSUAL_PROMISE
 from werrimbi_odom.inference.set_up.search import SetUp

@@ -44,7 +44,6 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, sizes_needed, with_sizes
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -53,6 +52,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, beyond_wheel_noise, with_noise
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect

@@ -26,9 +26,9 @@ from werrimbi_odom.inference.adding.start_values import (
     starts,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import Model, changed
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show

@@ -19,13 +19,13 @@ from werrimbi_odom.inference.calibration_sizes import (
     std_as_effect,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,
     FreeParameter,
     Model,
     is_determined,
 )
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, SIGNIFICANT
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot

@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.adding.start_values import is_of_set_up
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect

@@ -15,17 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.inference.comparison.jumps import jumped_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidates import (
-    CALIBRATED,
-    Score,
-    candidates,
-    parameters_of_candidate,
-    scores,
-    started_with,
-)
+from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -35,6 +28,13 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     parameters_to_fit,
 )
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
+from werrimbi_odom.inference.fitting.score_tests import (
+    CALIBRATED,
+    Score,
+    candidates,
+    parameters_of_candidate,
+    scores,
+)
 from werrimbi_odom.inference.legs.cutting import at_edges, match_for_fit, with_stated_noise
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect

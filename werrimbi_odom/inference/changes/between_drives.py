@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.changes.drives import DriveNumbers, information_of_drives
 from werrimbi_odom.inference.changes.numbers import (
@@ -32,16 +32,16 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns, pattern_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.candidates import (
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Design, Point
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, STEP, FreeParameter
+from werrimbi_odom.inference.fitting.score_tests import (
     Candidate,
     Score,
     candidates,
     scores,
     signatures,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Design, Point
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, STEP, FreeParameter
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE, WORTH_OF_A_CHANGE
 from werrimbi_odom.model.effect import Effect

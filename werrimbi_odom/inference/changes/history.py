@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of

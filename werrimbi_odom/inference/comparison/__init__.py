@@ -4,5 +4,5 @@
 
 Reading order: `compare` (the whole of it), `prepared` (legs cut once), `leg_errors`, `consistency`
 (the one rule for an honest covariance), `verdict` (what is reported). `reference_noise`,
-`reference_checks` and `jumps` look at the reference itself.
+`reference_checks` and `reference_jumps` look at the reference itself.
 """

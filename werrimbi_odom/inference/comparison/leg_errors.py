@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.comparison.local_map import errors_on_map
+from werrimbi_odom.inference.comparison.local_map_errors import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model

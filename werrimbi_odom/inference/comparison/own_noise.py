@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.inference.comparison.local_map import wandering_of
+from werrimbi_odom.inference.comparison.local_map_errors import wandering_of
 from werrimbi_odom.inference.comparison.reference_noise import reference_noise, stamp_noise
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.own_noise import OwnNoise, ReferenceNoise, noise_of
+from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.residuals import (
     Measure,
     Residual,

@@ -27,7 +27,7 @@ from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts
-from werrimbi_odom.inference.diagnosis.rivals_of_held import rivals_of_held
+from werrimbi_odom.inference.diagnosis.rivals_of_robot_file import rivals_of_held
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,
@@ -41,9 +41,9 @@ from werrimbi_odom.inference.diagnosis.support import Support, askable, support_
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
-from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.score_tests import Score
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,

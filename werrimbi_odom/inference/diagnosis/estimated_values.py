@@ -16,8 +16,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnos
 from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
 from werrimbi_odom.inference.diagnosis.selection import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
 

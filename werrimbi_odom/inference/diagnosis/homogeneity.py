@@ -22,12 +22,12 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, step_jacobian
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
-from werrimbi_odom.inference.fitting.candidates import of_each_run, residual_innovations
 from werrimbi_odom.inference.fitting.clusters import least_informative_share, parts_of_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.score_tests import of_each_run, residual_innovations
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.inference.set_up.search import SetUpFinding
 from werrimbi_odom.model.robot import Robot

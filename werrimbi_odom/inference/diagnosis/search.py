@@ -10,13 +10,7 @@ from dataclasses import dataclass, replace
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidates import (
-    Score,
-    candidates,
-    parameters_of_candidate,
-    scores,
-    started_with,
-)
+from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import (
@@ -26,6 +20,12 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     changed,
 )
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
+from werrimbi_odom.inference.fitting.score_tests import (
+    Score,
+    candidates,
+    parameters_of_candidate,
+    scores,
+)
 from werrimbi_odom.inference.legs.cutting import at_edges
 from werrimbi_odom.inference.rules import (
     INSTEAD_FITTED,

@@ -23,7 +23,6 @@ from werrimbi_odom.inference.calibration_sizes import (
     sizes_of,
     std_as_effect,
 )
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.clusters import widening
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
@@ -42,6 +41,7 @@ from werrimbi_odom.inference.fitting.identifiable import (
     determined,
     every_direction,
 )
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,

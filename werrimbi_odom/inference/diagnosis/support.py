@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
-from werrimbi_odom.inference.fitting.candidates import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.score_tests import Candidate
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import watched

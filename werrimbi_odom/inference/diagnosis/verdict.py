@@ -34,9 +34,9 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.events.events import Events
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, LAW_SHARE, SIGNIFICANT, SURE
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES

@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drafting of a new effect from the evidence, if no effect of the library explains the errors.
 
-Reading order: `draft` (the whole of it), `laws` (laws of one variable), `two_variables` with
+Reading order: `draft` (the whole of it), `law_forms` (laws of one variable), `two_variables` with
 `terms` and `regression` (laws of two variables), `source` and `package` (the files written).
 """

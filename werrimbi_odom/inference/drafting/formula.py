@@ -11,7 +11,7 @@ import re
 from collections.abc import Sequence
 
 from werrimbi_odom.inference.diagnosis.evidence import Amount
-from werrimbi_odom.inference.drafting.laws import Seen
+from werrimbi_odom.inference.drafting.law_forms import Seen
 
 _RATES = {"travel": "v", "path": "|v|", "turn": "w"}
 _ORDER = ("v", "|v|", "w", "|w|")

@@ -11,17 +11,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.effects.contract import check_effect
+from werrimbi_odom.effects.lookup import load_file
 from werrimbi_odom.inference.adding.start_values import FitDrives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.drafting.laws import Form, Seen
+from werrimbi_odom.inference.drafting.law_forms import Form, Seen
 from werrimbi_odom.inference.drafting.source import name_of, source_of
-from werrimbi_odom.inference.drafting.variables import rounded
-from werrimbi_odom.inference.fitting.candidates import Score
+from werrimbi_odom.inference.drafting.variable_source import rounded
 from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.score_tests import Score
 from werrimbi_odom.inference.rules import WIDER_THAN_FITTED
 from werrimbi_odom.model.effect import Effect
 

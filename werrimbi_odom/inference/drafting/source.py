@@ -8,7 +8,7 @@ import textwrap
 
 from werrimbi_odom.effects import shapes
 from werrimbi_odom.inference.diagnosis.evidence import Amount
-from werrimbi_odom.inference.drafting.laws import INDENT, Form, Seen
+from werrimbi_odom.inference.drafting.law_forms import INDENT, Form, Seen
 
 _ERROR = {
     "left": "the left wheel's travel",

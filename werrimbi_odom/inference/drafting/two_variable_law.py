@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.drafting.formula import in_a_line, symbols_of
-from werrimbi_odom.inference.drafting.laws import INDENT, Declared, Form, Seen, wide
+from werrimbi_odom.inference.drafting.law_forms import INDENT, Declared, Form, Seen, wide
 from werrimbi_odom.inference.drafting.terms import Term, unit_of_coefficient
-from werrimbi_odom.inference.drafting.variables import rounded
+from werrimbi_odom.inference.drafting.variable_source import rounded
 
 _NAMES = ("gain", "second_gain", "third_gain")
 _MEASURED = {"travel": "speed", "path": "speed", "turn": "yaw_rate"}

@@ -5,5 +5,5 @@
 Reading order: `concatenated_runs` (drives laid end to end), `prediction` (of every leg),
 `filtering` and `likelihood` (innovations of a Kalman filter), `design` (their derivatives),
 `identifiable` (what the data determine), `noise` with `fisher_scoring` (the variances), `fit` (all
-of it), `candidates` (score tests).
+of it), `score_tests` (of candidates).
 """

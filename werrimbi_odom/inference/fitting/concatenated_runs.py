@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
-from werrimbi_odom.model.driving import features
+from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats

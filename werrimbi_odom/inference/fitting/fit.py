@@ -31,11 +31,11 @@ from werrimbi_odom.inference.fitting.identifiable import Directions, determined,
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.prediction import (
-    predict,
     predict_all,
     predicted_legs,
     turns_over,
 )
+from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_the_first_legs
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (
@@ -148,7 +148,7 @@ def fit_model(
             point = replace(point, variances=noise)
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
-        point = _turned_to_the_first_legs(laid, point)
+        point = turned_to_the_first_legs(laid, point)
     for _ in range(rounds):
         if laid.data >= NOISE_NUMBERS:
             variances = map_variances(
@@ -281,47 +281,8 @@ def _scaled(variances: Variances, factor: float) -> Variances:
 
 def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
     """Nuisance parameters of a run: what its reference does not measure."""
-    heading = _first_heading(robot, run)
+    heading = first_heading(robot, run)
     own = {} if heading is None else {START_YAW: heading}
     if not run.measured.has_position.any():
         own[YAW_DRIFT] = 0.0  # a reference of headings only is a gyro, and gyros drift
     return own
-
-
-def _turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
-    """Re-estimate unmeasured start headings from the first legs, where that lowers the cost.
-
-    A heading fitted without some effect can be so far off once the effect is in that least squares
-    does not converge.
-    """
-    model = point.model
-    if all(START_YAW not in mine for mine in model.own):
-        return point
-    own = []
-    for index, (run, mine) in enumerate(zip(runs.runs, model.own, strict=True)):
-        heading = _first_heading(model.of_run(index), run)
-        own.append(dict(mine) if heading is None else {**mine, START_YAW: heading})
-    squares = [
-        np.add.reduceat(np.sum(unexpected(runs, tried).whitened() ** 2, -1), runs.legs[:-1])
-        for tried in (point, replace(point, model=Model(model.robot, tuple(own))))
-    ]
-    better = squares[1] < squares[0]
-    chosen = [new if took else mine for new, mine, took in zip(own, model.own, better, strict=True)]
-    return replace(point, model=Model(model.robot, tuple(chosen)))
-
-
-def _first_heading(robot: Robot, run: MatchedRun) -> float | None:
-    """Start heading that aligns the first legs with the measured positions; None if measured."""
-    if run.measured.has_yaw[0]:
-        return None
-    heading, pose, predicted = 0.0, 0j, [0j]
-    for x, y, turn in predict(robot, run, 0.0).relative:
-        pose += np.exp(1j * heading) * complex(x, y)
-        heading += turn
-        predicted.append(pose)
-    measured = run.measured.x + 1j * run.measured.y
-    usable = np.flatnonzero(run.measured.has_position)[:12]
-    if usable.size < 2:
-        return 0.0
-    shape = np.array(predicted)[usable] - predicted[usable[0]]
-    return float(np.angle(np.sum(np.conj(shape) * (measured[usable] - measured[usable[0]]))))

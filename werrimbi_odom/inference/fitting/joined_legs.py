@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import NUISANCES, Model
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
-from werrimbi_odom.model.driving import acts
+from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.pose import Floats
 

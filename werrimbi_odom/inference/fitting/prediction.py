@@ -17,7 +17,7 @@ from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath, noise_of_legs
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.course import followed
-from werrimbi_odom.model.driving import acts
+from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body

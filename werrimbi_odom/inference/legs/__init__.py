@@ -3,5 +3,5 @@
 """Recorded drives cut into legs: one clock for ticks and reference, gaps, ends of legs.
 
 Reading order: `cutting` (the legs), `gaps`, `no_driving` (held and carried robots), `even_stamps`
-(stamps of arrival put right), `leaps` (counters that leap).
+(stamps of arrival put right), `counter_jumps` (counters that leap).
 """

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
-from werrimbi_odom.inference.legs.leaps import CounterJump, bridged
 from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of

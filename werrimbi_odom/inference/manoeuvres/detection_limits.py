@@ -27,14 +27,14 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import askable
 from werrimbi_odom.inference.distributions import noncentrality
-from werrimbi_odom.inference.fitting.candidates import (
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.free_parameters import STEP
+from werrimbi_odom.inference.fitting.score_tests import (
     CALIBRATED,
     OF_THE_MEASUREMENT,
     Candidate,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of

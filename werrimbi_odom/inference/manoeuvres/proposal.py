@@ -21,7 +21,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
@@ -35,7 +35,7 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     trace_along,
     trace_at,
 )
-from werrimbi_odom.inference.manoeuvres.for_unknown import (
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import (
     ProposedManoeuvre,
     for_the_unknown,
     strongest,

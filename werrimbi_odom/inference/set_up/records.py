@@ -25,7 +25,7 @@ from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.driving import features
+from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
 from werrimbi_odom.model.effects_over_run import PLACE, watched
 from werrimbi_odom.model.encoder import EncoderLimits

@@ -23,6 +23,7 @@ from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import FEWEST_CUTS, MILLIMETRES_FROM, MOST_CREEP, SURE_SIZE
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
+from werrimbi_odom.inference.set_up.few_poses import is_sparse, search_sparse
 from werrimbi_odom.inference.set_up.findings import (
     IN_DEGREES,
     WIRING_WORDS,
@@ -41,7 +42,6 @@ from werrimbi_odom.inference.set_up.records import (
 )
 from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, turning
 from werrimbi_odom.inference.set_up.robot import with_findings
-from werrimbi_odom.inference.set_up.sparse import is_sparse, search_sparse
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 

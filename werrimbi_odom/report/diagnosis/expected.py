@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import two_digits
 

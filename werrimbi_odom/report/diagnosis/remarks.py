@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
 from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words

@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     reference_wanders,
 )
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
-from werrimbi_odom.inference.manoeuvres.for_unknown import ProposedManoeuvre
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.rules import POWER
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words

@@ -12,19 +12,19 @@ from typing import Literal
 
 import numpy as np
 
-from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
-from .creep import CastorKick, CoulombSlip, LateralSlip, LongitudinalSlip, TurnDependentTrack
-from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
-from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
-from .knocks import Knock, ReferenceJump
-from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
-from .outside import (
+from .beyond_library import (
     BaseByPayload,
     OneTyreBackwards,
     OneTyreByLoadOverPressure,
     OneTyreByPressure,
     SlideByTiltAndPayload,
 )
+from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
+from .creep import CastorKick, CoulombSlip, LateralSlip, LongitudinalSlip, TurnDependentTrack
+from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
+from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
+from .knocks import Knock, ReferenceJump
+from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
 from .peculiarity import Peculiarity
 from .skid import skid_steer
 from .tyres import (

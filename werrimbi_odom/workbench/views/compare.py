@@ -21,7 +21,7 @@ from werrimbi_odom.workbench.parts import (
     motion_parts,
 )
 from werrimbi_odom.workbench.tab import Tab, millimetres
-from werrimbi_odom.workbench.views.beside import floor
+from werrimbi_odom.workbench.views.side_panels import floor
 
 
 def compare_view(tab: Tab) -> None:

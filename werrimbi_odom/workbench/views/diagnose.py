@@ -18,7 +18,7 @@ from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.parts import CellPart
 from werrimbi_odom.workbench.tab import Tab, millimetres
 from werrimbi_odom.workbench.undo import Diagnosed
-from werrimbi_odom.workbench.views.beside import floor, why
+from werrimbi_odom.workbench.views.side_panels import floor, why
 
 SHORT = 5
 """Paragraphs of the verdict that are shown at first."""

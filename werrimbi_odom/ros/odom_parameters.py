@@ -19,14 +19,14 @@ from rclpy.parameter import Parameter
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as table
 from werrimbi_odom.files.effect_parameters import EFFECTS, Named, named_effects, parameters_of
-from werrimbi_odom.files.other_names import is_of_diff_drive
+from werrimbi_odom.files.other_drivers_parameters import is_of_diff_drive
 from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.counter_inputs import robot_at_counters
-from werrimbi_odom.ros.rehearsal import rehearse
+from werrimbi_odom.ros.parameter_trial import rehearse
 
 CHANGEABLE = frozenset(
     {

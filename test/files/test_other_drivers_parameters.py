@@ -14,7 +14,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.robot_file_rewrite import write_robot_file
-from werrimbi_odom.ros.parameters import settings_of
+from werrimbi_odom.ros.odom_parameters import settings_of
 
 RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"
 TICKS_PER_REVOLUTION = ("left_ticks_per_revolution", "right_ticks_per_revolution")

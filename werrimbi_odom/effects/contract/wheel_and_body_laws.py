@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.effects.contract.demands import Values, corners, demand, settings, told, typical
-from werrimbi_odom.effects.contract.rehearsal import TRACK, Rehearsal, rows, seal, sealed
-from werrimbi_odom.effects.contract.three_ways import drives_alike
+from werrimbi_odom.effects.contract.live_recorded_predicted import drives_alike
+from werrimbi_odom.effects.contract.sample_drive import TRACK, Rehearsal, rows, seal, sealed
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import PLACE, watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement

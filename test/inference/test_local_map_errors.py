@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.run import Reference, Run

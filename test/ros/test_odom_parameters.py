@@ -18,10 +18,10 @@ pytest.importorskip("rclpy")
 
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 
-from werrimbi_odom.effects import collection, find
+from werrimbi_odom.effects import find, lookup
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import PARAMETERS, VIRTUAL_TICKS_PER_REVOLUTION
-from werrimbi_odom.ros.parameters import (
+from werrimbi_odom.ros.odom_parameters import (
     CHANGEABLE,
     checked,
     settings_of,
@@ -171,7 +171,7 @@ def test_an_empty_block_is_a_block() -> None:
 def test_an_effect_that_needs_a_channel_does_not_run_live(monkeypatch: pytest.MonkeyPatch) -> None:
     slip = find("lateral_slip")
     fed = replace(slip, name="fed_slip", channels=("payload_kg",))
-    monkeypatch.setattr(collection, "LIBRARY", (fed,))
+    monkeypatch.setattr(lookup, "LIBRARY", (fed,))
     with pytest.raises(InputError, match="effect fed_slip looks at the measured channel payload_"):
         settings_of({**BARE, "effects": ["fed_slip"]})
 

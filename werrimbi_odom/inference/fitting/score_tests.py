@@ -23,7 +23,6 @@ from werrimbi_odom.inference.fitting.candidate import Candidate as Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import (
-    STEP,
     FreeParameter,
     Model,
     parameters_to_fit,
@@ -33,11 +32,10 @@ from werrimbi_odom.inference.fitting.prediction import (
     Prediction,
     predict_all,
     predicted_legs,
-    turns_over,
 )
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
-from werrimbi_odom.model.effect import AppliedEffect, Effect
-from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.pose import Floats
 
 BESIDE_POSITIONS = ("reference_heading_delay",)
 """Effects that relate headings to positions; for headings alone they equal another effect."""
@@ -231,58 +229,6 @@ def _slope(
         robot = replace(model.robot, effects=(*model.robot.effects, applied))
         poses.append(predicted_legs(replace(model, robot=robot), runs))
     return np.asarray(0.5 * (poses[0] - poses[1]))
-
-
-def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
-    """Add a candidate to a point, at the values that its score suggests or at a share of them.
-
-    A score is linear; far from zero an effect's formula may predict nonsense.
-    """
-    before = predict_all(point.model, runs).relative
-    for share in (1.0, 0.3, 0.1, 0.03):
-        less = replace(score, coefficients=share * score.coefficients)
-        model = with_candidate(point.model, less)
-        if not turns_over(before, predict_all(model, runs).relative):
-            break
-    return replace(point, model=model)
-
-
-def with_candidate(model: Model, score: Score) -> Model:
-    """Add a candidate to the model, at the values that its score suggests."""
-    candidate = score.candidate
-    effect = candidate.effect
-    start = dict(effect.nulls) | dict(candidate.shape)
-    own: list[dict[str, float]] = [dict(mine) for mine in model.own]
-    if effect.quadrature is not None:
-        amplitude, phase = effect.quadrature
-        size = STEP * effect.parameters[amplitude].scale
-        pairs = size * np.atleast_2d(score.coefficients)
-        sizes, angles = np.hypot(*pairs.T), np.arctan2(pairs[:, 1], pairs[:, 0])
-        start[amplitude] = float(np.clip(np.median(sizes), *effect.parameters[amplitude].bounds))
-        start[phase] = float(angles[0])
-        if candidate.per_run:
-            for mine, angle in zip(own, angles.tolist(), strict=True):
-                mine[f"{effect.name}.{phase}"] = angle
-    else:
-        moving = [
-            name for name, item in effect.parameters.items() if not item.tries and not item.as_base
-        ]
-        anew = candidate.per_run and score.places is None
-        for name, sizes in zip(moving, np.atleast_2d(score.coefficients).T, strict=False):
-            item = effect.parameters[name]
-            values = np.clip(start[name] + sizes * STEP * item.scale, *item.bounds)
-            start[name] = float(np.median(values))
-            if anew:
-                for mine, value in zip(own, values.tolist(), strict=True):
-                    mine[f"{effect.name}.{name}"] = value
-        if candidate.place is not None and score.places is not None:
-            places = wrap_all(score.places)
-            start[candidate.place] = float(places[0])
-            if candidate.per_run:
-                for mine, place in zip(own, places.tolist(), strict=True):
-                    mine[f"{effect.name}.{candidate.place}"] = place
-    robot = replace(model.robot, effects=(*model.robot.effects, AppliedEffect(effect, start)))
-    return Model(robot, tuple(own))
 
 
 def parameters_of_candidate(candidate: Candidate) -> tuple[FreeParameter, ...]:

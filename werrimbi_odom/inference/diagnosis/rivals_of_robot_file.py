@@ -14,15 +14,15 @@ from dataclasses import replace
 from werrimbi_odom.inference.calibration_sizes import base_name
 from werrimbi_odom.inference.diagnosis.search import best_of_each
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidates import (
+from werrimbi_odom.inference.fitting.candidate_starts import started_with
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.score_tests import (
     CALIBRATED,
     candidates,
     parameters_of_candidate,
     scores,
-    started_with,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot

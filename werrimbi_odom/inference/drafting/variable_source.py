@@ -12,7 +12,7 @@ import numpy as np
 
 from werrimbi_odom.effects.shapes import steady
 from werrimbi_odom.inference.diagnosis.variables import Variable
-from werrimbi_odom.inference.drafting.laws import Seen
+from werrimbi_odom.inference.drafting.law_forms import Seen
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.pose import Floats
 

@@ -19,7 +19,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, entry_points, version
 from pathlib import Path
 
-from werrimbi_odom.effects.collection import GROUP
+from werrimbi_odom.effects.lookup import GROUP
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, files_of
 from werrimbi_odom.files.recordings import Asked

@@ -16,8 +16,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from werrimbi_odom.effects.guarded import guarded, line_of, words_of
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.effects.user_effect_errors import guarded, line_of, words_of
 from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.model.effect import Effect
 

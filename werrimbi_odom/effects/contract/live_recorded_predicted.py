@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from werrimbi_odom.effects.contract.demands import demand, settings, told
-from werrimbi_odom.effects.contract.rehearsal import RADIUS, TRACK, Rehearsal
-from werrimbi_odom.model.driving import Driving, features
+from werrimbi_odom.effects.contract.sample_drive import RADIUS, TRACK, Rehearsal
+from werrimbi_odom.model.driven_motion import Driving, features
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.effects_over_run import (
     AfterEffects,

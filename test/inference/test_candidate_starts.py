@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the fit of a candidate begins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.inference.driven import run_of
+from test.model.drives import ROBOT, read
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.free_parameters import START_YAW
+from werrimbi_odom.inference.fitting.prediction import predicted_legs, turns_over
+from werrimbi_odom.inference.fitting.score_tests import candidates, scores
+from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.motion import BodyMotion, Number
+from werrimbi_odom.model.trajectory import trajectory
+
+
+@body_effect(size=Parameter("", null=0.0, typical=0.01, bounds=(-1.0, 1.0), says="of the trouble"))
+def explodes(motion: BodyMotion[Number], drive: Drive[Number], size: float) -> BodyMotion[Number]:
+    """A turn that is linear in a small size, and grows without limit in a large one."""
+    return motion._replace(turn=motion.turn * (1.0 + size + (4.0 * size) ** 12))
+
+
+def test_a_score_that_leads_to_nonsense_is_followed_part_of_the_way() -> None:
+    runs = concatenated(match_for_fit([run_of(ROBOT, 3, 60)], ROBOT, 1.0))
+    point = start_point(runs, ROBOT, EvaluationOptions())
+    (score,) = scores(runs, point, (), candidates([explodes], (), (), 1))
+    far = replace(score, coefficients=np.array([5e2]))
+    before = predicted_legs(point.model, runs)
+    assert turns_over(before, predicted_legs(with_candidate(point.model, far), runs))
+    start = started_with(runs, point, far)
+    assert not turns_over(before, predicted_legs(start.model, runs))
+    (effect,) = start.model.robot.effects
+    assert 0.0 < effect.values["size"] < 1.0
+
+
+ANTENNA = -0.137 + 0.033j
+"""Ahead of the axle's middle, and left of it [m]."""
+FRAME = 1.5
+"""Start heading of every drive in the reference's frame [rad]."""
+
+
+def _positions_of_the_antenna(name: str, speed: float, yaw_rates: tuple[float, ...]) -> Run:
+    """Ten seconds at each yaw rate, with a rest before and after, in a frame of its own."""
+    random = np.random.default_rng(len(yaw_rates))
+    turning = np.concatenate(
+        [np.zeros(40), *(np.full(200, rate) for rate in yaw_rates), np.zeros(40)]
+    )
+    forward = np.where(turning == 0.0, 0.0, speed)
+    ticks = read(ROBOT, 20.0, forward, turning)
+    path = trajectory(ROBOT, *ticks)
+    place = np.exp(1j * FRAME) * (path.x + 1j * path.y + ANTENNA * np.exp(1j * path.yaw))
+    noise = random.normal(0.0, 1e-3, (2, place.size))
+    reference = Reference(
+        path.time, place.real + noise[0], place.imag + noise[1], np.full(place.size, np.nan)
+    )
+    counted = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float), {})
+    return Run(name, Path(name), counted, reference)
+
+
+@pytest.mark.parametrize("wrong", [0.0, 2.0, 3.0, -2.8])
+def test_positions_of_a_point_far_from_the_axle_start_in_its_direction(wrong: float) -> None:
+    # Positions of a spin on the spot hold the heading and the point's direction together.
+    drives = [
+        _positions_of_the_antenna("bends", 0.3, (0.3, -0.3)),
+        _positions_of_the_antenna("spins", 0.0, (0.7, -1.2, 0.4)),
+    ]
+    runs = concatenated(match_for_fit(drives, ROBOT, 1.0))
+    point = start_point(runs, ROBOT, EvaluationOptions())
+    bends, spins = point.model.own
+    turned = {**spins, START_YAW: FRAME + wrong}
+    point = replace(point, model=replace(point.model, own=(bends, turned)))
+    (score,) = scores(runs, point, (), candidates([find("reference_lever_arm")], (), (), 2))
+    (effect,) = started_with(runs, point, score).model.robot.effects
+    found = complex(effect.values["x"], effect.values["y"]) / ANTENNA
+    assert 0.5 < abs(found) < 1.5  # where a fit starts
+    assert abs(np.angle(found)) < 0.5

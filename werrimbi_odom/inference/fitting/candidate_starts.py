@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the fit of a candidate effect starts: at the values that its score test suggests."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.free_parameters import STEP, Model
+from werrimbi_odom.inference.fitting.prediction import predict_all, turns_over
+from werrimbi_odom.inference.fitting.score_tests import Score
+from werrimbi_odom.inference.fitting.start_headings import (
+    squares_of_runs,
+    starts_unmeasured,
+    turned_to_the_first_legs,
+)
+from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.pose import wrap_all
+
+_ALL_ROUND = np.arange(8) * 0.25 * np.pi
+"""Directions in which a measured point is looked for [rad]."""
+
+
+def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
+    """Add a candidate to a point, at the values that its score suggests or at a share of them.
+
+    A score is linear; far from zero an effect's formula may predict nonsense.
+    """
+    before = predict_all(point.model, runs).relative
+    for share in (1.0, 0.3, 0.1, 0.03):
+        less = replace(score, coefficients=share * score.coefficients)
+        model = with_candidate(point.model, less)
+        if not turns_over(before, predict_all(model, runs).relative):
+            break
+    if starts_unmeasured(model) and _is_of_a_point(score):
+        return _turned_with_the_headings(runs, point, less)
+    return replace(point, model=model)
+
+
+def _is_of_a_point(score: Score) -> bool:
+    """Whether the coordinates are those of the measured point, in the robot's axes."""
+    return score.candidate.effect.stage == "reference" and score.coefficients.shape == (2,)
+
+
+def _turned_with_the_headings(runs: Concatenated, point: Point, score: Score) -> Point:
+    """Start with the measured point in that direction from the axle that fits best.
+
+    In a drive that spins on the spot, positions do not tell the heading until the measured point is
+    known: any heading fits as well, with that point turned by as much. So the score, which takes
+    the headings as they are, knows its distance, and not its direction.
+    """
+    starts = []
+    for place in complex(*score.coefficients) * np.exp(1j * _ALL_ROUND):
+        there = replace(score, coefficients=np.array([place.real, place.imag]))
+        model = with_candidate(point.model, there)
+        starts.append(turned_to_the_first_legs(runs, replace(point, model=model)))
+    return min(starts, key=lambda start: float(np.sum(squares_of_runs(runs, start))))
+
+
+def with_candidate(model: Model, score: Score) -> Model:
+    """Add a candidate to the model, at the values that its score suggests."""
+    candidate = score.candidate
+    effect = candidate.effect
+    start = dict(effect.nulls) | dict(candidate.shape)
+    own: list[dict[str, float]] = [dict(mine) for mine in model.own]
+    if effect.quadrature is not None:
+        amplitude, phase = effect.quadrature
+        size = STEP * effect.parameters[amplitude].scale
+        pairs = size * np.atleast_2d(score.coefficients)
+        sizes, angles = np.hypot(*pairs.T), np.arctan2(pairs[:, 1], pairs[:, 0])
+        start[amplitude] = float(np.clip(np.median(sizes), *effect.parameters[amplitude].bounds))
+        start[phase] = float(angles[0])
+        if candidate.per_run:
+            for mine, angle in zip(own, angles.tolist(), strict=True):
+                mine[f"{effect.name}.{phase}"] = angle
+    else:
+        moving = [
+            name for name, item in effect.parameters.items() if not item.tries and not item.as_base
+        ]
+        anew = candidate.per_run and score.places is None
+        for name, sizes in zip(moving, np.atleast_2d(score.coefficients).T, strict=False):
+            item = effect.parameters[name]
+            values = np.clip(start[name] + sizes * STEP * item.scale, *item.bounds)
+            start[name] = float(np.median(values))
+            if anew:
+                for mine, value in zip(own, values.tolist(), strict=True):
+                    mine[f"{effect.name}.{name}"] = value
+        if candidate.place is not None and score.places is not None:
+            places = wrap_all(score.places)
+            start[candidate.place] = float(places[0])
+            if candidate.per_run:
+                for mine, place in zip(own, places.tolist(), strict=True):
+                    mine[f"{effect.name}.{candidate.place}"] = place
+    robot = replace(model.robot, effects=(*model.robot.effects, AppliedEffect(effect, start)))
+    return Model(robot, tuple(own))

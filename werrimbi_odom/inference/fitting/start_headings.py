@@ -1,0 +1,66 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Headings at the start of runs whose reference measures positions only: where a fit begins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Point, unexpected
+from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
+from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+_FIRST_NODES = 12
+
+
+def first_heading(robot: Robot, run: MatchedRun) -> float | None:
+    """Start heading that aligns the first legs with the measured positions; None if measured."""
+    if run.measured.has_yaw[0]:
+        return None
+    heading, pose, predicted = 0.0, 0j, [0j]
+    for x, y, turn in predict(robot, run, 0.0).relative:
+        pose += np.exp(1j * heading) * complex(x, y)
+        heading += turn
+        predicted.append(pose)
+    measured = run.measured.x + 1j * run.measured.y
+    usable = np.flatnonzero(run.measured.has_position)[:_FIRST_NODES]
+    if usable.size < 2:
+        return 0.0
+    shape = np.array(predicted)[usable] - predicted[usable[0]]
+    return float(np.angle(np.sum(np.conj(shape) * (measured[usable] - measured[usable[0]]))))
+
+
+def turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
+    """Re-estimate unmeasured start headings from the first legs, where that lowers the cost.
+
+    A heading fitted without some effect can be so far off once the effect is in that least squares
+    does not converge.
+    """
+    model = point.model
+    if not starts_unmeasured(model):
+        return point
+    own = []
+    for index, (run, mine) in enumerate(zip(runs.runs, model.own, strict=True)):
+        heading = first_heading(model.of_run(index), run)
+        own.append(dict(mine) if heading is None else {**mine, START_YAW: heading})
+    turned = replace(point, model=Model(model.robot, tuple(own)))
+    better = squares_of_runs(runs, turned) < squares_of_runs(runs, point)
+    chosen = [new if took else mine for new, mine, took in zip(own, model.own, better, strict=True)]
+    return replace(point, model=Model(model.robot, tuple(chosen)))
+
+
+def starts_unmeasured(model: Model) -> bool:
+    """Whether a run starts with a heading that was not measured."""
+    return any(START_YAW in mine for mine in model.own)
+
+
+def squares_of_runs(runs: Concatenated, point: Point) -> Floats:
+    """Sum of the squared whitened innovations of each run, shape (runs,)."""
+    of_legs = np.sum(unexpected(runs, point).whitened() ** 2, axis=-1)
+    return np.asarray(np.add.reduceat(of_legs, runs.legs[:-1]))
