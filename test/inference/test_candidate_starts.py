@@ -5,16 +5,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from test.inference.driven import run_of
-from test.model.drives import ROBOT, read
+from test.inference.positions import FRAME, positions_of_a_point
+from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -25,7 +24,6 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
-from werrimbi_odom.model.trajectory import trajectory
 
 
 @body_effect(size=Parameter("", null=0.0, typical=0.01, bounds=(-1.0, 1.0), says="of the trouble"))
@@ -49,34 +47,14 @@ def test_a_score_that_leads_to_nonsense_is_followed_part_of_the_way() -> None:
 
 ANTENNA = -0.137 + 0.033j
 """Ahead of the axle's middle, and left of it [m]."""
-FRAME = 1.5
-"""Start heading of every drive in the reference's frame [rad]."""
-
-
-def _positions_of_the_antenna(name: str, speed: float, yaw_rates: tuple[float, ...]) -> Run:
-    """Ten seconds at each yaw rate, with a rest before and after, in a frame of its own."""
-    random = np.random.default_rng(len(yaw_rates))
-    turning = np.concatenate(
-        [np.zeros(40), *(np.full(200, rate) for rate in yaw_rates), np.zeros(40)]
-    )
-    forward = np.where(turning == 0.0, 0.0, speed)
-    ticks = read(ROBOT, 20.0, forward, turning)
-    path = trajectory(ROBOT, *ticks)
-    place = np.exp(1j * FRAME) * (path.x + 1j * path.y + ANTENNA * np.exp(1j * path.yaw))
-    noise = random.normal(0.0, 1e-3, (2, place.size))
-    reference = Reference(
-        path.time, place.real + noise[0], place.imag + noise[1], np.full(place.size, np.nan)
-    )
-    counted = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float), {})
-    return Run(name, Path(name), counted, reference)
 
 
 @pytest.mark.parametrize("wrong", [0.0, 2.0, 3.0, -2.8])
 def test_positions_of_a_point_far_from_the_axle_start_in_its_direction(wrong: float) -> None:
     # Positions of a spin on the spot hold the heading and the point's direction together.
     drives = [
-        _positions_of_the_antenna("bends", 0.3, (0.3, -0.3)),
-        _positions_of_the_antenna("spins", 0.0, (0.7, -1.2, 0.4)),
+        positions_of_a_point("bends", [0.3, 0.3], [0.3, -0.3], ANTENNA),
+        positions_of_a_point("spins", [0.0] * 3, [0.7, -1.2, 0.4], ANTENNA),
     ]
     runs = concatenated(match_for_fit(drives, ROBOT, 1.0))
     point = start_point(runs, ROBOT, EvaluationOptions())

@@ -74,7 +74,7 @@ ELSEWHERE = {
         "_SAME": "rounding",
     },
     "fitting/candidate_starts.py": {"_ALL_ROUND": "where a fit starts"},
-    "fitting/start_headings.py": {"_FIRST_NODES": "where a fit starts"},
+    "fitting/start_headings.py": {"_ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
     "fitting/filtering.py": {
         "STRETCH": "size of a block",
         "SIDE_BY_SIDE": "size of a block",

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
-from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts
+from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.rivals_of_robot_file import rivals_of_held
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
@@ -133,8 +133,7 @@ def _searched(
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
         this = search_round(laid, fit, effects, set_up.robot)
         rounds.append(this)
-        best = _best(this, laid)
-        beyond = _beyond_the_library(this, best, laid)
+        best, beyond = _chosen(this, laid)
         misfit = misfit_of_held_law(this, best, beyond, laid)
         if misfit is not None:
             beyond = None
@@ -162,15 +161,31 @@ def _searched(
     return replace(found, misfit=misfit, rivals_of_held=held), judge
 
 
-def _best(this: Round, runs: Concatenated) -> Fitted | None:
-    """The cheapest model of a round, if it is significant."""
+def _significant(this: Round) -> Fitted | None:
+    """The cheapest model of a round, if its likelihood ratio is significant."""
     fit = next((fit for fit in this.tried if not fit.at_bound), None)
     if fit is None:
         return None
     before = this.before.cost + this.before.needless_gain + this.before.penalty * fit.scatter
-    if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
-        return None
-    return fit if p_value_by_parts(runs, fit, fit.names[-1], this.number) < SURE else None
+    significant = fit.total < before and chance(fit, this.before, this.number) < SURE
+    return fit if significant else None
+
+
+def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence | None]:
+    """The model that a round finds, or the dependence that is beyond the library, if any.
+
+    Few parts of the drives may show an effect: of a late clock on one long circle, those with
+    starts and stops. So few cannot prove it alone, even if they agree. But if a dependence lasts,
+    something is missing, and the effect competes for it.
+    """
+    best = _significant(this)
+    if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < SURE:
+        return best, _beyond_the_library(this, best, runs)
+    lasts = _beyond_the_library(this, None, runs)
+    if lasts is None or best is None or disagreeing(best, best.names[-1]):
+        return None, lasts
+    beyond = _beyond_the_library(this, best, runs)
+    return (best, None) if beyond is None else (None, beyond)
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:

@@ -31,9 +31,14 @@ def p_value_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> 
     It is corrected for the number of candidates only where the parts disagree beyond chance.
     Elsewhere the likelihood-ratio test, which has that correction, is valid by itself.
     """
+    tests = max(tried, 1) if disagreeing(fit, name) else 1
+    return bonferroni(tests, homogeneity_of_effect(runs, fit, name))
+
+
+def disagreeing(fit: Fitted, name: str) -> bool:
+    """Whether the parts of the drives disagree beyond chance on an effect in the model."""
     mine = [number.name.rpartition(".")[0] == name for number, _ in fit.design.columns]
-    apart = bool(np.any(fit.widening[mine] > 1.0))
-    return bonferroni(max(tried, 1) if apart else 1, homogeneity_of_effect(runs, fit, name))
+    return bool(np.any(fit.widening[mine] > 1.0))
 
 
 def p_value_of_size(fit: Fitted, name: str) -> float:

@@ -35,7 +35,7 @@ from werrimbi_odom.inference.fitting.prediction import (
     predicted_legs,
     turns_over,
 )
-from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_the_first_legs
+from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (
@@ -148,7 +148,7 @@ def fit_model(
             point = replace(point, variances=noise)
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
-        point = turned_to_the_first_legs(laid, point)
+        point = turned_to_all_sides(laid, point)
     for _ in range(rounds):
         if laid.data >= NOISE_NUMBERS:
             variances = map_variances(

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 _FIRST_NODES = 12
+_ALL_ROUND = np.arange(8) * 0.25 * np.pi
 
 
 def first_heading(robot: Robot, run: MatchedRun) -> float | None:
@@ -42,17 +44,44 @@ def turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
     A heading fitted without some effect can be so far off once the effect is in that least squares
     does not converge.
     """
-    model = point.model
-    if not starts_unmeasured(model):
+    return _cheapest(runs, point, [_of_the_first_legs(runs, point.model)])
+
+
+def turned_to_all_sides(runs: Concatenated, point: Point) -> Point:
+    """Re-estimate unmeasured start headings from the first legs, or from trial headings all round.
+
+    In a drive that begins with spins on the spot the first legs do not tell the heading, and least
+    squares would not find one that is far away.
+    """
+    known = [own.get(START_YAW) for own in point.model.own]
+    tried = [[None if at is None else at + turn for at in known] for turn in _ALL_ROUND[1:]]
+    return _cheapest(runs, point, [_of_the_first_legs(runs, point.model), *tried])
+
+
+def _of_the_first_legs(runs: Concatenated, model: Model) -> list[float | None]:
+    return [first_heading(model.of_run(index), run) for index, run in enumerate(runs.runs)]
+
+
+def _cheapest(
+    runs: Concatenated, point: Point, headings: Iterable[Sequence[float | None]]
+) -> Point:
+    """Choose the start heading of each run among its own and some others, by the run's cost."""
+    if not starts_unmeasured(point.model):
         return point
-    own = []
-    for index, (run, mine) in enumerate(zip(runs.runs, model.own, strict=True)):
-        heading = first_heading(model.of_run(index), run)
-        own.append(dict(mine) if heading is None else {**mine, START_YAW: heading})
-    turned = replace(point, model=Model(model.robot, tuple(own)))
-    better = squares_of_runs(runs, turned) < squares_of_runs(runs, point)
-    chosen = [new if took else mine for new, mine, took in zip(own, model.own, better, strict=True)]
-    return replace(point, model=Model(model.robot, tuple(chosen)))
+    chosen = point.model.own
+    least = squares_of_runs(runs, point)
+    for tried in headings:
+        own = tuple(
+            dict(mine) if at is None else {**mine, START_YAW: at}
+            for mine, at in zip(point.model.own, tried, strict=True)
+        )
+        squares = squares_of_runs(runs, replace(point, model=Model(point.model.robot, own)))
+        better = squares < least
+        least = np.where(better, squares, least)
+        chosen = tuple(
+            new if took else mine for new, mine, took in zip(own, chosen, better, strict=True)
+        )
+    return replace(point, model=Model(point.model.robot, chosen))
 
 
 def starts_unmeasured(model: Model) -> bool:
