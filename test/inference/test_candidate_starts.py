@@ -12,8 +12,9 @@ import pytest
 from test.inference.driven import run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.model.drives import ROBOT
-from werrimbi_odom.effects import find
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -66,3 +67,11 @@ def test_positions_of_a_point_far_from_the_axle_start_in_its_direction(wrong: fl
     found = complex(effect.values["x"], effect.values["y"]) / ANTENNA
     assert 0.5 < abs(found) < 1.5  # where a fit starts
     assert abs(np.angle(found)) < 0.5
+
+
+@pytest.mark.parametrize("point", [0.063 - 0.04j, -0.02 + 0.06j])
+def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: complex) -> None:
+    circle = positions_of_a_point("circle", [0.3] * 5, [0.3] * 5, point)
+    found = diagnose([circle], ROBOT, LIBRARY)
+    assert found.verdict == "ambiguous"
+    assert "reference_lever_arm" in found.rivals

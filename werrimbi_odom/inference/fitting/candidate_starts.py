@@ -22,7 +22,9 @@ from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import wrap_all
 
 _ALL_ROUND = np.arange(8) * 0.25 * np.pi
-"""Directions in which a measured point is looked for [rad]."""
+_SHARES = np.array([1.0, 0.5, 0.25])
+"""Directions in which a measured point is looked for [rad], and distances relative to what its
+score suggests."""
 
 
 def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
@@ -47,14 +49,16 @@ def _is_of_a_point(score: Score) -> bool:
 
 
 def _turned_with_the_headings(runs: Concatenated, point: Point, score: Score) -> Point:
-    """Start with the measured point in that direction from the axle that fits best.
+    """Start with the measured point where it fits best, in trial directions and distances.
 
     In a drive that spins on the spot, positions do not tell the heading until the measured point is
-    known: any heading fits as well, with that point turned by as much. So the score, which takes
-    the headings as they are, knows its distance, and not its direction.
+    known: any heading fits as well, with that point turned by as much. On one circle the distance
+    goes with the wheels' radii. The score takes headings and radii as they are, so it may be far
+    off in both.
     """
     starts = []
-    for place in complex(*score.coefficients) * np.exp(1j * _ALL_ROUND):
+    around = np.outer(_SHARES, np.exp(1j * _ALL_ROUND)).ravel()
+    for place in complex(*score.coefficients) * around:
         there = replace(score, coefficients=np.array([place.real, place.imag]))
         model = with_candidate(point.model, there)
         starts.append(turned_to_the_first_legs(runs, replace(point, model=model)))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
-from werrimbi_odom.inference.fitting.design import Costs, Design, Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.design import Costs, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     START_YAW,
@@ -27,17 +27,12 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     shared_of,
 )
+from werrimbi_odom.inference.fitting.gauss_newton import gauss_newton, is_small, moved, step_within
 from werrimbi_odom.inference.fitting.identifiable import Directions, determined, with_held_as_given
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
-from werrimbi_odom.inference.fitting.prediction import (
-    predict_all,
-    predicted_legs,
-    turns_over,
-)
 from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
 from werrimbi_odom.inference.legs.cutting import MatchedRun
-from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (
     JUMP_OF_A_LEG,
     LEAST_WHEEL_NOISE,
@@ -149,6 +144,7 @@ def fit_model(
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
         point = turned_to_all_sides(laid, point)
+    ways: Directions | None = None
     for _ in range(rounds):
         if laid.data >= NOISE_NUMBERS:
             variances = map_variances(
@@ -156,12 +152,12 @@ def fit_model(
             )
             point = replace(point, variances=variances)
         design = stacked(laid, point, numbers)
-        ways = determined(design, point.model.robot)
+        ways = determined(design, point.model.robot, ways.held if ways else ())
         model = with_held_as_given(point.model, given, ways.held, shared_of(numbers))
-        point, moved = _gauss_newton(laid, replace(point, model=model), numbers, ways)
+        point, moved = gauss_newton(laid, replace(point, model=model), numbers, ways)
         if not moved:
             break
-    if rounds < 1:
+    if ways is None:
         design = stacked(laid, point, numbers)
         ways = determined(design, point.model.robot)
     covariance = ways.covariance(design.flat()[1])
@@ -195,9 +191,9 @@ def _robustly(runs: Concatenated, point: Point, numbers: Sequence[FreeParameter]
         scale = float(np.median(deviation[counted])) / _MEDIAN_CHI2_3 if counted.any() else 1.0
         point = replace(point, variances=_scaled(point.variances, max(scale, 1e-6)))
         weight = (_TAIL + 3.0) / (_TAIL + deviation / scale)
-        step = _step(design, determined(design, point.model.robot), weight)
+        step = step_within(design, determined(design, point.model.robot), weight)
         point = replace(point, model=moved(point.model, design, step))
-        if _small(design, step):
+        if is_small(design, step):
             break
     return replace(point, excluded=_jumps(runs, point))
 
@@ -220,57 +216,6 @@ def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
         usual = max(float(np.median(own)) / _MEDIAN_CHI2_3, 1.0)
         found.append(own > JUMP_OF_A_LEG * usual)
     return tuple(found)
-
-
-def _gauss_newton(
-    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], ways: Directions
-) -> tuple[Point, bool]:
-    """Gauss-Newton with backtracking; also return whether the point moved."""
-    prediction = predict_all(point.model, runs)
-    best = np.inf
-    for number in range(6):
-        design = stacked(runs, point, numbers, prediction)
-        best = min(best, float(np.sum(design.white**2)))
-        step = _step(design, ways)
-        if _small(design, step):
-            return point, number > 0
-        for _ in range(5):
-            tried = replace(point, model=moved(point.model, design, step))
-            ahead = replace(prediction, relative=predicted_legs(tried.model, runs))
-            if not turns_over(prediction.relative, ahead.relative):
-                cost = float(np.sum(unexpected(runs, tried, ahead).whitened() ** 2))
-                if cost < best:
-                    break
-            step = 0.3 * step
-        else:
-            return point, number > 0
-        point, prediction, gained = tried, ahead, best - cost
-        if gained < 1e-3:
-            return point, number > 0
-    return point, True
-
-
-def _small(design: Design, step: Floats) -> bool:
-    scales = np.array([number.scale for number, _ in design.columns])
-    return bool(np.all(np.abs(step) < 1e-4 * scales))
-
-
-def _step(design: Design, ways: Directions, weight: Floats | None = None) -> Floats:
-    """Least-squares step of the columns, weighted by leg (m,), within the given directions."""
-    root = np.sqrt(np.ones(design.white.shape[0]) if weight is None else weight)[:, None]
-    matrix = (design.slopes * root[..., None]).reshape(design.white.size, len(design.columns))
-    return -ways.matrix @ solved(matrix @ ways.matrix, (design.white * root).ravel())
-
-
-def moved(model: Model, design: Design, step: Floats) -> Model:
-    """Apply a step in the design's columns to the model."""
-    shared: dict[str, float] = {}
-    own: list[dict[str, float]] = [{} for _ in model.own]
-    for (number, index), move in zip(design.columns, step.tolist(), strict=True):
-        target = shared if index < 0 else own[index]
-        now = model.value(number, max(index, 0))
-        target[number.name] = float(np.clip(now + move, *number.bounds_about(now)))
-    return model.turned(shared, own)
 
 
 def _scaled(variances: Variances, factor: float) -> Variances:

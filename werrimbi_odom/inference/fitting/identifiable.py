@@ -85,8 +85,11 @@ def every_direction(columns: Sequence[tuple[FreeParameter, int]], robot: Robot) 
     )
 
 
-def determined(design: Design, robot: Robot) -> Directions:
-    """Identifiable shared directions, and all per-run ones."""
+def determined(design: Design, robot: Robot, held: Iterable[str] = ()) -> Directions:
+    """Identifiable shared directions, and all per-run ones.
+
+    Directions that were `held` come last, so that as a fit proceeds the same ones stay held.
+    """
     every = every_direction(design.columns, robot)
     marks = design.flat()[1] @ every.matrix
     asked = [index for index in every.shared if design.sized or every.names[index] != SIZE]
@@ -98,6 +101,8 @@ def determined(design: Design, robot: Robot) -> Directions:
     beside = nuisance(marks[:, own])
     free = beside.residual(marks)
     shared = _by_sensitivity(asked, every.names, np.linalg.norm(free, axis=0))
+    last = set(held)
+    shared.sort(key=lambda index: every.names[index] in last)
 
     def known(tried: list[int]) -> bool:
         columns = [shared[number] for number in tried]
