@@ -10,8 +10,10 @@ from dataclasses import dataclass, replace
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -19,6 +21,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     changed,
 )
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,
@@ -102,9 +105,8 @@ def instead_of_calibration(
 
     The multipliers are fixed at the given robot's.
     """
-    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     model = calibrated.point.model
-    point = replace(calibrated.point, model=Model(changed(model.robot, back), model.own))
+    point = _as_given(calibrated.point, given)
     nuisances = model.nuisance_parameters
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
@@ -134,6 +136,7 @@ def search_round(
     turned = (*CALIBRATION, *before.numbers)
     found = scores(runs, point, turned, looked_at)
     ordered = best_of_each(found)
+    instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
     tried = []
     for score in worth_fitting(ordered):
         variants = [
@@ -143,13 +146,21 @@ def search_round(
             and other.candidate.per_run != score.candidate.per_run
             and other.gain > SAME_BY_RUN * score.gain
         ]
-        options = [score] + ([max(variants, key=lambda other: other.gain)] if variants else [])
-        fits = []
-        for option in options:
-            start = started_with(runs, point, option)
-            numbers = (*before.numbers, *parameters_of_candidate(option.candidate))
-            names = (*before.names, option.candidate.name)
-            fits.append(fitted(runs, start, names, numbers, given))
+        starts = [started_with(runs, point, score)]
+        options = [score.candidate]
+        if variants:
+            best = max(variants, key=lambda other: other.gain)
+            starts.append(started_with(runs, point, best))
+            options.append(best.candidate)
+        if score.candidate.name in instead:
+            other = instead[score.candidate.name]
+            starts.append(started_with(runs, _as_given(point, given), other))
+            options.append(other.candidate)
+        names = (*before.names, score.candidate.name)
+        fits = [
+            fitted(runs, start, names, (*before.numbers, *parameters_of_candidate(option)), given)
+            for start, option in zip(starts, options, strict=True)
+        ]
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)
@@ -160,6 +171,28 @@ def search_round(
         dependences(runs, point, turned),
         len(looked_at),
     )
+
+
+def _as_given(point: Point, given: Robot) -> Point:
+    """A point with the multipliers of the given robot."""
+    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
+    return replace(point, model=Model(changed(point.model.robot, back), point.model.own))
+
+
+def _scores_in_place_of_sizes(
+    runs: Concatenated, before: Fitted, given: Robot, looked_at: Sequence[Candidate]
+) -> dict[str, Score]:
+    """Best score of each effect without the calibration, where not all of it is determined.
+
+    On one circle a lever arm does what a radius, the ratio and a mount askew do together. A fit
+    that starts with these stays with them.
+    """
+    if not before.calibrated or not set(before.held) & set(CALIBRATED):
+        return {}
+    point = _as_given(before.point, given)
+    numbers = (*before.numbers, *point.model.nuisance_parameters)
+    best = best_of_each(scores(runs, point, numbers, looked_at))
+    return {score.candidate.name: score for score in best}
 
 
 def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:

@@ -167,7 +167,7 @@ def fitted(
     every = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
     result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
-    ways = determined(design, result.robot)
+    ways = determined(design, result.robot, result.held)
     penalty, scatter = penalty_of_one(runs), scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)
     totals = {each.kept: each.rise / scatter + penalty * len(each.kept) for each in rises}

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.rules import (
     FEWEST_CUTS,
     RADIANS_WRAPS,
     SURE_SIZE,
+    WIDE,
 )
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import (
@@ -153,8 +154,9 @@ def search_poses(
     def misfit(tried: Setting) -> float:
         return fit.misfit(tried, track)
 
+    # On one circle, sizes that are all far off cancel: each is needed beside the others.
+    if misfit(AS_ENTERED) < WIDE * misfit(setting):
+        return [], None
     found = findings_of(setting, ways, misfit)
     found += arm_finding(setting, misfit, setting.base * track)
-    if not found or misfit(AS_ENTERED) < misfit(setting):
-        return [], None
-    return found, setting
+    return found, setting if found else None
