@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.columns import refuse_wrong_columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.encoder import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
@@ -24,18 +25,19 @@ APART = 5.0
 
 
 def refuse_unjudgeable(run: Run) -> None:
-    """Check that there is a reference to compare with, overlapping in time.
+    """Check that there is a reference to compare with, overlapping in time, and what columns hold.
 
     Raises
     ------
     InputError
-        If there is no reference, it lies entirely before or after the ticks, or the ticks go back
-        in time.
+        If there is no reference, it lies entirely before or after the ticks, the ticks go back in
+        time, or a column holds something else than its name says.
     """
     if run.reference is None:
         raise InputError(f"{run.path}: there is no reference to compare with {run.no_reference}")
     _refuse_back(run)
     _refuse_apart(run, run.reference)
+    refuse_wrong_columns(run)
 
 
 def words_about(runs: Sequence[Run]) -> list[str]:

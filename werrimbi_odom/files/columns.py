@@ -1,0 +1,211 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Columns that hold something else than their names say; the message says how to convert them.
+
+Such mistakes are made where a log is written as a run folder. No effect corrects them, and each
+makes wheels and reference look as if they had nothing in common. Degrees and millimetres are
+recognised in the set-up search, which knows how well each fits (`inference.set_up.search`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.pose import Floats, wrap_all
+
+FEWEST = 20
+"""Rows, windows or chords below which nothing is concluded."""
+
+LONG_INTERVAL = 0.9
+"""Interval of rows from which their times may be in another unit [s]: 1 kHz in milliseconds."""
+SLOWEST, SLOWEST_TURN = 0.005, 0.005
+"""Mean speed [m/s] and turn rate [rad/s] while the wheels roll, below which the times are in
+another unit. Chosen: ten times below a robot that creeps; in milliseconds 1 m/s is 0.001."""
+UNITS = ((2e6, "nanoseconds", 9), (2e3, "microseconds", 6), (0.0, "milliseconds", 3))
+"""Units of time by the median interval of the rows: messages come at 0.5 Hz to 1 kHz."""
+
+CHORD = 0.05
+"""Chords of the path, as a share of its extent: long against noise, short against a lap."""
+FOLLOWS, CONTRADICTS = 0.8, 0.7
+"""Mean resultant length of the angle between path and yaw, above which they belong together and
+below which they do not. A path along the yaw has 1 less its scatter (0.8 at 0.67 rad). On a path
+that hardly turns, both senses of turning have much."""
+TURNED = 0.9
+"""Mean resultant length of the path's direction above which it hardly turned (0.46 rad)."""
+
+WINDOW = 0.5
+"""Time over which counts and motion are compared [s]: longer than most delays of a reference."""
+TAKES, HARDLY = 0.9, 0.5
+"""Correlations with the motion: of the values themselves, from which they are increments or speeds,
+and of their differences, up to which they are no totals."""
+
+
+def refuse_wrong_columns(run: Run) -> None:
+    """Check the meaning of a run's columns by its data.
+
+    Raises
+    ------
+    InputError
+        If the times are not in seconds, the counters are increments or speeds, the yaw is no
+        heading, or it turns the other way round than the path.
+    """
+    assert run.reference is not None
+    words = (
+        _other_unit_of_time(run.ticks, run.reference)
+        or _no_totals(run.ticks, run.reference)
+        or _no_heading(run.ticks, run.reference)
+    )
+    if words:
+        raise InputError(f"{run.path}: {words}")
+
+
+def _other_unit_of_time(ticks: Ticks, reference: Reference) -> str:
+    if min(ticks.rows, reference.time.size) < FEWEST:
+        return ""
+    interval = float(np.median(np.diff(ticks.time)))
+    rolls = np.diff(ticks.left, prepend=ticks.left[0]) != 0
+    rolls |= np.diff(ticks.right, prepend=ticks.right[0]) != 0
+    rolling = float(np.diff(ticks.time, prepend=ticks.time[0])[rolls].sum())
+    if interval < LONG_INTERVAL or rolling <= 0.0:
+        return ""
+    places = reference.has_position
+    if places.any():
+        way = float(np.hypot(np.diff(reference.x[places]), np.diff(reference.y[places])).sum())
+        slow, told = way / rolling < SLOWEST, f"{1e3 * way / rolling:.2g} mm/s"
+    else:
+        turn = float(np.abs(wrap_all(np.diff(reference.yaw[reference.has_yaw]))).sum())
+        slow, told = turn / rolling < SLOWEST_TURN, f"{np.degrees(turn / rolling):.2g}°/s"
+    if not slow:
+        return ""
+    if all((np.diff(each.time) == 1.0).all() for each in (ticks, reference)):
+        return f"t_s counts the rows, and the robot goes at {told}: write the time of each [s]"
+    name, power = next((name, power) for above, name, power in UNITS if interval >= above)
+    return (
+        f"rows of ticks are {interval:.6g} s apart and the robot goes at {told}: the times are in "
+        f"{name}, and t_s means seconds: divide that column by 10^{power}, in both files"
+    )
+
+
+class _Windows(NamedTuple):
+    """Sums over windows of time; k windows."""
+
+    values: Floats
+    """Mean of both counters' values, and right less left, shape (2, k)."""
+    steps: Floats
+    """The same of their change."""
+    moved: Floats
+    """Displacement [m] and turn [rad] by the reference, shape (2, k); NaN where not measured."""
+
+
+def _no_totals(ticks: Ticks, reference: Reference) -> str:
+    found = _windows(ticks, reference)
+    if found is None:
+        return ""
+    # A displacement has no sign, so the values have none either. Turns have theirs.
+    of_values = [_related(np.abs(found.values[0]), found.moved[0])]
+    of_steps = [_related(np.abs(found.steps[0]), found.moved[0])]
+    of_values += [_related(found.values[1], found.moved[1])]
+    of_steps += [_related(found.steps[1], found.moved[1])]
+    if max(of_values) < TAKES or max(of_steps) > HARDLY:
+        return ""
+    return (
+        "left_ticks and right_ticks go with how fast the robot moves: they hold what was counted "
+        "since the row before, or a speed, and not running totals: write the sum of all rows so "
+        "far (of a speed times the time since the row before)"
+    )
+
+
+def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
+    seen = reference.time
+    forward = bool((np.diff(ticks.time) >= 0.0).all() and (np.diff(seen) >= 0.0).all())
+    if not forward or min(ticks.rows, seen.size) < FEWEST:
+        return None
+    begin, end = max(ticks.time[0], seen[0]), min(ticks.time[-1], seen[-1])
+    wide = max(WINDOW, 3.0 * float(np.median(np.diff(ticks.time))))
+    wide = max(wide, float(np.median(np.diff(seen))))
+    if end - begin < FEWEST * wide:
+        return None
+    edges = begin + wide * np.arange(int((end - begin) / wide) + 1)
+    rows = np.searchsorted(ticks.time, edges)
+    whole = np.diff(rows) > 0
+    counts = np.stack([ticks.left, ticks.right]).astype(np.float64)
+    counts = np.stack([counts.mean(axis=0), counts[1] - counts[0]])
+    sums = np.cumsum(np.concatenate([np.zeros((2, 1)), counts], axis=1), axis=1)
+    values = np.diff(sums[:, rows], axis=1)[:, whole] / np.diff(rows)[whole]
+    at = counts[:, np.minimum(rows, ticks.rows - 1)]
+    nearest = np.minimum(np.searchsorted(seen, edges), seen.size - 1)
+    x, y, yaw = (part[nearest] for part in (reference.x, reference.y, reference.yaw))
+    moved = np.stack([np.hypot(np.diff(x), np.diff(y)), wrap_all(np.diff(yaw))])
+    return _Windows(values, np.diff(at, axis=1)[:, whole], moved[:, whole])
+
+
+def _related(one: Floats, other: Floats) -> float:
+    """Correlation where both are known; 0 if there are too few values, or none varies."""
+    known = np.isfinite(one) & np.isfinite(other)
+    if np.count_nonzero(known) < FEWEST or not np.ptp(one[known]) or not np.ptp(other[known]):
+        return 0.0
+    return abs(float(np.corrcoef(one[known], other[known])[0, 1]))
+
+
+def _no_heading(ticks: Ticks, reference: Reference) -> str:
+    chords = _chords(reference)
+    if chords is None:
+        return ""
+    course, yaw, when = chords
+    if _together(course) < TURNED and not np.ptp(reference.yaw[reference.has_yaw]):
+        return (
+            f"yaw_rad is {reference.yaw[reference.has_yaw][0]:g} in all rows, while the path "
+            "turns: no heading was measured; leave that column empty"
+        )
+    ahead = np.interp(when, ticks.time, 0.5 * (ticks.left + ticks.right))
+    backwards = np.where(np.diff(ahead, axis=0)[0] < 0.0, np.pi, 0.0)
+    along, against = (
+        max(_together(course + sign * yaw), _together(course + sign * yaw + backwards))
+        for sign in (-1.0, 1.0)
+    )
+    if against < FOLLOWS or along > CONTRADICTS:
+        return ""
+    return (
+        "the reference's yaw turns to the right where its path bends to the left: yaw_rad counts "
+        "clockwise, and must count anticlockwise from the x axis (minus that column; of a compass, "
+        "pi/2 minus it), or x_m and y_m are not of one right-handed frame (exchanged: east is x, "
+        "north is y; or one with the wrong sign: y points down)"
+    )
+
+
+def _chords(reference: Reference) -> tuple[Floats, Floats, Floats] | None:
+    """Direction of the path's chords, mean yaw on each, and times of both ends; k chords."""
+    rows = np.flatnonzero(reference.has_position & reference.has_yaw)
+    if rows.size < FEWEST:
+        return None
+    place = reference.x[rows] + 1j * reference.y[rows]
+    extent = float(np.hypot(np.ptp(place.real), np.ptp(place.imag)))
+    ends = _ends(place, CHORD * extent)
+    if ends.size <= FEWEST:
+        return None
+    begin, end = ends[:-1], ends[1:]
+    yaw = reference.yaw[rows]
+    middle = yaw[begin] + 0.5 * wrap_all(yaw[end] - yaw[begin])
+    when = reference.time[rows]
+    return np.angle(place[end] - place[begin]), middle, np.stack([when[begin], when[end]])
+
+
+def _ends(place: NDArray[np.complex128], least: float) -> NDArray[np.intp]:
+    """Rows at which a path is `least` away from the row chosen before."""
+    chosen = [0]
+    while least > 0.0:
+        far = np.abs(place[chosen[-1] :] - place[chosen[-1]]) >= least
+        if not far.any():
+            break
+        chosen.append(chosen[-1] + int(far.argmax()))
+    return np.asarray(chosen, dtype=np.intp)
+
+
+def _together(angles: Floats) -> float:
+    """Mean resultant length of angles: 1 if all are equal."""
+    return float(np.abs(np.exp(1j * angles).mean()))
