@@ -13,10 +13,16 @@ import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.columns import refuse_wrong_columns
+from werrimbi_odom.files import columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot()
+ROBOT = Robot(TRUE.separation, TRUE.left_radius, *2 * [TRUE.ticks_per_revolution])
+
+
+def refuse_wrong_columns(run: Run, robot: Robot = ROBOT) -> None:
+    columns.refuse_wrong_columns(run, robot)
 
 
 def driven(seed: int, moves: float = 60.0) -> Run:
@@ -126,3 +132,37 @@ def test_a_yaw_that_was_never_measured() -> None:
     wrong = seen(driven(2), yaw=lambda it: np.zeros(it.yaw.shape))
     with pytest.raises(InputError, match=r"is 0 in all rows, while the path turns.* leave that"):
         refuse_wrong_columns(wrong)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("signed", [False, True])
+@pytest.mark.parametrize(
+    ("period", "words"),
+    [
+        (1 << 16, "wraps at 16 bits: write encoder_bits: 16 into"),
+        (1 << 12, "wraps at 12 bits"),
+        (2000, "begins anew after (19..|20..) counts: unwrap both"),
+    ],
+)
+def test_a_counter_that_wraps(seed: int, signed: bool, period: int, words: str) -> None:
+    run = driven(seed)
+    shift = period // 2 if signed else 0
+    # Ten times the counts of a turn, so that 16 bits are few.
+    more = counted(run, lambda total: total * (10 if period > 4096 else 1))
+    wrong = counted(more, lambda total: (total + shift) % period - shift)
+    with pytest.raises(InputError, match=words):
+        refuse_wrong_columns(wrong)
+    refuse_wrong_columns(more)
+    if period != 2000:
+        bits = replace(ROBOT, encoder_bits=period.bit_length() - 1)
+        refuse_wrong_columns(wrong, bits)
+
+
+def test_a_counter_that_is_reset_or_read_seldom_does_not_wrap() -> None:
+    run = driven(1)
+    middle = run.ticks.rows // 2
+    reset = np.arange(run.ticks.rows) >= middle
+    refuse_wrong_columns(counted(run, lambda total: np.where(reset, total - total[middle], total)))
+    ends = np.tile([0, 900], 20)  # driven to and fro, and read where it turns round
+    seldom = replace(run, ticks=Ticks(np.linspace(*run.ticks.time[[0, -1]], 40), ends, ends))
+    refuse_wrong_columns(seldom)

@@ -208,7 +208,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     robot, limits = robot_file.robot, robot_file.limits
     try:
         if held.run.reference is not None:
-            refuse_unjudgeable(held.run)
+            refuse_unjudgeable(held.run, robot)
         run = looked_at(held.run, robot, limits)
         counters = counters_of(run, robot, limits)
         found = driven(counters, robot, run.no_driving or ())

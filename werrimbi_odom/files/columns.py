@@ -9,6 +9,7 @@ recognised in the set-up search, which knows how well each fits (`inference.set_
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.robot import Robot
 
 FEWEST = 20
 """Rows, windows or chords below which nothing is concluded."""
@@ -45,19 +48,29 @@ TAKES, HARDLY = 0.9, 0.5
 and of their differences, up to which they are no totals."""
 
 
-def refuse_wrong_columns(run: Run) -> None:
+SEVERAL, AT_MOST = 3, 0.3
+"""Leaps from which a counter's range is taken for its period, and their largest share of the rows:
+a counter that is reset leaps once, and one that is read too seldom leaps always."""
+USUAL = 0.9
+"""Quantile of a counter's steps: about a power of two to within this, one leap is enough."""
+AGAINST = 0.8
+"""Share of the leaps that must be against the motion beside them."""
+
+
+def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     """Check the meaning of a run's columns by its data.
 
     Raises
     ------
     InputError
-        If the times are not in seconds, the counters are increments or speeds, the yaw is no
-        heading, or it turns the other way round than the path.
+        If the times are not in seconds, the counters are increments or speeds or wrap, the yaw is
+        no heading, or it turns the other way round than the path.
     """
     assert run.reference is not None
     words = (
         _other_unit_of_time(run.ticks, run.reference)
         or _no_totals(run.ticks, run.reference)
+        or ("" if robot.encoder_bits else _wraps(run.ticks))
         or _no_heading(run.ticks, run.reference)
     )
     if words:
@@ -150,6 +163,52 @@ def _related(one: Floats, other: Floats) -> float:
     if np.count_nonzero(known) < FEWEST or not np.ptp(one[known]) or not np.ptp(other[known]):
         return 0.0
     return abs(float(np.corrcoef(one[known], other[known])[0, 1]))
+
+
+def _wraps(ticks: Ticks) -> str:
+    periods = {
+        name: period
+        for name, counts in (("left_ticks", ticks.left), ("right_ticks", ticks.right))
+        if (period := _period(counts))
+    }
+    if not periods:
+        return ""
+    name, period = max(periods.items(), key=lambda item: item[1])
+    bits = period.bit_length() - 1
+    mend = (
+        f"wraps at {bits} bits: write encoder_bits: {bits} into the robot file"
+        if period == 1 << bits
+        else f"begins anew after {period} counts: unwrap both (numpy.unwrap, period={period})"
+    )
+    return (
+        f"{name} leaps from one end of its range to the other while its wheel rolls on: it {mend}"
+    )
+
+
+def _period(counts: Counts) -> int:
+    """Counts after which a counter begins anew; 0 if it does not."""
+    values = counts[np.isfinite(counts)].astype(np.float64)
+    if values.size < FEWEST or not (values == np.rint(values)).all():
+        return 0
+    steps = np.diff(values)
+    reach = int(np.ptp(values))
+    leaps = np.abs(steps) > 0.5 * reach
+    count = int(leaps.sum())
+    if count == 0 or count > AT_MOST * steps.size:
+        return 0
+    near = np.convolve(~leaps, np.ones(3), "same")[leaps]
+    beside = np.convolve(np.where(leaps, 0.0, steps), np.ones(3), "same")[leaps]
+    # The wheel rolls on as before and after.
+    leapt = np.abs(steps[leaps] - beside / np.maximum(near, 1.0))
+    usual = float(np.quantile(np.abs(steps[~leaps]), USUAL))
+    about = float(np.median(leapt))
+    of_bits = 1 << round(math.log2(about))
+    bits = of_bits > reach and abs(about - of_bits) <= usual / math.sqrt(count)
+    period = of_bits if bits else max(round(about), reach + 1)
+    against = np.mean(np.sign(beside) == -np.sign(steps[leaps]))
+    left_over = float(np.abs(period - np.abs(steps[leaps])).max())
+    sure = max(left_over, usual) <= 0.5 * period and against >= AGAINST
+    return period if sure and (bits or count >= SEVERAL) else 0
 
 
 def _no_heading(ticks: Ticks, reference: Reference) -> str:

@@ -143,7 +143,7 @@ def gathered(
         else:
             show(number / len(drives), f"reading {drive.name}")
             run = _read(drive, source, how, references[number])
-        refuse_unjudgeable(run)
+        refuse_unjudgeable(run, source.robot)
         found.append(run)
     found = _with_one_scale(found, len(runs))
     if how.reference_kind is None:

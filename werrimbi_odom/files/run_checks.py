@@ -25,7 +25,7 @@ APART = 5.0
 (docs/set_up.md)."""
 
 
-def refuse_unjudgeable(run: Run) -> None:
+def refuse_unjudgeable(run: Run, robot: Robot) -> None:
     """Check that there is a reference to compare with, overlapping in time, and what columns hold.
 
     Raises
@@ -38,7 +38,7 @@ def refuse_unjudgeable(run: Run) -> None:
         raise InputError(f"{run.path}: there is no reference to compare with {run.no_reference}")
     _refuse_back(run)
     _refuse_apart(run, run.reference)
-    refuse_wrong_columns(run)
+    refuse_wrong_columns(run, robot)
 
 
 def words_about(runs: Sequence[Run]) -> list[str]:
