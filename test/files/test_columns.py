@@ -166,3 +166,25 @@ def test_a_counter_that_is_reset_or_read_seldom_does_not_wrap() -> None:
     ends = np.tile([0, 900], 20)  # driven to and fro, and read where it turns round
     seldom = replace(run, ticks=Ticks(np.linspace(*run.ticks.time[[0, -1]], 40), ends, ends))
     refuse_wrong_columns(seldom)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_tracker_that_writes_zeros_saw_nothing(seed: int) -> None:
+    run = seen(driven(seed), x=lambda it: it.x + 2.0)
+    assert columns.without_zeros(run) is run
+    assert run.reference is not None
+    lost = np.arange(run.reference.time.size) % 7 < 2
+    zeros = {name: np.where(lost, 0.0, getattr(run.reference, name)) for name in ("x", "y", "yaw")}
+    left = columns.without_zeros(seen(run, **zeros))
+    assert left.reference is not None
+    np.testing.assert_array_equal(left.reference.time, run.reference.time[~lost])
+    assert f"{lost.sum()} of {lost.size} reference poses are zeros" in left.damage[-1]
+
+
+def test_a_robot_that_starts_at_zero_was_there() -> None:
+    run = driven(1)
+    assert run.reference is not None
+    start = seen(
+        run, x=lambda it: it.x - it.x[0], y=lambda it: it.y - it.y[0], yaw=lambda it: 0.0 * it.yaw
+    )
+    assert columns.without_zeros(start) is start

@@ -10,6 +10,7 @@ recognised in the set-up search, which knows how well each fits (`inference.set_
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +41,9 @@ below which they do not. A path along the yaw has 1 less its scatter (0.8 at 0.6
 that hardly turns, both senses of turning have much."""
 TURNED = 0.9
 """Mean resultant length of the path's direction above which it hardly turned (0.46 rad)."""
+
+FAR, FAR_STEPS = 0.05, 20.0
+"""Distance [m], and in typical steps of the reference, beyond which a pose of zeros is none."""
 
 WINDOW = 0.5
 """Time over which counts and motion are compared [s]: longer than most delays of a reference."""
@@ -75,6 +79,31 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     )
     if words:
         raise InputError(f"{run.path}: {words}")
+
+
+def without_zeros(run: Run) -> Run:
+    """Remove poses of zeros far from their neighbours: so trackers write that they see nothing."""
+    reference = run.reference
+    if reference is None or reference.time.size < FEWEST:
+        return run
+    places = reference.x + 1j * reference.y
+    none = (places == 0.0) & ((reference.yaw == 0.0) | np.isnan(reference.yaw))
+    seen = np.flatnonzero(~none & reference.has_position)
+    rows = np.flatnonzero(none)
+    if rows.size == 0 or seen.size < FEWEST:
+        return run
+    far = max(FAR, FAR_STEPS * float(np.median(np.abs(np.diff(places[seen])))))
+    after = np.searchsorted(seen, rows)
+    beside = np.stack([np.maximum(after - 1, 0), np.minimum(after, seen.size - 1)])
+    none[rows] = (np.abs(places[seen[beside]]) > far).all(axis=0)
+    count = int(none.sum())
+    if count == 0:
+        return run
+    words = (
+        f"{count} of {none.size} reference poses are zeros, far from those beside them: the "
+        "tracker saw nothing there; they are left out"
+    )
+    return replace(run, reference=reference.chosen(~none), damage=(*run.damage, words))
 
 
 def _other_unit_of_time(ticks: Ticks, reference: Reference) -> str:
