@@ -158,6 +158,15 @@ def test_a_counter_that_wraps(seed: int, signed: bool, period: int, words: str) 
         refuse_wrong_columns(wrong, bits)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_counters_without_a_sign(seed: int) -> None:
+    """Of an encoder with one channel."""
+    run = driven(seed, 120.0)
+    unsigned = counted(run, lambda total: np.cumsum(np.abs(np.diff(total, prepend=total[0]))))
+    with pytest.raises(InputError, match="never decrease, also where the robot turns on the spot"):
+        refuse_wrong_columns(unsigned)
+
+
 def test_a_counter_that_is_reset_or_read_seldom_does_not_wrap() -> None:
     run = driven(1)
     middle = run.ticks.rows // 2
