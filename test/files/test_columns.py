@@ -101,6 +101,22 @@ def test_rows_that_are_counted_have_no_times() -> None:
         refuse_wrong_columns(slow)
 
 
+@pytest.mark.parametrize("unit", [0.1, 1.0])
+def test_times_that_are_rounded(unit: float) -> None:
+    run = driven(1)
+    times = unit * np.floor(run.ticks.time / unit)
+    often = replace(run, ticks=replace(run.ticks, time=times))
+    with pytest.raises(InputError, match=f"t_s is rounded to {unit:g} s; write all its digits"):
+        refuse_wrong_columns(often)
+    bursts = run.ticks.time.copy()
+    bursts[1::3] = bursts[::3][: bursts[1::3].size]
+    bursts[2::3] = bursts[::3][: bursts[2::3].size]
+    jitter = np.repeat(np.random.default_rng(1).uniform(0.0, 0.004, bursts.size), 3)
+    refuse_wrong_columns(
+        replace(run, ticks=replace(run.ticks, time=bursts + jitter[: bursts.size]))
+    )
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_increments_and_speeds_are_no_totals(seed: int) -> None:
     run = driven(seed)

@@ -31,6 +31,10 @@ another unit. Chosen: ten times below a robot that creeps; in milliseconds 1 m/s
 UNITS = ((2e6, "nanoseconds", 9), (2e3, "microseconds", 6), (0.0, "milliseconds", 3))
 """Units of time by the median interval of the rows: messages come at 0.5 Hz to 1 kHz."""
 
+SHARED, WHOLE = 0.5, 0.001
+"""Share of rows at the time of the row before above which times are rounded, if they come in whole
+multiples of their smallest step, to within this share of it. Bursts of messages do not."""
+
 CHORD = 0.05
 """Chords of the path, as a share of its extent: long against noise, short against a lap."""
 FOLLOWS, CONTRADICTS = 0.8, 0.7
@@ -50,12 +54,13 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     Raises
     ------
     InputError
-        If the times are not in seconds, the counters are no running, signed totals, the yaw is
-        no heading, or it turns the other way round than the path.
+        If the times are not in seconds or are rounded, the counters are no running, signed totals,
+        the yaw is no heading, or it turns the other way round than the path.
     """
     assert run.reference is not None
     words = (
         _other_unit_of_time(run.ticks, run.reference)
+        or _rounded_times(run.ticks, run.reference)
         or what_counters_hold(run.ticks, run.reference, robot.encoder_bits)
         or _no_heading(run.ticks, run.reference)
     )
@@ -113,6 +118,23 @@ def _other_unit_of_time(ticks: Ticks, reference: Reference) -> str:
         f"rows of ticks are {interval:.6g} s apart and the robot goes at {told}: the times are in "
         f"{name}, and t_s means seconds: divide that column by 10^{power}, in both files"
     )
+
+
+def _rounded_times(ticks: Ticks, reference: Reference) -> str:
+    for name, time in (("ticks", ticks.time), ("the reference", reference.time)):
+        steps = np.diff(time)
+        new = steps[steps > 0.0]
+        shared = int((steps == 0.0).sum())
+        if new.size < FEWEST or shared <= SHARED * steps.size:
+            continue
+        unit = float(new.min())
+        if (np.abs(new / unit - np.rint(new / unit)) < WHOLE).all():
+            return (
+                f"{shared} of {time.size} rows of {name} share their time with the row before: "
+                f"t_s is rounded to {unit:.6g} s; write all its digits, or keep the first row of "
+                "each time"
+            )
+    return ""
 
 
 def _no_heading(ticks: Ticks, reference: Reference) -> str:
