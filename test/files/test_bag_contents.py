@@ -56,6 +56,23 @@ def test_what_measures_and_what_comes_from_the_wheels(tmp_path: Path, ros: Any) 
     assert all("odom -> base_link is the robot's own odometry" in each.why for each in others)
 
 
+@pytest.mark.parametrize("raw", ["/odom/unfiltered", "/raw_odom", "/wheel/odometry"])
+def test_odometry_of_the_wheels_alone_comes_before_what_a_filter_makes_of_it(
+    tmp_path: Path, ros: Any, raw: str
+) -> None:
+    """The filter of linorobot has the plain name."""
+    assert "filter" not in why_from_wheels(raw, "nav_msgs/msg/Odometry", "odom", "base_link")
+    for first in (True, False):
+        topics = sorted(("/odom", raw), reverse=first)
+        entries = [
+            (topic, 2 * n + number, ros.odometry(n * MS, 0.1 * n, 0.0, 0.0))
+            for n in range(1, 9)
+            for number, topic in enumerate(topics)
+        ]
+        held = contents(ros.write(tmp_path / f"bag{first}", entries))
+        assert [each.name for each in held.wheels] == [raw, "/odom"]
+
+
 def test_what_the_odometry_carries_on_comes_after_what_was_seen(tmp_path: Path, ros: Any) -> None:
     """A marker's pose, and the same carried on by the wheels: a message for each of /odom."""
     entries = []

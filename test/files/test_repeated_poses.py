@@ -123,6 +123,34 @@ def test_headings_alone_are_held_where_the_robot_turns() -> None:
     assert not held_poses(replace(run, reference=yaw), ROBOT).any()
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("slow", [("yaw",), ("x", "y")])
+@pytest.mark.parametrize("every", [3, 10])
+def test_a_slower_part_of_the_pose_is_held_between_its_readings(
+    seed: int, slow: tuple[str, ...], every: int
+) -> None:
+    """As where a log has a row for each message of the fastest sensor."""
+    run = driven(seed)
+    assert run.reference is not None
+    rows = np.arange(run.reference.time.size)
+    last = rows // every * every
+    logged = replace(run.reference, **{name: getattr(run.reference, name)[last] for name in slow})
+    left = without_held_poses(replace(run, reference=logged), ROBOT).reference
+    assert left is not None
+    kept = np.isin(run.reference.time, left.time)
+    np.testing.assert_array_equal(np.flatnonzero(kept), np.unique(last))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_heading_without_noise_repeats_on_a_straight_line(seed: int) -> None:
+    """Also by a robot file that takes straight lines for turns: one counter reversed."""
+    run = driven(seed, sigma_xy=0.0, sigma_yaw=0.0)
+    ticks = run.ticks
+    wired = replace(run, ticks=Ticks(ticks.time, ticks.left, -ticks.right))
+    assert not held_poses(run, ROBOT).any()
+    assert not held_poses(wired, ROBOT).any()
+
+
 def test_it_is_said_once_for_all_runs() -> None:
     run = driven(5)
     assert run.reference is not None

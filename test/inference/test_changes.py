@@ -16,13 +16,17 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
-from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
+from werrimbi_odom.inference.changes.between_drives import (
+    Moved,
+    changes_between,
+    is_within,
+)
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.numbers import groups_of
 from werrimbi_odom.inference.changes.search import ChangePoints, find_changes
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS
 from werrimbi_odom.inference.linear import nuisance, score_test
 
 IN_JUNE = ROBOTS / "optitrack_in_june"
@@ -64,6 +68,18 @@ def test_what_a_change_would_explain_is_what_least_squares_says() -> None:
             assert test is not None
             assert gain == pytest.approx(test.gain, rel=1e-9)
             assert degrees == test.degrees
+
+
+@pytest.mark.parametrize(("before", "possible"), [(-0.92, False), (0.98, True)])
+def test_no_wheel_had_a_radius_below_zero(before: float, possible: bool) -> None:
+    """Derivatives that hold for a percent had told of one of -46 mm, by a yaw that was none."""
+    name = CALIBRATION[RIGHT].name
+    bounds = {name: CALIBRATION[RIGHT].bounds_about(1.0)}
+    drives = ("first", "second", "second")
+    moved = Moved(name, "sizes", "step", *drives, before, 1.0, 0.01, 0.01, "", 1e-9)
+    assert is_within(moved, bounds) == possible
+    back = replace(moved, before=1.0, after=before)
+    assert is_within(back, bounds) == possible
 
 
 def test_a_change_of_one_wheel_is_found_at_its_drive() -> None:

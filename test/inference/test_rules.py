@@ -330,8 +330,8 @@ def test_the_counts_and_bounds_in_the_reasons_hold() -> None:
     lags = round(2 * rules.DELAY_LONGEST / 0.1) + 1
     assert lags * math.exp(-rules.DELAY_EVIDENCE) == pytest.approx(3e-5, rel=0.05)
     tried = len(list(_settings()))
-    assert tried == 516
-    assert tried * math.exp(-rules.SPARSE_MARGIN) == pytest.approx(0.02, abs=0.005)
+    assert tried == 588
+    assert tried * math.exp(-rules.SPARSE_MARGIN) == pytest.approx(0.03, abs=0.005)
     assert len(_grid()) == 1260
     assert find("reference_lever_arm").parameters["x"].bounds[1] == rules.LONGEST_ARM
     assert find("reference_delay").parameters["delay"].bounds[1] == rules.DELAY_LONGEST

@@ -152,6 +152,45 @@ def test_millimetres_are_told_beside_half_a_base_and_swapped_wheels(session: lis
     assert both(*mistakes[:2])(session).to_convert is None
 
 
+@pytest.mark.parametrize(
+    ("unit", "size"), [("centimetres", 100.0), ("inches", 39.3701), ("feet", 3.28084)]
+)
+@pytest.mark.parametrize("poses", [True, False])
+def test_positions_in_another_unit_are_to_be_converted(
+    session: list[Run], unit: str, size: float, poses: bool
+) -> None:
+    made = Mistake((), reference=lambda r: replace(r, x=size * r.x, y=size * r.y))
+    runs = session if poses else [without_yaw(run) for run in session]
+    words = both(made)(runs).to_convert
+    assert words is not None
+    assert f"in {unit}" in words
+    assert f"divide by {size:g}" in words
+
+
+@pytest.mark.parametrize(
+    ("unit", "counts"),
+    [
+        ("radians", 2.0 * math.pi),
+        ("degrees", 360.0),
+        ("millimetres", 100.0 * math.pi),
+        ("metres", 0.1 * math.pi),
+        ("turns", 1.0),
+    ],
+)
+def test_counters_in_another_unit_are_told_with_their_counts_of_a_turn(
+    session: list[Run], unit: str, counts: float
+) -> None:
+    per_count = counts / NOMINAL.left_ticks_per_revolution
+    made = Mistake(
+        (), ticks=lambda t: replace(t, left=per_count * t.left, right=per_count * t.right)
+    )
+    found = both(made)(session)
+    words = f"left_ticks_per_revolution: {counts:.6g} ({unit})"
+    assert words in found.findings[0].words
+    # No fit starts from a wheel that is thousands of times too large.
+    assert (found.to_convert is not None) == (unit in ("metres", "turns"))
+
+
 def test_wiring_is_told_before_sizes(session: list[Run]) -> None:
     """Whichever of them makes the larger errors, for that hangs on how often there is a pose."""
     assert (

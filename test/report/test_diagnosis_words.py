@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.report.diagnosis import phrases
@@ -95,6 +97,17 @@ def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
     assert not by_sizes_alone(told)
     factor, diagnosis.holdout = 0.873, Sides(0.103, 0.103)
     assert not by_sizes_alone(told)
+
+
+@pytest.mark.parametrize("headings_alone", [True, False])
+def test_a_gyro_sees_no_mark_passed(monkeypatch: pytest.MonkeyPatch, headings_alone: bool) -> None:
+    monkeypatch.setattr(phrases, "values_of", lambda *_: {"delay": value(0.1, 0.001)})
+    runs = SimpleNamespace(headings_alone=headings_alone)
+    told: Any = SimpleNamespace(runs=runs, robot=ROBOT)
+    (words,) = phrases.ruler(told, find("reference_delay"), "Check it")
+    assert ("spin left, then right" in words) == headings_alone
+    assert ("the mark passed" in words) != headings_alone
+    assert "expect" in words
 
 
 def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:

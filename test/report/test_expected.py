@@ -35,6 +35,16 @@ def test_ten_turns_fall_short_by_as_much_as_is_said(multiplier: float) -> None:
     assert ("short" in words) == (short > 0.0)
 
 
+@pytest.mark.parametrize("multiplier", [0.01, 0.17])
+def test_a_base_that_was_entered_far_too_wide_is_measured_with_a_ruler(multiplier: float) -> None:
+    """Centimetres for metres: a robot that spins ten turns by that file spins for a week."""
+    robot = replace(ROBOT, wheel_separation=ROBOT.wheel_separation / multiplier)
+    words = expected_words("track_width", {"multiplier": multiplier}, robot)
+    assert "by a ruler" in words
+    unit = 0.01 if "cm" in words else 1e-3 if "mm" in words else 1.0
+    assert unit * number(words) == pytest.approx(ROBOT.wheel_separation, rel=0.06)
+
+
 @pytest.mark.parametrize("delay", [0.0996, 0.1])
 def test_a_length_near_a_decimetre_has_no_power_of_ten(delay: float) -> None:
     words = expected_words("reference_delay", {"delay": delay}, ROBOT)

@@ -16,6 +16,7 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of
+from werrimbi_odom.files.columns import without_zeros
 from werrimbi_odom.files.first_robot import (
     FirstRobot,
     of_controller,
@@ -204,20 +205,21 @@ def robot_file_of(first: FirstRobot) -> RobotFile:
 def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     """When the robot stood, drove, was held and carried, and what will be excluded."""
     assert held.run is not None
+    recorded = without_zeros(held.run)
     robot_file = source or robot_file_of(first)
     robot, limits = robot_file.robot, robot_file.limits
     try:
-        if held.run.reference is not None:
-            refuse_unjudgeable(held.run)
-        run = looked_at(held.run, robot, limits)
+        if recorded.reference is not None:
+            refuse_unjudgeable(recorded, robot)
+        run = looked_at(recorded, robot, limits)
         counters = counters_of(run, robot, limits)
         found = driven(counters, robot, run.no_driving or ())
         left_out = record_of(run, robot, limits).left_out if run.reference is not None else ()
     except InputError as error:
         return replace(held, problem=str(error))
     scans = bias = 0.0
-    if held.run.reference is not None and run.reference is not None:
-        given, used = held.run.reference, run.reference
+    if recorded.reference is not None and run.reference is not None:
+        given, used = recorded.reference, run.reference
         scans = float(np.std(used.time - given.time))
         if used.has_yaw.any():
             last = int(np.flatnonzero(used.has_yaw)[-1])

@@ -51,7 +51,7 @@ def found_in(folder: Path) -> dict[str, Any]:
     try:
         robot = read_robot(asked["robot"])
         run = read_run(_bag(folder), robot, **asked["topics"])
-        refuse_unjudgeable(run)
+        refuse_unjudgeable(run, robot.robot)
         drives = halves(run)
         whole = diagnose(robot, drives, **options)
         result, drives = of_now(whole, robot, drives, options)

@@ -20,7 +20,12 @@ from werrimbi_odom.files.derived_references import copies, second_hand
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
-from werrimbi_odom.files.own_odometry import ODOMETRY, is_asked_for, why_from_wheels
+from werrimbi_odom.files.own_odometry import (
+    ODOMETRY,
+    is_asked_for,
+    is_unfiltered,
+    why_from_wheels,
+)
 
 Measures = Literal["poses", "positions", "yaw"]
 Gives = Literal["counts", "positions", "velocities", "odometry"]
@@ -215,7 +220,7 @@ def _wheels(bag: Bag, firsts: dict[str, Any]) -> list[Wheels]:
                     both = min(topic.messages, each.messages)
                     name = f"{topic.name},{mirrored}"
                     found.append(Wheels(name, topic.kind, both, "counts"))
-    for topic in bag.topics:
+    for topic in sorted(bag.topics, key=lambda each: not is_unfiltered(each.name)):
         if topic.kind == ODOMETRY:
             reason = why_from_wheels(
                 topic.name,

@@ -25,6 +25,9 @@ FILTERS = (
 )
 """Words in the names of filter outputs, which fuse the wheels."""
 
+UNFILTERED = ("unfiltered", "raw", "wheel")
+"""Words in the names of odometry beside a filter's output under a plain name, as linorobot's."""
+
 NO_MEASUREMENT = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
 """Words in topics of commanded or requested poses, from RViz or a program."""
 
@@ -43,7 +46,7 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     """
     if _words(topic, parent, child) & SENSORS:
         return ""
-    if any(word in topic.lower() for word in FILTERS):
+    if any(word in topic.lower().replace("unfiltered", "") for word in FILTERS):
         return "a filter's output, which fuses the wheels"
     frames = f"{parent} -> {child}" if parent and child else (parent or child)
     if is_odometry_frame(parent) and (is_base(child) or not child):
@@ -51,6 +54,11 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     if kind == ODOMETRY and not parent:
         return "odometry of no sensor that is named, made from the wheels"
     return ""
+
+
+def is_unfiltered(topic: str) -> bool:
+    """Whether a topic's name says that its odometry is of the wheels alone."""
+    return any(word in topic.lower() for word in UNFILTERED)
 
 
 def names_a_sensor(topic: str) -> bool:

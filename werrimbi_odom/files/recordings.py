@@ -10,6 +10,7 @@ from pathlib import Path
 
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.columns import without_zeros
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.merged_reference import with_one_scale
 from werrimbi_odom.files.read_run import read_run
@@ -143,7 +144,8 @@ def gathered(
         else:
             show(number / len(drives), f"reading {drive.name}")
             run = _read(drive, source, how, references[number])
-        refuse_unjudgeable(run)
+        run = without_zeros(run)
+        refuse_unjudgeable(run, source.robot)
         found.append(run)
     found = _with_one_scale(found, len(runs))
     if how.reference_kind is None:

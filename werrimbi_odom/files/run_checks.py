@@ -6,11 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.columns import refuse_wrong_columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.encoder import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
@@ -23,19 +25,20 @@ APART = 5.0
 (docs/set_up.md)."""
 
 
-def refuse_unjudgeable(run: Run) -> None:
-    """Check that there is a reference to compare with, overlapping in time.
+def refuse_unjudgeable(run: Run, robot: Robot) -> None:
+    """Check that there is a reference to compare with, overlapping in time, and what columns hold.
 
     Raises
     ------
     InputError
-        If there is no reference, it lies entirely before or after the ticks, or the ticks go back
-        in time.
+        If there is no reference, it lies entirely before or after the ticks, the ticks go back in
+        time, or a column holds something else than its name says.
     """
     if run.reference is None:
         raise InputError(f"{run.path}: there is no reference to compare with {run.no_reference}")
     _refuse_back(run)
     _refuse_apart(run, run.reference)
+    refuse_wrong_columns(run, robot)
 
 
 def words_about(runs: Sequence[Run]) -> list[str]:
@@ -104,6 +107,10 @@ real: a robot driven back to its mark."""
 LEAST_TRAVEL, LEAST_TURN = 0.01, 0.02
 """Motion that must change the pose [m, rad]; a measurement may stick for some millimetres."""
 
+CHANGES_ALONE = 0.8
+"""Share of a part's changes between two repetitions above which it was held from reading to
+reading. Chosen: a held value changes alone unless two readings come in neighbouring rows."""
+
 ROLLS = 0.01
 """Share of these, in the interval of the last new pose, above which the robot was moving."""
 
@@ -131,13 +138,13 @@ def words_about_held(runs: Sequence[Run]) -> str | None:
     there = sum(0 if run.reference is None else run.reference.time.size for run in some)
     return (
         f"{some[0].path}{'' if len(some) == 1 else f' and {len(some) - 1} more'}: {count} of "
-        f"{count + there} reference poses repeat the one before to the last digit while the wheels "
-        "turn; they are taken for held, not measured, and left out"
+        f"{count + there} reference poses repeat the one before to the last digit, in position or "
+        "heading, while the wheels turn; they are taken for held, not measured, and left out"
     )
 
 
 def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
-    """Poses of a run's reference that were held, shape (m,).
+    """Poses of a run's reference that were held, shape (m,): whole, or their slower part.
 
     The wheels must have turned when the pose was new. A delayed reference shows the robot at rest,
     also for a while after it starts to move.
@@ -147,23 +154,72 @@ def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
     count = reference.time.size
     if count < FEWEST:
         return np.zeros(count, dtype=np.bool_)
-    columns = (reference.x, reference.y, reference.yaw)
-    repeats = np.zeros(count, dtype=np.bool_)
-    repeats[1:] = np.all([_equal(part[1:], part[:-1]) for part in columns], axis=0)
-    rows = np.arange(count)
-    first = np.maximum.accumulate(np.where(repeats, 0, rows))
+    place, heading = _repeats(reference.x, reference.y), _repeats(reference.yaw)
     along, turn = _driven(run, robot, reference.time)
+    travelled = _Motion(
+        along,
+        max(QUANTA * _quantum(reference.x, reference.y), LEAST_TRAVEL),
+        ROLLS * LEAST_TRAVEL,
+        reference.has_position,
+    )
+    turned = _Motion(
+        turn,
+        max(QUANTA * _quantum(reference.yaw), LEAST_TURN),
+        ROLLS * LEAST_TURN,
+        reference.has_yaw,
+    )
+    motions = (travelled, turned)
+    # A log with a row for each message of the fastest sensor repeats the last values of the slower
+    # ones. A pose is whole where the slowest is new, also at rest and while the robot sets off.
+    slow = [
+        repeats
+        for repeats in (place, heading)
+        if _changes_alone(repeats) and _held(repeats, motions).any()
+    ]
+    return max([_held(place & heading, motions), *slow], key=np.count_nonzero)
+
+
+class _Motion(NamedTuple):
+    """Motion by the counters that must show in a part of the pose."""
+
+    amount: Floats
+    """At each row of the reference, shape (m,)."""
+    least: float
+    """Amount that must change the values."""
+    rolls: float
+    """Amount in the interval of a new value, above which the robot was moving."""
+    measured: NDArray[np.bool_]
+
+
+def _repeats(*columns: Floats) -> NDArray[np.bool_]:
+    """Rows whose values all equal those of the row before."""
+    repeats = np.zeros(columns[0].size, dtype=np.bool_)
+    repeats[1:] = np.all([_equal(part[1:], part[:-1]) for part in columns], axis=0)
+    return repeats
+
+
+def _held(repeats: NDArray[np.bool_], motions: Sequence[_Motion]) -> NDArray[np.bool_]:
+    """Rows that repeat although one of the motions must have changed them."""
+    rows = np.arange(repeats.size)
+    first = np.maximum.accumulate(np.where(repeats, 0, rows))
+    moved = np.zeros(repeats.size, dtype=np.bool_)
     with np.errstate(invalid="ignore"):
-        travelled = np.abs(along - along[first]) > max(
-            QUANTA * _quantum(reference.x, reference.y), LEAST_TRAVEL
-        )
-        turned = np.abs(turn - turn[first]) > max(QUANTA * _quantum(reference.yaw), LEAST_TURN)
-        travels = np.abs(np.diff(along, prepend=np.nan)) > ROLLS * LEAST_TRAVEL
-        turns = np.abs(np.diff(turn, prepend=np.nan)) > ROLLS * LEAST_TURN
-    travelled &= travels[first] & reference.has_position
-    turned &= turns[first] & reference.has_yaw
-    since = np.maximum.accumulate(np.where(repeats & (travelled | turned), rows, -1))
+        for amount, least, rolls, measured in motions:
+            moving = np.abs(np.diff(amount, prepend=np.nan)) > rolls
+            moved |= (np.abs(amount - amount[first]) > least) & moving[first] & measured
+    since = np.maximum.accumulate(np.where(repeats & moved, rows, -1))
     return np.asarray(repeats & (since > first))  # the robot may return to the held pose
+
+
+def _changes_alone(repeats: NDArray[np.bool_]) -> bool:
+    """Whether values change in single rows, between rows that repeat.
+
+    A robot without noise repeats its heading too, on a straight line, and then changes it in one
+    row after the other.
+    """
+    new = ~repeats[1:-1]
+    alone = new & repeats[:-2] & repeats[2:]
+    return bool(new.sum() >= FEWEST and alone.sum() > CHANGES_ALONE * new.sum())
 
 
 def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:

@@ -10,7 +10,8 @@ part in it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -158,7 +159,19 @@ def _beside(
     if len(steps) < len(found.steps):
         found = find_changes(drives, [step.group for step in steps], fit.penalty_of_one)
     names = [runs.runs[index].name for index in order.tolist()]
-    return moves_of(found, evidence.numbers, drives.names, names)
+    moved = moves_of(found, evidence.numbers, drives.names, names)
+    # The levels are linear in the derivatives: beyond what is possible, these do not hold.
+    bounds = {
+        number.name: number.bounds_about(float(value))
+        for number, value in zip(evidence.numbers, evidence.values, strict=False)
+    }
+    return moved if all(is_within(each, bounds) for each in moved) else ()
+
+
+def is_within(moved: Moved, bounds: Mapping[str, tuple[float, float]]) -> bool:
+    """Whether a parameter is within its physical limits on either side of a change."""
+    low, high = bounds.get(moved.what, (-math.inf, math.inf))
+    return low <= min(moved.before, moved.after) and max(moved.before, moved.after) <= high
 
 
 def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:

@@ -82,9 +82,21 @@ base and arm are equivalent, and neither would be determined."""
 
 # ---------------------------------------------------------------------- positions in millimetres
 
-MILLIMETRES_FROM = 100.0
+UNIT_NEAR = 1.02
+"""Ratio of both sizes to a unit of length within which the positions are in it: feet (3.28) and pi
+are 1.044 apart."""
+
+COUNTS_NEAR = 1.05
+"""Ratio of the counts of a turn to those of a unit (radians, degrees, metres) within which the unit
+is named: a radius that was entered from a drawing is off by less."""
+
+MOST_COUNTS = 1.13e3
+"""Factor on the radius above which the counters are in a unit and a fit would be ill-conditioned:
+`NEAR` times the largest simple factor."""
+
+MILLIMETRES_FROM = 110.0
 """Factor from which on base and radii are both too small because the reference is in millimetres.
-Chosen: beyond 57.3, which is radians for degrees, and ten times below 1000."""
+Chosen: beyond centimetres, and nine times below 1000."""
 
 # --------------------------------------------------------------------------------- yaw in degrees
 
@@ -185,8 +197,8 @@ SPARSE_TURN, SPARSE_MOVE = 0.005, 0.003
 mm) and `TAPE_YAW`."""
 
 SPARSE_MARGIN = 10.0
-"""Log-likelihood by which a set-up must exceed the one entered: of 516 that are tried, chance makes
-one exceed it in 516 exp(-10) = 2 % of sessions."""
+"""Log-likelihood by which a set-up must exceed the one entered: of 588 that are tried, chance makes
+one exceed it in 588 exp(-10) = 3 % of sessions."""
 
 SPARSE_APART = 5.0
 """Log-likelihood by which it must exceed any contradicting set-up: a Bayes factor of 150, as

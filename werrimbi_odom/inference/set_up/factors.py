@@ -6,7 +6,13 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.rules import MOST_OF_A_SKID, NEAR, ORDINARY
+from werrimbi_odom.inference.rules import (
+    COUNTS_NEAR,
+    MOST_OF_A_SKID,
+    NEAR,
+    ORDINARY,
+    UNIT_NEAR,
+)
 
 FACTORS: dict[str, float] = {
     "2": 2.0,
@@ -17,6 +23,8 @@ FACTORS: dict[str, float] = {
     "1/pi": 1.0 / math.pi,
     "180/pi": 180.0 / math.pi,
     "pi/180": math.pi / 180.0,
+    "100": 100.0,
+    "1/100": 0.01,
     "1000": 1000.0,
     "1/1000": 1e-3,
 }
@@ -39,6 +47,7 @@ RADIUS: dict[str, str] = {
     "pi/180": "the wheels' angles are in degrees and are taken for radians",
     "1000": "kilometres for metres, or counts of a turn in thousandths",
     "1/1000": "millimetres were entered for metres",
+    "1/100": "centimetres were entered for metres",
 }
 """Causes of a factor on both radii."""
 
@@ -51,20 +60,54 @@ BASE: dict[str, str] = {
     "pi/180": "radians and degrees were mixed up where the base was worked out",
     "1000": "kilometres were entered for metres",
     "1/1000": "millimetres were entered for metres",
+    "1/100": "centimetres were entered for metres",
 }
 """Causes of a factor on the base."""
 
 METRE: dict[str, str] = {
     "1000": "the reference's positions are in millimetres",
     "1/1000": "base and radius were both entered in millimetres, or the reference is in kilometres",
+    "100": "the reference's positions are in centimetres",
+    "1/100": "base and radius were both entered in centimetres",
 }
 """Causes of a common factor on base and radii."""
+
+LENGTHS: dict[str, float] = {"centimetres": 100.0, "inches": 39.3701, "feet": 3.28084}
+"""Units in which positions are recorded, and how many make a metre; millimetres are recognised from
+less (`MILLIMETRES_FROM`)."""
 
 
 def simple_factor(value: float) -> str | None:
     """Name of the simple factor nearest to a positive value in log scale; None if none is near."""
     nearest = min(FACTORS, key=lambda name: abs(math.log(value / FACTORS[name])))
     return nearest if abs(math.log(value / FACTORS[nearest])) <= math.log(NEAR) else None
+
+
+def unit_of_positions(radius: float, base: float) -> str | None:
+    """Unit of the reference's positions that explains a common factor on radii and base."""
+    near = math.log(UNIT_NEAR)
+    for unit, size in LENGTHS.items():
+        if max(abs(math.log(radius / size)), abs(math.log(base / size))) <= near:
+            return unit
+    return None
+
+
+def counts_words(counts: float, radius: float) -> str:
+    """What a counter gives that has so many counts in a turn of a wheel of this radius [m].
+
+    Angles differ from the expected count by the error of the radius, lengths do not.
+    """
+    turn = 2.0 * math.pi
+    units = {"radians": turn, "degrees": 360.0, "turns": 1.0}
+    units |= {"metres": turn * radius, "centimetres": 1e2 * turn * radius}
+    units |= {"millimetres": 1e3 * turn * radius}
+    unit = min(units, key=lambda name: abs(math.log(counts / units[name])))
+    near = abs(math.log(counts / units[unit])) <= math.log(COUNTS_NEAR)
+    exact = f"{units[unit]:.6g} ({unit})" if near else f"{counts:.4g}"
+    return (
+        f"a turn of the wheel has {counts:.4g} counts by these drives: if that is right, write "
+        f"left_ticks_per_revolution: {exact}, and the same to the right"
+    )
 
 
 def is_ordinary(value: float) -> bool:

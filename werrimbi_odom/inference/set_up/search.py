@@ -20,9 +20,16 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import skids_in_turns
 from werrimbi_odom.inference.legs.no_driving import looked_at
-from werrimbi_odom.inference.rules import FEWEST_CUTS, MILLIMETRES_FROM, MOST_CREEP, SURE_SIZE
+from werrimbi_odom.inference.rules import (
+    FEWEST_CUTS,
+    MILLIMETRES_FROM,
+    MOST_COUNTS,
+    MOST_CREEP,
+    SURE_SIZE,
+)
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
+from werrimbi_odom.inference.set_up.factors import LENGTHS, counts_words, unit_of_positions
 from werrimbi_odom.inference.set_up.few_poses import is_sparse, search_sparse
 from werrimbi_odom.inference.set_up.findings import (
     IN_DEGREES,
@@ -48,10 +55,10 @@ from werrimbi_odom.model.robot import Robot
 __all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
 
 
-DELAY = "reference_delay"
-IN_MILLIMETRES = (
-    "the reference's positions are in millimetres, and x_m and y_m mean metres: convert these "
-    "columns (divide by 1000) and diagnose again"
+DELAY, RADIUS = "reference_delay", "wheel_radius_scale"
+IN_UNIT = (
+    "the reference's positions are in {unit}, and x_m and y_m mean metres: convert these columns "
+    "(divide by {size:.6g}) and diagnose again"
 )
 
 
@@ -91,8 +98,14 @@ class SetUp:
                 return finding.words
         # Base and radii need not be right for that: half the base may be entered beside.
         larger = {each.effect: each.values.get("multiplier", 1.0) for each in self.findings}
-        sizes = (larger.get(name, 1.0) for name in ("track_width", "wheel_radius_scale"))
-        return IN_MILLIMETRES if all(size > MILLIMETRES_FROM for size in sizes) else None
+        base, radius = (larger.get(name, 1.0) for name in ("track_width", RADIUS))
+        if min(base, radius) > MILLIMETRES_FROM:
+            return IN_UNIT.format(unit="millimetres", size=1000.0)
+        if (unit := unit_of_positions(radius, base)) is not None:
+            return IN_UNIT.format(unit=unit, size=LENGTHS[unit])
+        if radius > MOST_COUNTS:
+            return next(each.words for each in self.findings if each.effect == RADIUS)
+        return None
 
 
 def look_for_mistakes(
@@ -136,6 +149,7 @@ def look_for_mistakes(
         found, setting = search_positions(records, robot)
     else:
         found, setting = _search_headings(records, robot)
+    found = _with_counts(found, robot)
     mount = [each for each in found if find(each.effect).stage == "reference"]
     # How the wheels are wired first: sizes mean nothing before, and which of two mistakes makes the
     # larger errors may be another one with every second pose.
@@ -212,6 +226,20 @@ def _is_sure(fit: HeadingRegression | None) -> bool:
         return False
     left, right = abs(fit.left) / SURE_SIZE, abs(fit.right) / SURE_SIZE
     return left > fit.left_std and right > fit.right_std
+
+
+def _with_counts(found: Sequence[SetUpFinding], robot: Robot) -> list[SetUpFinding]:
+    """Say how many counts a turn has, where no simple factor explains both radii alone."""
+    if any(each.effect == "track_width" for each in found):
+        return list(found)
+    told = []
+    for each in found:
+        if each.effect == RADIUS and each.factor is None and not each.twins:
+            counts = robot.left_ticks_per_revolution / each.values["multiplier"]
+            words = f"{each.words}; {counts_words(counts, robot.wheel_radius)}"
+            each = replace(each, words=words)
+        told.append(each)
+    return told
 
 
 def _in_degrees(gain: float) -> SetUpFinding:

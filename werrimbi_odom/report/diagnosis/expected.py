@@ -60,6 +60,9 @@ def _angle(radians: float) -> str:
 
 def _base(values: Values, robot: Robot) -> str:
     short = TURNS * (1.0 - 1.0 / values["multiplier"])
+    if abs(short) > TURNS:  # a base that was entered more than twice too wide: no spin is needed
+        apart = values["multiplier"] * robot.wheel_separation
+        return f"the contact points of the wheels {_length(apart)} apart by a ruler"
     return f"{_angle(short)} {'short of it' if short > 0.0 else 'beyond it'} after ten turns"
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
@@ -227,10 +228,12 @@ def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     """How to check an effect on the robot, with a heading and the expected result."""
     if effect is None:
         return []
+    values = {name: item.value for name, item in values_of(diagnosis, effect.name).items()}
+    if diagnosis.runs.headings_alone and effect.name == "reference_delay":
+        effect = find("reference_heading_delay")  # one model, and a gyro sees no mark passed
     text = page_of(effect).sections.get("Ruler")
     if not text:
         return []
-    values = {name: item.value for name, item in values_of(diagnosis, effect.name).items()}
     numbers = expected_words(effect.name, values, diagnosis.robot) if values else ""
     ending = f"; {numbers}" if numbers else ""
     return [f"{head}: {' '.join(text.split())}{ending}."]

@@ -1,0 +1,215 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A column that holds something else than its name says is refused, with how to convert it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files import columns
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.robot import Robot
+
+TRUE = WhiteNoiseRobot()
+ROBOT = Robot(TRUE.separation, TRUE.left_radius, *2 * [TRUE.ticks_per_revolution])
+
+
+def refuse_wrong_columns(run: Run, robot: Robot = ROBOT) -> None:
+    columns.refuse_wrong_columns(run, robot)
+
+
+def driven(seed: int, moves: float = 60.0) -> Run:
+    """Lines, curves, spins and stops, forwards and backwards."""
+    random = np.random.default_rng(seed)
+    recorded = drive(TRUE, wandering(random, moves), random, every=5)
+    ticks, seen = recorded.ticks, recorded.reference
+    return Run(
+        "drive",
+        Path("drive"),
+        Ticks(ticks.time, ticks.left, ticks.right),
+        Reference(seen.time, seen.x, seen.y, seen.yaw),
+    )
+
+
+def seen(run: Run, **columns: np.ndarray | Callable[[Reference], np.ndarray]) -> Run:
+    """The run with some columns of its reference made otherwise."""
+    assert run.reference is not None
+    made = {name: each(run.reference) if callable(each) else each for name, each in columns.items()}
+    return replace(run, reference=replace(run.reference, **made))
+
+
+def timed(run: Run, factor: float) -> Run:
+    """The run with all times multiplied."""
+    assert run.reference is not None
+    ticks = Ticks(factor * run.ticks.time, run.ticks.left, run.ticks.right)
+    return seen(replace(run, ticks=ticks), time=factor * run.reference.time)
+
+
+def counted(run: Run, of: Callable[[np.ndarray], np.ndarray]) -> Run:
+    """The run with both counters made otherwise."""
+    ticks = run.ticks
+    return replace(run, ticks=Ticks(ticks.time, of(ticks.left), of(ticks.right)))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_right_columns_are_taken(seed: int) -> None:
+    run = driven(seed)
+    refuse_wrong_columns(run)
+    refuse_wrong_columns(seen(run, yaw=lambda it: np.full(it.yaw.shape, np.nan)))
+    refuse_wrong_columns(
+        seen(run, x=lambda it: np.full(it.x.shape, np.nan), y=lambda it: it.x * np.nan)
+    )
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("angle", [np.pi / 2, np.pi, -2.0])
+def test_a_marker_may_look_anywhere_and_wheels_may_be_wired_wrongly(
+    seed: int, angle: float
+) -> None:
+    run = seen(driven(seed), yaw=lambda it: it.yaw + angle)
+    refuse_wrong_columns(run)
+    ticks = run.ticks
+    refuse_wrong_columns(replace(run, ticks=Ticks(ticks.time, -ticks.left, ticks.right)))
+    refuse_wrong_columns(replace(run, ticks=Ticks(ticks.time, ticks.right, ticks.left)))
+    mirrored = seen(run, y=lambda it: -it.y, yaw=lambda it: -it.yaw)  # wholly: an effect has it
+    refuse_wrong_columns(mirrored)
+
+
+@pytest.mark.parametrize(
+    ("factor", "unit"), [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")]
+)
+def test_times_in_another_unit(factor: float, unit: str) -> None:
+    for run in (driven(1), seen(driven(1), x=lambda it: it.x * np.nan)):
+        with pytest.raises(InputError, match=f"in {unit}, and t_s means seconds: divide"):
+            refuse_wrong_columns(timed(run, factor))
+
+
+def test_rows_that_are_counted_have_no_times() -> None:
+    run = driven(1)
+    assert run.reference is not None
+    numbered = replace(run, ticks=replace(run.ticks, time=np.arange(float(run.ticks.rows))))
+    numbered = seen(numbered, time=lambda it: np.arange(float(it.time.size)))
+    slow = seen(numbered, x=lambda it: 0.1 * it.x, y=lambda it: 0.1 * it.y)
+    with pytest.raises(InputError, match="t_s counts the rows"):
+        refuse_wrong_columns(slow)
+
+
+@pytest.mark.parametrize("unit", [0.1, 1.0])
+def test_times_that_are_rounded(unit: float) -> None:
+    run = driven(1)
+    times = unit * np.floor(run.ticks.time / unit)
+    often = replace(run, ticks=replace(run.ticks, time=times))
+    with pytest.raises(InputError, match=f"t_s is rounded to {unit:g} s; write all its digits"):
+        refuse_wrong_columns(often)
+    bursts = run.ticks.time.copy()
+    bursts[1::3] = bursts[::3][: bursts[1::3].size]
+    bursts[2::3] = bursts[::3][: bursts[2::3].size]
+    jitter = np.repeat(np.random.default_rng(1).uniform(0.0, 0.004, bursts.size), 3)
+    refuse_wrong_columns(
+        replace(run, ticks=replace(run.ticks, time=bursts + jitter[: bursts.size]))
+    )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_increments_and_speeds_are_no_totals(seed: int) -> None:
+    run = driven(seed)
+    interval = float(np.median(np.diff(run.ticks.time)))
+
+    def increments(total: np.ndarray) -> np.ndarray:
+        return np.diff(total, prepend=total[0])
+
+    for made in (increments, lambda total: increments(total) / interval):
+        for wrong in (counted(run, made), seen(counted(run, made), x=lambda it: it.x * np.nan)):
+            with pytest.raises(InputError, match="not running totals: write the sum"):
+                refuse_wrong_columns(wrong)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
+    run = driven(seed)
+    for wrong in (
+        seen(run, yaw=lambda it: -it.yaw),
+        seen(run, yaw=lambda it: np.pi / 2 - it.yaw),
+        seen(run, y=lambda it: -it.y),
+        seen(run, x=lambda it: it.y, y=lambda it: it.x),
+    ):
+        with pytest.raises(InputError, match="clockwise"):
+            refuse_wrong_columns(wrong)
+
+
+def test_a_yaw_that_was_never_measured() -> None:
+    wrong = seen(driven(2), yaw=lambda it: np.zeros(it.yaw.shape))
+    with pytest.raises(InputError, match=r"is 0 in all rows, while the path turns.* leave that"):
+        refuse_wrong_columns(wrong)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("signed", [False, True])
+@pytest.mark.parametrize(
+    ("period", "words"),
+    [
+        (1 << 16, "wraps at 16 bits: write encoder_bits: 16 into"),
+        (1 << 12, "wraps at 12 bits"),
+        (2000, "begins anew after (19..|20..) counts: unwrap both"),
+    ],
+)
+def test_a_counter_that_wraps(seed: int, signed: bool, period: int, words: str) -> None:
+    run = driven(seed)
+    shift = period // 2 if signed else 0
+    # Ten times the counts of a turn, so that 16 bits are few.
+    more = counted(run, lambda total: total * (10 if period > 4096 else 1))
+    wrong = counted(more, lambda total: (total + shift) % period - shift)
+    with pytest.raises(InputError, match=words):
+        refuse_wrong_columns(wrong)
+    refuse_wrong_columns(more)
+    if period != 2000:
+        bits = replace(ROBOT, encoder_bits=period.bit_length() - 1)
+        refuse_wrong_columns(wrong, bits)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_counters_without_a_sign(seed: int) -> None:
+    """Of an encoder with one channel."""
+    run = driven(seed, 120.0)
+    unsigned = counted(run, lambda total: np.cumsum(np.abs(np.diff(total, prepend=total[0]))))
+    with pytest.raises(InputError, match="never decrease, also where the robot turns on the spot"):
+        refuse_wrong_columns(unsigned)
+
+
+def test_a_counter_that_is_reset_or_read_seldom_does_not_wrap() -> None:
+    run = driven(1)
+    middle = run.ticks.rows // 2
+    reset = np.arange(run.ticks.rows) >= middle
+    refuse_wrong_columns(counted(run, lambda total: np.where(reset, total - total[middle], total)))
+    ends = np.tile([0, 900], 20)  # driven to and fro, and read where it turns round
+    seldom = replace(run, ticks=Ticks(np.linspace(*run.ticks.time[[0, -1]], 40), ends, ends))
+    refuse_wrong_columns(seldom)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_tracker_that_writes_zeros_saw_nothing(seed: int) -> None:
+    run = seen(driven(seed), x=lambda it: it.x + 2.0)
+    assert columns.without_zeros(run) is run
+    assert run.reference is not None
+    lost = np.arange(run.reference.time.size) % 7 < 2
+    zeros = {name: np.where(lost, 0.0, getattr(run.reference, name)) for name in ("x", "y", "yaw")}
+    left = columns.without_zeros(seen(run, **zeros))
+    assert left.reference is not None
+    np.testing.assert_array_equal(left.reference.time, run.reference.time[~lost])
+    assert f"{lost.sum()} of {lost.size} reference poses are zeros" in left.damage[-1]
+
+
+def test_a_robot_that_starts_at_zero_was_there() -> None:
+    run = driven(1)
+    assert run.reference is not None
+    start = seen(
+        run, x=lambda it: it.x - it.x[0], y=lambda it: it.y - it.y[0], yaw=lambda it: 0.0 * it.yaw
+    )
+    assert columns.without_zeros(start) is start

@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Counters that are no running, signed totals, by their own values and the reference."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.files.run import Reference, Ticks
+from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.pose import Floats, wrap_all
+
+FEWEST = 20
+"""Rows or windows below which nothing is concluded."""
+
+WINDOW = 0.5
+"""Time over which counts and motion are compared [s]: longer than most delays of a reference."""
+TAKES, HARDLY = 0.9, 0.5
+"""Correlations with the motion: of the values themselves, from which they are increments or speeds,
+and of their differences, up to which they are no totals."""
+
+
+SEVERAL, AT_MOST = 3, 0.3
+"""Leaps from which a counter's range is taken for its period, and their largest share of the rows:
+a counter that is reset leaps once, and one that is read too seldom leaps always."""
+USUAL = 0.9
+"""Quantile of a counter's steps: about a power of two to within this, one leap is enough."""
+AGAINST = 0.8
+"""Share of the leaps that must be against the motion beside them."""
+
+SPINS, SPIN_TURN, SPIN_RADIUS = 3, 0.2, 0.03
+"""Windows of turning on the spot that must contradict counters without a sign: how many, the turn
+[rad] in each, and the way [m] for each radian of it. On one wheel that stands, a robot's middle
+goes half its base a radian: 40 mm for the smallest."""
+
+
+def what_counters_hold(ticks: Ticks, reference: Reference, bits: int) -> str:
+    """What is wrong with a run's counters and how to convert them; "" if nothing is.
+
+    Parameters
+    ----------
+    bits : int
+        Width at which the robot file says that they wrap; 0 if they do not.
+    """
+    windows = _windows(ticks, reference)
+    words = "" if windows is None else _no_totals(windows) or _no_signs(ticks, windows)
+    return words or ("" if bits else _wraps(ticks))
+
+
+class _Windows(NamedTuple):
+    """Sums over windows of time; k windows."""
+
+    values: Floats
+    """Mean of both counters' values, and right less left, shape (2, k)."""
+    steps: Floats
+    """The same of their change."""
+    moved: Floats
+    """Displacement [m] and turn [rad] by the reference, shape (2, k); NaN where not measured."""
+
+
+def _no_totals(found: _Windows) -> str:
+    # A displacement has no sign, so the values have none either. Turns have theirs.
+    of_values = [_related(np.abs(found.values[0]), found.moved[0])]
+    of_steps = [_related(np.abs(found.steps[0]), found.moved[0])]
+    of_values += [_related(found.values[1], found.moved[1])]
+    of_steps += [_related(found.steps[1], found.moved[1])]
+    if max(of_values) < TAKES or max(of_steps) > HARDLY:
+        return ""
+    return (
+        "left_ticks and right_ticks go with how fast the robot moves: they hold what was counted "
+        "since the row before, or a speed, and not running totals: write the sum of all rows so "
+        "far (of a speed times the time since the row before)"
+    )
+
+
+def _no_signs(ticks: Ticks, found: _Windows) -> str:
+    if any((np.diff(counts) < 0).any() for counts in (ticks.left, ticks.right)):
+        return ""
+    both = found.steps[0] > 0.5 * np.abs(found.steps[1])  # both wheels count up
+    way, turn = found.moved[0], np.abs(found.moved[1])
+    spins = both & (turn > SPIN_TURN) & (way < SPIN_RADIUS * turn)
+    if np.count_nonzero(spins) < SPINS:
+        return ""
+    return (
+        "left_ticks and right_ticks never decrease, also where the robot turns on the spot, so "
+        "that one wheel rolls backwards: the encoders tell no direction; give each step the sign "
+        "of its motor's command before it is summed"
+    )
+
+
+def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
+    seen = reference.time
+    forward = bool((np.diff(ticks.time) >= 0.0).all() and (np.diff(seen) >= 0.0).all())
+    if not forward or min(ticks.rows, seen.size) < FEWEST:
+        return None
+    begin, end = max(ticks.time[0], seen[0]), min(ticks.time[-1], seen[-1])
+    wide = max(WINDOW, 3.0 * float(np.median(np.diff(ticks.time))))
+    wide = max(wide, float(np.median(np.diff(seen))))
+    if end - begin < FEWEST * wide:
+        return None
+    edges = begin + wide * np.arange(int((end - begin) / wide) + 1)
+    rows = np.searchsorted(ticks.time, edges)
+    whole = np.diff(rows) > 0
+    counts = np.stack([ticks.left, ticks.right]).astype(np.float64)
+    counts = np.stack([counts.mean(axis=0), counts[1] - counts[0]])
+    sums = np.cumsum(np.concatenate([np.zeros((2, 1)), counts], axis=1), axis=1)
+    values = np.diff(sums[:, rows], axis=1)[:, whole] / np.diff(rows)[whole]
+    at = counts[:, np.minimum(rows, ticks.rows - 1)]
+    nearest = np.minimum(np.searchsorted(seen, edges), seen.size - 1)
+    x, y, yaw = (part[nearest] for part in (reference.x, reference.y, reference.yaw))
+    moved = np.stack([np.hypot(np.diff(x), np.diff(y)), wrap_all(np.diff(yaw))])
+    return _Windows(values, np.diff(at, axis=1)[:, whole], moved[:, whole])
+
+
+def _related(one: Floats, other: Floats) -> float:
+    """Correlation where both are known; 0 if there are too few values, or none varies."""
+    known = np.isfinite(one) & np.isfinite(other)
+    if np.count_nonzero(known) < FEWEST or not np.ptp(one[known]) or not np.ptp(other[known]):
+        return 0.0
+    return abs(float(np.corrcoef(one[known], other[known])[0, 1]))
+
+
+def _wraps(ticks: Ticks) -> str:
+    periods = {
+        name: period
+        for name, counts in (("left_ticks", ticks.left), ("right_ticks", ticks.right))
+        if (period := _period(counts))
+    }
+    if not periods:
+        return ""
+    name, period = max(periods.items(), key=lambda item: item[1])
+    bits = period.bit_length() - 1
+    mend = (
+        f"wraps at {bits} bits: write encoder_bits: {bits} into the robot file"
+        if period == 1 << bits
+        else f"begins anew after {period} counts: unwrap both (numpy.unwrap, period={period})"
+    )
+    return (
+        f"{name} leaps from one end of its range to the other while its wheel rolls on: it {mend}"
+    )
+
+
+def _period(counts: Counts) -> int:
+    """Counts after which a counter begins anew; 0 if it does not."""
+    values = counts[np.isfinite(counts)].astype(np.float64)
+    if values.size < FEWEST or not (values == np.rint(values)).all():
+        return 0
+    steps = np.diff(values)
+    reach = int(np.ptp(values))
+    leaps = np.abs(steps) > 0.5 * reach
+    count = int(leaps.sum())
+    if count == 0 or count > AT_MOST * steps.size:
+        return 0
+    near = np.convolve(~leaps, np.ones(3), "same")[leaps]
+    beside = np.convolve(np.where(leaps, 0.0, steps), np.ones(3), "same")[leaps]
+    # The wheel rolls on as before and after.
+    leapt = np.abs(steps[leaps] - beside / np.maximum(near, 1.0))
+    usual = float(np.quantile(np.abs(steps[~leaps]), USUAL))
+    about = float(np.median(leapt))
+    of_bits = 1 << round(math.log2(about))
+    bits = of_bits > reach and abs(about - of_bits) <= usual / math.sqrt(count)
+    period = of_bits if bits else max(round(about), reach + 1)
+    against = np.mean(np.sign(beside) == -np.sign(steps[leaps]))
+    left_over = float(np.abs(period - np.abs(steps[leaps])).max())
+    sure = max(left_over, usual) <= 0.5 * period and against >= AGAINST
+    return period if sure and (bits or count >= SEVERAL) else 0
