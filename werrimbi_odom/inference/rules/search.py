@@ -48,8 +48,8 @@ is then tested with 27 degrees of freedom, for which F must be 13.6 where chi-sq
 
 LASTING_FEWEST, LASTING_MOST = 4, 12
 """Fewest and most parts of one run. With three degrees of freedom F would have to be 167, so fewer
-than four are never significant; more than twelve of one drive are shorter than the correlation of
-errors."""
+than four are never significant by themselves (short drives: `LASTING_NOISE`); more than twelve of
+one drive are shorter than the correlation of errors."""
 
 LASTING_LEGS = 5
 """Fewest legs of a part of a short drive, as of one turn; with fewer in a whole drive (two poses)
