@@ -113,6 +113,20 @@ def test_a_robot_that_is_held_is_found_within_half_a_second(seed: int) -> None:
     assert found[2] == {"held"}
 
 
+@pytest.mark.parametrize("share", [0.0, 0.5])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_nobody_holds_a_robot_whose_heading_follows_its_wheels(seed: int, share: float) -> None:
+    """Scans that slide along a corridor, or wheels that slip alike: the way falls short, alone."""
+    run = run_of(ROBOT, seed)
+    assert run.reference is not None
+    time, way = run.reference.time, run.reference.x + 1j * run.reference.y
+    slides = (time[1:] >= 30.0) & (time[1:] <= 36.0)
+    way = way[0] + np.cumsum(np.append(0.0, np.diff(way) * np.where(slides, share, 1.0)))
+    short = replace(run.reference, x=way.real, y=way.imag)
+    found = looked_at(replace(run, reference=short), ROBOT).no_driving
+    assert found == ()
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -> None:
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)

@@ -80,3 +80,41 @@ def test_a_robot_that_is_held_is_no_reversed_wheel(seed: int) -> None:
     run = seen_by_gyro(ticks.time, ticks.left, ticks.right, np.zeros(time.size + 1), random)
     wired = {each.effect for each in look_for_mistakes([run], ROBOT).findings}
     assert not wired & {"left_wheel_reversed", "right_wheel_reversed", "wheels_swapped"}
+
+
+def rectangle(seed: int, sense: float) -> Run:
+    """A rectangle, and the whole degrees of a gyro after each side and each turn: nine headings."""
+    random = np.random.default_rng(seed)
+    stop, speed, yaw_rate, ends = np.zeros(25), [np.zeros(25)], [np.zeros(25)], [0]
+    for side in (1.0, 0.6, 1.0, 0.6):
+        line = np.full(round(side / 0.2 * RATE), 0.2)
+        turn = np.full(round(0.5 * np.pi / 0.5 * RATE * random.uniform(0.97, 1.03)), 0.5)
+        for now, turning in ((line, 0.0 * line), (0.0 * turn, sense * turn)):
+            speed += [now, stop]
+            yaw_rate += [turning, stop]
+            ends.append(sum(part.size for part in speed) - 5)
+    driven, turned = np.concatenate(speed), np.concatenate(yaw_rate)
+    ticks = read(ROBOT, RATE, driven, turned)
+    bends = turned / 1.1 + random.normal(0.0, 0.02, turned.size)
+    heading = np.append(0.0, np.cumsum(bends)) / RATE
+    seen = np.radians(np.round(np.degrees(heading[ends])))
+    nothing = np.full(seen.size, np.nan)
+    reference = Reference(ticks.time[ends], nothing, nothing, seen, kind="incremental")
+    name = f"rectangle_{seed}"
+    return Run(name, Path(name), Ticks(ticks.time, ticks.left, ticks.right), reference)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("counts", [1.0, -1.0])
+def test_a_gyro_that_counts_clockwise_is_found_by_headings_after_each_turn(
+    counts: float, seed: int
+) -> None:
+    runs = [rectangle(3 * seed + each, sense) for each, sense in enumerate((1.0, -1.0, 1.0))]
+    seen = [replace(run.reference, yaw=counts * run.reference.yaw) for run in runs if run.reference]
+    runs = [replace(run, reference=each) for run, each in zip(runs, seen, strict=True)]
+    findings = look_for_mistakes(runs, ROBOT).findings
+    if counts > 0.0:
+        assert findings == ()
+    else:
+        assert len(findings) == 1
+        assert "reference_mirrored" in (findings[0].effect, *findings[0].twins)

@@ -22,7 +22,11 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, step_jacobian
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
-from werrimbi_odom.inference.fitting.clusters import least_informative_share, parts_of_innovations
+from werrimbi_odom.inference.fitting.clusters import (
+    few_parts,
+    least_informative_share,
+    parts_of_innovations,
+)
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
@@ -32,6 +36,7 @@ from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,
     LASTING_HEARD,
+    LASTING_NOISE,
     OTHER_DRIVES,
     SURE_WHEN_ASKED,
 )
@@ -77,7 +82,9 @@ def homogeneity_of_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
     free = others.residual(flat[:, own])
     rest = others.residual(white) - free @ np.array(away)
     test = score_test(flat[:, own], free, rest)
-    return 1.0 if test is None else _chance(test.gain, test.degrees, free, rest, parts)
+    if test is None:
+        return 1.0
+    return _chance(test.gain, test.degrees, free, rest, parts, noise_known(runs, parts))
 
 
 def lasting(
@@ -95,7 +102,7 @@ def lasting(
         return
     for cell in cells:
         free = frame.residual(pattern_of(runs, point, cell))
-        p_value = _chance(cell.gain, cell.degrees, free, rest, parts)
+        p_value = _chance(cell.gain, cell.degrees, free, rest, parts, noise_known(runs, parts))
         alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3))
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
@@ -128,7 +135,9 @@ def lasting_columns(
         Innovations with them projected out.
     """
     parts = parts_of_innovations(runs, rest)
-    return 0.0 if parts is None else _chance(gain, degrees, free, rest, parts)
+    if parts is None:
+        return 0.0
+    return _chance(gain, degrees, free, rest, parts, noise_known(runs, parts))
 
 
 def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | None:
@@ -161,10 +170,23 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | Non
     return None if chi2_survival(gain, own.shape[1]) < SURE_WHEN_ASKED else first
 
 
+def noise_known(runs: Concatenated, parts: NDArray[np.intp]) -> float:
+    """Worth of the likelihood's noise as a prior of the scatter between parts, in their degrees."""
+    return LASTING_NOISE if few_parts(runs, parts) else 0.0
+
+
 def _chance(
-    gain: float, degrees: int, free: Floats, rest: Floats, parts: NDArray[np.intp]
+    gain: float,
+    degrees: int,
+    free: Floats,
+    rest: Floats,
+    parts: NDArray[np.intp],
+    known: float = 0.0,
 ) -> float:
-    """P-value of a pattern's gain, relative to the disagreement between the parts."""
+    """P-value of a pattern's gain, relative to the disagreement between the parts.
+
+    `known` degrees of freedom are added, in which the parts disagree by the noise.
+    """
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0
@@ -176,5 +198,5 @@ def _chance(
         apart += float(np.sum((own.T @ rest[here]) ** 2))
         freedom += own.shape[1]
     freedom = max(freedom - degrees, 1)
-    disagreement = max((apart - gain) / freedom, 1.0)
-    return fisher_survival(gain / degrees / disagreement, degrees, freedom)
+    disagreement = max((apart - gain + known) / (freedom + known), 1.0)
+    return fisher_survival(gain / degrees / disagreement, degrees, freedom + known)

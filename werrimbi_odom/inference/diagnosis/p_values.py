@@ -11,6 +11,7 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
+from werrimbi_odom.inference.fitting.clusters import few_parts, parts_of_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.rules import LASTING_PARTS
 
@@ -28,10 +29,13 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 def p_value_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> float:
     """P-value of an effect in the model, by the disagreement between the parts (homogeneity test).
 
-    It is corrected for the number of candidates only where the parts disagree beyond chance.
-    Elsewhere the likelihood-ratio test, which has that correction, is valid by itself.
+    It is corrected for the number of candidates where the parts disagree beyond chance, and where
+    they are too few to show it. Elsewhere the likelihood-ratio test, which has that correction, is
+    valid by itself.
     """
-    tests = max(tried, 1) if disagreeing(fit, name) else 1
+    parts = parts_of_innovations(runs, fit.design.white.ravel())
+    few = parts is not None and few_parts(runs, parts)
+    tests = max(tried, 1) if few or disagreeing(fit, name) else 1
     return bonferroni(tests, homogeneity_of_effect(runs, fit, name))
 
 

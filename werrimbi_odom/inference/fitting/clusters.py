@@ -28,15 +28,17 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.pose import Floats
 
 
-def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
+def parts_of(run: NDArray[np.intp], most: int = LASTING_MOST) -> NDArray[np.intp]:
     """Index of the part (cluster) of each leg, numbered over all runs, (m,).
 
     Parameters
     ----------
     run : ndarray, shape (m,)
         Index of each leg's run, in order.
+    most : int
+        Most parts of one run.
     """
-    each = min(max(math.ceil(LASTING_PARTS / np.unique(run).size), LASTING_FEWEST), LASTING_MOST)
+    each = min(max(math.ceil(LASTING_PARTS / np.unique(run).size), LASTING_FEWEST), most)
     first = np.searchsorted(run, run, side="left")
     count = np.bincount(run)[run]
     part = (np.arange(run.size) - first) * each // count
@@ -46,7 +48,8 @@ def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
 def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] | None:
     """Index of the part of each innovation, (3 m,); -1 where nothing was measured.
 
-    None where legs with data are so long or so few that each is independent.
+    None where legs with data are so long that each is independent, or where all runs together have
+    too few of them for parts that could be compared.
 
     Parameters
     ----------
@@ -57,19 +60,26 @@ def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] 
     """
     known = np.abs(white.reshape(-1, 3)).max(axis=1) > SILENT
     run = runs.run_of_leg[known]
-    if run.size < LASTING_LEGS * LASTING_FEWEST * len(runs.runs):
+    most = run.size // (LASTING_LEGS * len(runs.runs))
+    if most == 0:
         return None
     parts = np.full(known.size, -1)
-    parts[known] = np.unique(parts_of(run), return_inverse=True)[1]
-    return np.repeat(parts, 3)
+    most = most if most < LASTING_FEWEST else LASTING_MOST
+    parts[known] = np.unique(parts_of(run, most), return_inverse=True)[1]
+    return np.repeat(parts, 3) if parts.max() + 1 >= LASTING_FEWEST else None
+
+
+def few_parts(runs: Concatenated, parts: NDArray[np.intp]) -> bool:
+    """Whether runs are too short for parts that could show how much they disagree."""
+    return int(parts.max()) + 1 < LASTING_FEWEST * len(runs.runs)
 
 
 def least_informative_share(parts: NDArray[np.intp]) -> float:
     """Share of a pattern's norm that a part must hold to be informative.
 
-    With very many drives each part holds less, so the share required falls below that for 28.
+    It is in proportion to what a part holds on average.
     """
-    return LASTING_HEARD * math.sqrt(min(1.0, LASTING_PARTS / (parts.max() + 1)))
+    return LASTING_HEARD * math.sqrt(LASTING_PARTS / (parts.max() + 1))
 
 
 def widening(white: Floats, flat: Floats, moves: Floats, runs: Concatenated) -> Floats:

@@ -32,6 +32,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_FEWEST,
     NO_DRIVING_FEWEST_FIRM,
     NO_DRIVING_FIRM,
+    NO_DRIVING_FOLLOWS,
     NO_DRIVING_GENTLE,
     NO_DRIVING_GOES,
     NO_DRIVING_JOINED,
@@ -128,6 +129,8 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
         seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY, turns=False))
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
+    if by_turns is not None:
+        parts = [part for part in parts if part.why != "held" or not _follows(part, by_turns)]
     parts = _with_rests(parts, counters, robot)
     if turns is not None and by_turns is None:  # to and fro on a line, carried in between
         by_hand = _turned_by_hand(turns, robot.track)
@@ -353,6 +356,19 @@ def _by_kind(begin: float, end: float, seen: Sequence[_MeasuredMotion]) -> list[
             stood = np.mean(rolled[one:other] <= still) > 0.5
             parts.append(NoDriving(*span, "carried", CARRIED if stood else BY_HAND))
     return parts
+
+
+def _follows(part: NoDriving, turns: Agreement) -> bool:
+    """Whether the heading turns as the wheels say, so that nobody holds the robot.
+
+    Then the wheels slip alike, or the reference falls short of the way, as scans in a corridor do.
+    """
+    time = turns.windows.time
+    inside = (time >= part.begin) & (time <= part.end)
+    expected, measured = turns.expected[inside], turns.windows.measured[inside]
+    turned = float(np.abs(expected).sum()) / turns.windows.steps
+    left = float(np.sum((measured - expected) ** 2))
+    return turned > NO_DRIVING_TURN and left < NO_DRIVING_FOLLOWS * float(expected @ expected)
 
 
 def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) -> list[NoDriving]:

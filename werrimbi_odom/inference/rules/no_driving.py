@@ -159,6 +159,11 @@ NO_DRIVING_TURN, NO_DRIVING_WAY = math.radians(3.0), 0.03
 """Least error for a stretch to be left out [rad, m]: more than any castor kicks (0.03 rad in
 simulation), and no more than spoils a leg."""
 
+NO_DRIVING_FOLLOWS = 0.25
+"""Share of the squared turns by the wheels that the measured ones may leave unexplained, below
+which the heading follows the wheels: it then turns by half or more of what they say, where that of
+a robot that is held by none (a share of 1)."""
+
 NO_DRIVING_JOINED, NO_DRIVING_SILENT = 1.0, 3.0
 """Time [s] between two stretches, or to an end of the drive, that is left out with them: always,
 and if no window in between agrees with the wheels. To hold a robot takes time."""

@@ -48,17 +48,24 @@ is then tested with 27 degrees of freedom, for which F must be 13.6 where chi-sq
 
 LASTING_FEWEST, LASTING_MOST = 4, 12
 """Fewest and most parts of one run. With three degrees of freedom F would have to be 167, so fewer
-than four are never significant; more than twelve of one drive are shorter than the correlation of
-errors."""
+than four are never significant by themselves (short drives: `LASTING_NOISE`); more than twelve of
+one drive are shorter than the correlation of errors."""
 
 LASTING_LEGS = 5
-"""Fewest legs of a part; with fewer (two poses a drive) errors have no time to be correlated."""
+"""Fewest legs of a part of a short drive, as of one turn; with fewer in a whole drive (two poses)
+errors have no time to be correlated."""
+
+LASTING_NOISE = 3.0
+"""Where drives are too short for four parts each, worth of the noise by the likelihood as a prior
+of the scatter between parts, in degrees of freedom. Chosen: with none a delay of twenty standard
+deviations is left to chance in drives of three metres; with as many as there are parts, three turns
+that err alike make an effect."""
 
 LASTING_HEARD = 0.1
 """Share of a pattern's norm that a part must have, to count in the test: a hundredth of what the
 pattern explains, as compared with the 28th that a part has on average. With more parts the share
-shrinks in proportion: of 60 drives none had a tenth, and an effect of 20 standard deviations was
-put down to chance."""
+shrinks in proportion, and with fewer it grows: of 60 drives none had a tenth, and an effect of 20
+standard deviations was put down to chance."""
 
 DRIVES_TO_LEAVE_ONE = 3
 """Fewest drives for one to be called unlike the others: with two neither is."""

@@ -56,7 +56,7 @@ def search_sparse(
     """Findings; sizes are not measured, so the second value is always None."""
     cuts = _thinned(cut(records, robot, measured))
     track = effective_track(robot)
-    if cuts.count == 0 or measured == "heading":
+    if cuts.count == 0:
         return [], None
     drives = _Drives(cuts, track, measured == "pose")
     tried = sorted(

@@ -141,14 +141,14 @@ def look_for_mistakes(
     if lag != 0.0:
         records = [each.delayed(lag) for each in records]
         extra.append(_late(lag, gain))
-    if is_sparse(records, robot, measured):
+    if measured == "heading":
+        found, setting = _search_headings(records, robot)
+    elif is_sparse(records, robot, measured):
         found, setting = search_sparse(records, robot, measured)
     elif measured == "pose":
         found, setting = search_poses(records, robot)
-    elif measured == "position":
-        found, setting = search_positions(records, robot)
     else:
-        found, setting = _search_headings(records, robot)
+        found, setting = search_positions(records, robot)
     found = _with_counts(found, robot)
     mount = [each for each in found if find(each.effect).stage == "reference"]
     # How the wheels are wired first: sizes mean nothing before, and which of two mistakes makes the

@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Short drives by a gyro: three turns that err alike by chance are no effect of the robot.
+
+An error of a turn (scrubbing wheels) lasts for all of it, so its legs are one piece of evidence.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.model.drives import ROBOT, read
+from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+
+RATE, DELAY, BASE = 50.0, 0.07, 1.04
+SCRUB, SPIN_SCRUB = 0.06, 0.012
+"""Standard deviations of a turn's error, as a share of it: of an arc, and of a spin."""
+
+
+def driven(random: np.random.Generator, name: str, more: float | None = None) -> Run:
+    """Two straight lines, two spins and an arc, in any order, with stops between them.
+
+    Each arc turns by its own share less than the wheels say, or by `more` of its yaw rate's size.
+    """
+    speed, rate, share = ([np.zeros(100)] for _ in range(3))
+    for kind in random.permutation(["spin", "straight", "arc", "straight", "spin"]):
+        if kind == "straight":
+            count, now, turning, error = int(RATE * random.uniform(2, 5)), 0.25, 0.0, 0.0
+        elif kind == "spin":
+            count, now = int(RATE * random.uniform(2, 3.5)), 0.0
+            turning, error = random.choice([-0.6, 0.6]), random.normal(0.0, SPIN_SCRUB)
+        else:
+            count, now = int(RATE * random.uniform(1.5, 3)), 0.25
+            turning, error = random.choice([-0.2, 0.2]), random.normal(0.0, SCRUB)
+            error = error if more is None else -more
+        stop = np.zeros(40)
+        speed += [np.full(count, now), stop]
+        rate += [np.full(count, turning), stop]
+        share += [np.full(count, error), stop]
+    smooth = np.ones(10) / 10.0
+    driven, turned = (np.convolve(np.concatenate(part), smooth, "same") for part in (speed, rate))
+    ticks = read(ROBOT, RATE, driven, turned)
+    heading = np.cumsum(np.append(0.0, turned * (1.0 + np.concatenate(share)))) / RATE
+    time = np.arange(0.0, ticks.time[-1], 0.01)
+    walk = np.cumsum(random.normal(0.0, 2e-5, time.size))
+    yaw = np.interp(time - DELAY, ticks.time, heading) / BASE + walk
+    nothing = np.full(time.size, np.nan)
+    return Run(
+        name,
+        Path(name),
+        Ticks(ticks.time, ticks.left, ticks.right),
+        Reference(time, nothing, nothing, yaw, kind="incremental"),
+    )
+
+
+def diagnosed(seed: int, drives: int, more: float | None = None) -> Diagnosis:
+    random = np.random.default_rng(seed)
+    runs = [driven(random, f"drive_{each}", more) for each in range(drives)]
+    return diagnose(runs, ROBOT, LIBRARY, EvaluationOptions(reference_kind="incremental"))
+
+
+@pytest.mark.parametrize(
+    "seed", [6, 10, 15, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in range(16, 24))]
+)
+def test_three_arcs_are_too_few_to_name_an_effect(seed: int) -> None:
+    found = diagnosed(seed, 3)
+    assert found.verdict != "none"
+    assert set(found.found) <= {"reference_delay", "track_width"}
+    assert "reference_delay" in found.found
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_what_the_arcs_of_many_drives_have_in_common_is_named(seed: int) -> None:
+    found = diagnosed(seed, 12, more=0.07)
+    assert {"turn_dependent_track", "load_transfer"} & {*found.found, *found.rivals}
+    assert "reference_delay" in found.found
