@@ -179,6 +179,11 @@ class Concatenated:
         """Result of `work` for a model, of the size of the steps; cached for the last model."""
         return _recalled(self._of_steps, model, key, work, 1)
 
+    def forget_steps(self) -> None:
+        """Drop what is cached of the size of the steps, where a task needs the memory itself."""
+        for cache in (self._features, self._delayed, self._of_steps):
+            cache.clear()
+
     def latest(self, of: tuple[object, ...], work: Callable[[], Found]) -> Found:
         """Result of `work`, cached while called with the identical objects."""
         if not self._latest or any(
