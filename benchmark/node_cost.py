@@ -40,6 +40,7 @@ ROBOT = {
     "wheel_radius": 0.05,
     "left_ticks_per_revolution": 2000.0,
     "right_ticks_per_revolution": 2000.0,
+    "gap_duration": 60.0,  # a node that waits for its turn is not silent, and logs nothing
 }
 
 NODES = {

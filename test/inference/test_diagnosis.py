@@ -23,7 +23,9 @@ from werrimbi_odom.inference.diagnosis.evidence import (
 from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.support import support_of
+from werrimbi_odom.inference.fitting import caches
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
+from werrimbi_odom.inference.fitting.design import jacobian_of
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict, predict_all, predicted_legs
@@ -219,3 +221,18 @@ def test_few_poses_put_whole_drives_aside() -> None:
     assert not {run.name for run in fitted} & {run.name for run in kept}
     (first,), (last,) = set_aside(runs[:1])
     assert first.ticks.time[-1] < last.ticks.time[0]
+
+
+def test_derivatives_worked_out_side_by_side_are_the_same_to_the_last_bit(
+    laid: Concatenated, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    point, asked = start_point(laid, ROBOT), candidates(LIBRARY, (), (), len(laid.runs))
+    found = []
+    for worth in (range(10**6), range(0)):
+        monkeypatch.setattr(caches, "WORTH_THREADS", worth)
+        runs = concatenated(laid.runs)
+        found.append((jacobian_of(runs, point.model, CALIBRATION), scores(runs, point, (), asked)))
+    (one, gains), (other, its) = found
+    assert np.array_equal(one, other)
+    assert [score.gain for score in gains] == [score.gain for score in its]
+    assert len(gains) > 20

@@ -53,7 +53,7 @@ def compiled(function: Function) -> Function | None:
     own = copied_for_floats(function, inner)
     own.__qualname__ += f"_{_digest()}"  # names the cache file
     try:
-        return cast("Function", numba.njit(cache=True, error_model="numpy")(own))
+        return cast("Function", numba.njit(cache=True, error_model="numpy", nogil=True)(own))
     except RuntimeError:  # no cache folder; compiling in every process costs too much
         return None
 

@@ -41,7 +41,7 @@ from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.reference_view import View
 
-BATCH = 2_000_000
+BATCH = 500_000
 """Legs times columns that the filter processes at once."""
 
 CHANNELS = ("left", "right", "along", "sideways", "heading")
@@ -135,6 +135,7 @@ def dependences(
 
     `numbers` are the nuisance parameters: what they can explain is no evidence.
     """
+    runs.forget_steps()
     frame, rest = residual_innovations(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.fitting.caches import recalled, remember, results_of, side_by_side
 from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
@@ -160,7 +161,7 @@ class Concatenated:
             known = concatenated([joined(fine, run.rows) for fine, run in runs], finer)
         elif known is None:
             known = concatenated([delayed(run, delay) for run in self.runs])
-        _remember(self._delayed, delay, known, DELAYS)
+        remember(self._delayed, delay, known, DELAYS)
         return known
 
     def known(self, key: Hashable, work: Callable[[Concatenated], Found]) -> Found:
@@ -168,16 +169,31 @@ class Concatenated:
         found: Found | None = self._known.get(key)
         if found is None:
             found = work(self)
-            _remember(self._known, key, found)
+            remember(self._known, key, found, MODELS)
         return found
 
     def of_model(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
         """Result of `work` for a model, of the size of the legs; cached for the last few models."""
-        return _recalled(self._of_models, model, key, work, MODELS)
+        return recalled(self._of_models, model, key, work, MODELS)
+
+    def each_of_model(
+        self, model: object, works: Sequence[tuple[Hashable, Callable[[], Found]]]
+    ) -> list[Found]:
+        """`of_model` for several keys, whose missing results are worked out side by side."""
+        found = results_of(self._of_models, model, MODELS)
+        missing = {key: work for key, work in works if key not in found}
+        done = side_by_side(list(missing.values()), int(self.steps[-1]))
+        found.update(zip(missing, done, strict=True))
+        return [found[key] for key, _ in works]
 
     def of_steps(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
         """Result of `work` for a model, of the size of the steps; cached for the last model."""
-        return _recalled(self._of_steps, model, key, work, 1)
+        return recalled(self._of_steps, model, key, work, 1)
+
+    def forget_steps(self) -> None:
+        """Drop what is cached of the size of the steps, where a task needs the memory itself."""
+        for cache in (self._features, self._delayed, self._of_steps):
+            cache.clear()
 
     def latest(self, of: tuple[object, ...], work: Callable[[], Found]) -> Found:
         """Result of `work`, cached while called with the identical objects."""
@@ -209,7 +225,7 @@ class Concatenated:
         if known is None:
             of_steps = zip(self.runs, self.known("messages", _messages), strict=True)
             known = _drives_joined([_drive_of(run, its, robot, wiring) for run, its in of_steps])
-            _remember(self._features, key, known, DRIVES)
+            remember(self._features, key, known, DRIVES)
         return known
 
 
@@ -281,24 +297,6 @@ def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:
     return DriveOfRun.by({name: partial(joined, name) for name in QUANTITIES})
 
 
-def _recalled(
-    memory: list[tuple[object, dict[Hashable, Any]]],
-    model: object,
-    key: Hashable,
-    work: Callable[[], Found],
-    most: int,
-) -> Found:
-    found = next((found for known, found in memory if known == model), None)
-    if found is None:
-        found = {}
-        memory.append((model, found))
-        del memory[:-most]
-    if key not in found:
-        found[key] = work()
-    value: Found = found[key]
-    return value
-
-
 def _counts(runs: Concatenated) -> WheelTravel[Floats]:
     """Counts of both wheels in all steps."""
     counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
@@ -307,14 +305,6 @@ def _counts(runs: Concatenated) -> WheelTravel[Floats]:
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
     return np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp)
-
-
-def _remember(memory: dict[Any, Any], key: Any, value: Any, most: int = MODELS) -> None:
-    """Cache a value as the latest; the least recently used is dropped."""
-    memory.pop(key, None)
-    while len(memory) >= most:
-        del memory[next(iter(memory))]
-    memory[key] = value
 
 
 def _joined(parts: Sequence[Any]) -> Any:

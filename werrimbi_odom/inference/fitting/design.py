@@ -103,22 +103,31 @@ def jacobian_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParamete
 
     A per-run parameter is moved in all runs at once, since a leg depends only on its own run.
     """
-    columns = [
-        runs.of_model(model, number, partial(_slope, runs, model, number)) for number in numbers
-    ]
-    return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
+    moving = [number for number in numbers if number.name != YAW_DRIFT]
+    sides = [(number, side) for number in moving for side in (number.scale, -number.scale)]
+    poses = runs.each_of_model(
+        model, [(key, partial(_legs_of_moved, runs, model, *key)) for key in sides]
+    )
+    both = zip(moving, poses[::2], poses[1::2], strict=True)
+    columns = {number: (one - other) / _width(model, number) for number, one, other in both}
+    drift = np.outer(runs.duration, [0.0, 0.0, 1.0])
+    parts = [columns.get(number, drift) for number in numbers]
+    return np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
 
 
-def _slope(runs: Concatenated, model: Model, number: FreeParameter) -> Floats:
-    if number.name == YAW_DRIFT:
-        return np.outer(runs.duration, [0.0, 0.0, 1.0])
-    ahead, behind = model.moved_by(number, number.scale), model.moved_by(number, -number.scale)
+def _legs_of_moved(runs: Concatenated, model: Model, number: FreeParameter, move: float) -> Floats:
     # Inputs of the effects hardly change with a radius; they are computed once, for the current
     # one.
     looked_at = model.robot if number.name in MULTIPLIERS else None
-    width = ahead.value(number) - behind.value(number) if not number.per_run else 2.0 * number.scale
-    poses = [predicted_legs(side, runs, looked_at) for side in (ahead, behind)]
-    return np.asarray((poses[0] - poses[1]) / width)
+    return predicted_legs(model.moved_by(number, move), runs, looked_at)
+
+
+def _width(model: Model, number: FreeParameter) -> float:
+    """Distance between the two sides of a difference, which bounds may shorten."""
+    if number.per_run:
+        return 2.0 * number.scale
+    ahead, behind = (model.moved_by(number, side) for side in (number.scale, -number.scale))
+    return ahead.value(number) - behind.value(number)
 
 
 def stacked(

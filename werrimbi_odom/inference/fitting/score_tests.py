@@ -133,20 +133,17 @@ def signatures(
     if runs.headings_alone:
         tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
-    columns, owners = [], []
+    works, owners = [], []
     for number, candidate in enumerate(tried):
         for coordinate in candidate.round_the_wheel or candidate.coordinates:
-            columns.append(
-                runs.of_model(
-                    point.model,
-                    (candidate.effect.apply, *coordinate.items()),
-                    partial(_slope, runs, point.model, candidate, coordinate, prediction),
-                )
+            key = (candidate.effect.apply, *coordinate.items())
+            works.append(
+                (key, partial(_slope, runs, point.model, candidate, coordinate, prediction))
             )
             owners.append(number)
-    if not columns:
+    if not works:
         return np.zeros(0), iter(())
-    change = np.stack(columns, axis=-1)
+    change = np.stack(runs.each_of_model(point.model, works), axis=-1)
     marks = unexpected(runs, point, prediction).marks(change)[..., :-1]
     frame, rest = residual_innovations(runs, point, numbers, prediction)
     owned = np.array(owners)
