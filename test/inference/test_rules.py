@@ -73,6 +73,7 @@ ELSEWHERE = {
         "_BLURRED": "a rank",
         "_SAME": "rounding",
     },
+    "fitting/caches.py": {"THREADS": "time that it takes"},
     "fitting/candidate_starts.py": {"_ALL_ROUND": "where a fit starts", "_SHARES": "the same"},
     "fitting/start_headings.py": {"_ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
     "fitting/filtering.py": {
