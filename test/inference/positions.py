@@ -11,6 +11,7 @@ import numpy as np
 
 from test.model.drives import ROBOT, read
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
 FRAME = 1.5
@@ -23,6 +24,7 @@ def positions_of_a_point(
     yaw_rates: Sequence[float],
     point: complex = 0j,
     *,
+    truth: Robot = ROBOT,
     seed: int = 0,
 ) -> Run:
     """Ten seconds at each speed and yaw rate, with a rest before and after.
@@ -32,7 +34,7 @@ def positions_of_a_point(
     random = np.random.default_rng(seed)
     driven = [np.pad(np.repeat(part, 200), 40) for part in (speeds, yaw_rates)]
     ticks = read(ROBOT, 20.0, *driven)
-    path = trajectory(ROBOT, *ticks)
+    path = trajectory(truth, *ticks)
     place = np.exp(1j * FRAME) * (path.x + 1j * path.y + point * np.exp(1j * path.yaw))
     noise = random.normal(0.0, 1e-3, (2, place.size))
     reference = Reference(

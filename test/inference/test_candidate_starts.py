@@ -75,3 +75,13 @@ def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: compl
     found = diagnose([circle], ROBOT, LIBRARY)
     assert found.verdict == "ambiguous"
     assert "reference_lever_arm" in found.rivals
+
+
+def test_on_one_circle_at_one_speed_many_effects_are_rivals_of_unequal_wheels() -> None:
+    load = find("load_transfer").using(lateral=0.02, longitudinal=0.0)
+    circle = positions_of_a_point(
+        "circle", [0.3] * 5, [0.3] * 5, truth=replace(ROBOT, effects=(load,))
+    )
+    found = diagnose([circle], ROBOT, LIBRARY)
+    assert found.verdict == "ambiguous"
+    assert {"unequal_wheel_radii", "load_transfer"} <= set(found.rivals)

@@ -115,13 +115,15 @@ def instead_of_calibration(
     looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
     found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
     results = []
-    for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
+    penalty = calibrated.penalty_of_one
+    best = sorted(best_of_each(found), key=lambda score: penalty * score.degrees - score.gain)
+    for score in worth_fitting(best, INSTEAD_FITTED):
         start = started_with(runs, point, score)
         numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
-            penalty = calibrated.penalty_of_one * len(fit.free) * calibrated.scatter
-            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + penalty))
+            paid = penalty * len(fit.free) * calibrated.scatter
+            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + paid))
     return tuple(sorted(results, key=lambda item: item.total))
 
 
@@ -216,7 +218,7 @@ def best_of_each(found: Sequence[Score]) -> list[Score]:
     return list(best.values())
 
 
-def worth_fitting(ordered: Sequence[Score]) -> list[Score]:
+def worth_fitting(ordered: Sequence[Score], most: int = REFITTED) -> list[Score]:
     """The few that may turn out best after a full fit."""
     if not ordered:
         return []
@@ -225,4 +227,4 @@ def worth_fitting(ordered: Sequence[Score]) -> list[Score]:
         score
         for score in ordered[:SHORTLISTED]
         if score.gain > WORTH_A_FIT * top and score.gain > score.degrees + SCORE_FLOOR
-    ][:REFITTED]
+    ][:most]
