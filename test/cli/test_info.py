@@ -18,8 +18,10 @@ from test.inference.driven import run_of
 from test.inference.test_no_driving import held
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.files.first_robot import of_controller, of_urdf, with_steps
+from werrimbi_odom.files.controller_wheels import of_controller
+from werrimbi_odom.files.first_robot import with_steps
 from werrimbi_odom.files.stamps import _judged
+from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.report.info_words import _clock
 from werrimbi_odom.simulation.lidar import Lidar
 

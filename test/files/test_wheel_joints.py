@@ -16,7 +16,7 @@ import pytest
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.first_robot import of_urdf
+from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
 
 MS = 10**6

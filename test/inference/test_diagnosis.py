@@ -14,14 +14,10 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.diagnosis.evidence import (
-    AMOUNTS,
-    Amount,
-    step_jacobians,
-    summed_over_legs,
-)
+from werrimbi_odom.inference.diagnosis.evidence import summed_over_legs
 from werrimbi_odom.inference.diagnosis.search import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount, step_jacobians
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting import caches
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated

@@ -29,7 +29,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount
+from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount
 from werrimbi_odom.inference.drafting.draft import Draft
 from werrimbi_odom.inference.drafting.plan import keeps_laws, loaded
 from werrimbi_odom.inference.drafting.regression import selections

@@ -20,7 +20,8 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_for_fit, record_of
+from werrimbi_odom.inference.legs.aligned_run import record_of
+from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_for_fit
 from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot

@@ -16,14 +16,9 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.legs.cutting import (
-    MatchedRun,
-    cut_for_fit,
-    divided,
-    every_pose,
-    match,
-    record_of,
-)
+from werrimbi_odom.inference.legs.aligned_run import record_of
+from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, match
+from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
 from werrimbi_odom.inference.rules import RATE_OF_FIT
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats

@@ -24,7 +24,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.agreement import Agreement
 from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.legs.no_driving import _judged, _stretches, looked_at
+from werrimbi_odom.inference.legs.measured_motion import judged_motion
+from werrimbi_odom.inference.legs.no_driving import _stretches, looked_at
 from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
@@ -334,7 +335,7 @@ def test_nothing_is_expected_of_a_robot_whose_wheels_stand() -> None:
     time = 0.1 * np.arange(200.0)
     windows = Windows(0.1, 5, time, wheels, wheels, wheels, seen, np.ones(200))
     agreement = Agreement(windows, shown, shown, 0.0, np.array([1.0, 0.0, 0.5]))
-    assert _stretches(_judged(agreement, 0.0018, 0.03, turns=False)) == []
+    assert _stretches(judged_motion(agreement, 0.0018, 0.03, turns=False)) == []
 
 
 def test_a_slow_carry_is_found_however_roughly_wheels_follow_their_law() -> None:
@@ -347,7 +348,7 @@ def test_a_slow_carry_is_found_however_roughly_wheels_follow_their_law() -> None
     windows = Windows(0.1, 5, time, wheels, wheels, wheels, seen, np.ones(200))
     agreement = Agreement(windows, wheels, wheels, 0.0, np.array([1.0, 0.0, 0.0]))
     slowest = 0.1 * float(np.median(wheels[wheels > windows.still]))
-    (found,) = _stretches(_judged(agreement, slowest, 0.03, turns=False))
+    (found,) = _stretches(judged_motion(agreement, slowest, 0.03, turns=False))
     assert found == pytest.approx((10.0, 15.0), abs=0.3)
 
 

@@ -31,7 +31,7 @@ ELSEWHERE = {
         "_MOST": "the same, upwards",
     },
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
-    "changes/history.py": {"_MEDIAN_CHI2_1": "a quantile"},
+    "changes/scatter.py": {"_MEDIAN_CHI2_1": "a quantile"},
     "changes/search.py": {"_FEW": "time that it takes"},
     "distributions.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
@@ -65,7 +65,8 @@ ELSEWHERE = {
         "_BLOCK": "size of a block",
     },
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
-    "diagnosis/evidence.py": {"BATCH": "size of a block", "_BLOCK": "size of a block"},
+    "diagnosis/evidence.py": {"BATCH": "size of a block"},
+    "diagnosis/step_jacobians.py": {"BLOCK": "size of a block"},
     "comparison/reference_checks.py": {"_PAIRED": "time that it takes"},
     "diagnosis/response_curve.py": {
         "PARTS": "of a figure",

@@ -31,7 +31,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.leg_errors import leg_errors, statistics
-from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.law_forms import Seen, spot_form
 from werrimbi_odom.inference.drafting.plan import loaded
 from werrimbi_odom.inference.drafting.source import source_of

@@ -19,9 +19,9 @@ from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along
 from werrimbi_odom.inference.comparison.over_variable import once_a_turn, over_a_turn, wheel_errors
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.response_curve import before_after, parts_of, response
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.model.effect_declarations import DRAWINGS

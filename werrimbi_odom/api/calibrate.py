@@ -23,8 +23,9 @@ from werrimbi_odom.inference.calibration.noise_likelihood import design
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
-from werrimbi_odom.inference.legs.cutting import MatchedRun, match_for_fit, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.calibration.document import calibration_document, leg_figure, noise_figure

@@ -17,22 +17,18 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of
 from werrimbi_odom.files.columns import without_zeros
-from werrimbi_odom.files.first_robot import (
-    FirstRobot,
-    of_controller,
-    of_urdf,
-    with_driver,
-    with_steps,
-)
+from werrimbi_odom.files.controller_wheels import of_controller
+from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart, of_another_robot
+from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.counters import counters_of
-from werrimbi_odom.inference.legs.cutting import record_of
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.recording_info import Held, Info

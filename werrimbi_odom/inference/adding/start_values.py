@@ -35,7 +35,8 @@ from werrimbi_odom.inference.fitting.score_tests import (
     parameters_of_candidate,
     scores,
 )
-from werrimbi_odom.inference.legs.cutting import at_edges, match_for_fit, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
+from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.fitting.noise import (
 )
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,15 +27,15 @@ from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, m
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.numbers import (
     MOUNT,
-    NumberGroup,
     groups_of,
     numbers_of,
     value_at,
 )
+from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
 from werrimbi_odom.inference.changes.search import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import fit_calibration
-from werrimbi_odom.inference.distributions import bonferroni, chi2_survival, fisher_survival
+from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
@@ -48,13 +47,11 @@ from werrimbi_odom.inference.rules import (
     PENALTY_FLOOR,
     SCATTER_DRIVES,
     SURE,
-    SURE_OF_A_CHANGE,
 )
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 KINDS: tuple[Kind, ...] = ("step", "alone", "trend")
-_MEDIAN_CHI2_1 = 0.4549
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,13 +152,13 @@ def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Cour
     own = _alone(drives, given, limits)
     std = np.sqrt(np.einsum("rii->ri", own.spread))
     heard = std < 0.5 * limits
-    scatter = np.array([_scatter(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
+    scatter = np.array([scatter_of(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
     wide = drives.with_scatter(scatter)
     penalty = max(PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
     groups = groups_of(names, given, given.size)
     most = MOST_CHANGES if len(told) >= SCATTER_DRIVES else 1
     found = find_changes(wide, groups, penalty, KINDS, most)
-    lasting = _beyond_scatter(wide, found, own, scatter)
+    lasting = beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
         found = find_changes(wide, lasting, penalty, KINDS) if lasting else _constant(wide)
     values = Values(given[None], np.zeros((1, given.size, given.size)))
@@ -181,15 +178,6 @@ def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Cour
         moves_of(found, numbers, names, [str(number) for number in range(len(told))]),
         _off(names, given, found, heard),
     )
-
-
-class Values(NamedTuple):
-    """Estimates of s parameters in each of R drives."""
-
-    value: Floats
-    """Shape (R, s)."""
-    spread: Floats
-    """Covariance, (R, s, s)."""
 
 
 def _numbers(told: Sequence[DriveEstimate], robot: Robot) -> tuple[FreeParameter, ...]:
@@ -229,51 +217,6 @@ def _silenced(
         (np.where(told, value, np.nan), np.where(told, std, np.nan))
         for (value, std), told in zip(shown, heard, strict=True)
     ]
-
-
-def _scatter(values: Floats, std: Floats) -> float:
-    """Standard deviation from drive to drive, by the median of successive differences."""
-    if values.size < SCATTER_DRIVES:
-        return 0.0
-    squares = np.diff(values) ** 2
-    noise = std[1:] ** 2 + std[:-1] ** 2
-
-    def lacking(size: float) -> float:
-        return float(np.median(squares / (noise + 2.0 * size**2))) - _MEDIAN_CHI2_1
-
-    low, high = 0.0, math.sqrt(float(np.max(squares)))
-    if lacking(low) <= 0.0:
-        return 0.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if lacking(middle) > 0.0 else (low, middle)
-    return high
-
-
-def _beyond_scatter(
-    drives: DriveNumbers, found: ChangePoints, own: Values, scatter: Floats
-) -> list[NumberGroup]:
-    """Groups of the changes that exceed the scatter between drives, by Fisher's F.
-
-    The scatter is estimated from few drives, separately for each parameter. So the test uses the
-    deviations of a parameter from its level, with the degrees of freedom of the drives.
-    """
-    lasting = []
-    for step in found.steps:
-        usual, free = 1.0, math.inf
-        for name in step.group.numbers:
-            number = drives.names.index(name)
-            spread = own.spread[:, number, number] + scatter[number] ** 2
-            about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
-            moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
-            left = drives.count - 1 - moved
-            if left < 1:
-                return []
-            usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
-        worth = step.gain / step.degrees / usual
-        if bonferroni(found.tried, fisher_survival(worth, step.degrees, free)) < SURE_OF_A_CHANGE:
-            lasting.append(step.group)
-    return lasting
 
 
 def _constant(drives: DriveNumbers) -> ChangePoints:

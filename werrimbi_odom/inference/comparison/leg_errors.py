@@ -23,7 +23,7 @@ from werrimbi_odom.inference.fitting.likelihood import (
     wheel_covariance,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion

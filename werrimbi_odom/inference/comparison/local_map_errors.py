@@ -23,7 +23,8 @@ from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
-from werrimbi_odom.inference.legs.cutting import AlignedRun, cut_for_fit
+from werrimbi_odom.inference.legs.cutting import cut_for_fit
+from werrimbi_odom.inference.legs.matched_run import AlignedRun
 from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats

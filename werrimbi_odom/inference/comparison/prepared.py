@@ -27,20 +27,12 @@ from werrimbi_odom.inference.comparison.residuals import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.counters import Counters
-from werrimbi_odom.inference.legs.cutting import (
-    AlignedRun,
-    cut_for_fit,
-    divided,
-    every_pose,
-    leg_ends,
-    match_for_fit,
-    record_of,
-)
-from werrimbi_odom.inference.legs.cutting import (
-    joined as joined_legs,
-)
+from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, leg_ends, match_for_fit
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.matched_run import AlignedRun, divided
+from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     LEG_LENGTHS,

@@ -12,14 +12,21 @@ innovations.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from werrimbi_odom.inference.diagnosis.step_jacobians import (
+    AMOUNTS,
+    BLOCK,
+    OF_WHEELS,
+    Amount,
+    StepJacobian,
+    shares_of_steps,
+    step_jacobians,
+)
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -32,51 +39,14 @@ from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
-from werrimbi_odom.inference.fitting.leg_noise import DrivenPath
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
-from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.reference_view import View
 
 BATCH = 500_000
 """Legs times columns that the filter processes at once."""
-
-CHANNELS = ("left", "right", "along", "sideways", "heading")
-_OF_WHEELS = CHANNELS[:3]
-
-
-@dataclass(frozen=True, slots=True)
-class Amount:
-    """Error channel, and the quantity that the error is proportional to."""
-
-    channel: str
-    """left, right, along (both wheels alike), sideways or heading."""
-    per: str
-    """travel (signed), path (unsigned), turn or duration."""
-
-    @property
-    def of_wheels(self) -> bool:
-        """Whether the error is a separate one of each wheel."""
-        return self.channel in _OF_WHEELS and self.per != "turn"
-
-
-AMOUNTS = (
-    Amount("left", "travel"),
-    Amount("right", "travel"),
-    Amount("along", "travel"),
-    Amount("along", "path"),
-    Amount("along", "turn"),
-    Amount("sideways", "travel"),
-    Amount("sideways", "path"),
-    Amount("sideways", "turn"),
-    Amount("heading", "turn"),
-    Amount("heading", "travel"),
-    Amount("heading", "path"),
-    Amount("heading", "duration"),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +121,7 @@ def dependences(
             tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
-    shares = _shares(path_of(point.model, runs), runs.drive(point.model.robot).duration)
+    shares = shares_of_steps(path_of(point.model, runs), runs.drive(point.model.robot).duration)
     cells = [
         Dependence(
             amount,
@@ -203,11 +173,11 @@ class _Cells(NamedTuple):
 def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]]:
     """Cells with their changes of the legs (m, 3, amounts * k), in blocks that fit into memory."""
     path = path_of(point.model, runs)
-    of_wheels = [amount for amount in AMOUNTS if amount.channel in _OF_WHEELS]
+    of_wheels = [amount for amount in AMOUNTS if amount.channel in OF_WHEELS]
     both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
     left, right = step_jacobians(runs, path, AMOUNTS, point)
-    for begin in range(0, both.shape[0], _BLOCK):
-        steps = np.arange(begin, min(begin + _BLOCK, both.shape[0]))
+    for begin in range(0, both.shape[0], BLOCK):
+        steps = np.arange(begin, min(begin + BLOCK, both.shape[0]))
         both[steps] = left(steps) + right(steps)
     for variable in variables_of(runs, point.model):
         for form, (of_left, of_right) in functions_of(variable).items():
@@ -227,11 +197,6 @@ def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]
                 yield _Cells(variable, form, chosen), shaped.reshape(runs.count, 3, -1)
 
 
-StepJacobian = Callable[[NDArray[np.intp]], Floats]
-"""Function of step numbers (...): change of the legs' relative poses for unit errors of these
-steps, (..., p). It is evaluated on demand, as the array for all steps is large."""
-
-
 def summed_over_legs(runs: Concatenated, functions: Floats, pushes: StepJacobian) -> Floats:
     """Sum functions (n, k) times pushes over the steps of each leg: (m, p, k)."""
     size = runs.end - runs.begin
@@ -240,104 +205,8 @@ def summed_over_legs(runs: Concatenated, functions: Floats, pushes: StepJacobian
     order = np.argsort(size, kind="stable")
     for alike in np.split(order, np.flatnonzero(np.diff(size[order])) + 1):
         within = np.arange(size[alike[0]])
-        for begin in range(0, alike.size, max(1, _BLOCK // max(within.size, 1))):
-            legs = alike[begin : begin + max(1, _BLOCK // max(within.size, 1))]
+        for begin in range(0, alike.size, max(1, BLOCK // max(within.size, 1))):
+            legs = alike[begin : begin + max(1, BLOCK // max(within.size, 1))]
             steps = runs.begin[legs, None] + within
             found[legs] = pushes(steps).swapaxes(1, 2) @ functions[steps]
     return found
-
-
-_BLOCK = 4096
-"""Steps in a block, so that their arrays fit into the processor's cache."""
-
-
-def step_jacobians(
-    runs: Concatenated, path: DrivenPath, amounts: Sequence[Amount], point: Point
-) -> tuple[StepJacobian, StepJacobian]:
-    """Change of the legs' relative poses for unit errors of steps: of left wheel, of right wheel.
-
-    Three coordinates for each of the amounts, one amount after the other, (..., 3 a). For an amount
-    of the robot as a whole, the second is zero.
-    """
-    robot = point.model.robot
-    levers = runs.of_steps(
-        point.model, "levers", lambda: _levers(runs, path, view_of(robot.effects))
-    )
-    bases = _bases(path, runs.drive(robot).duration)
-
-    def pushed(own: _Levers, amount: Amount, at: NDArray[np.intp], side: Side) -> Floats:
-        if amount.channel == _OTHER[side] or (side == "right" and not amount.of_wheels):
-            return np.zeros((*at.shape, 3))
-        base = bases[_base_of(amount, side)][at]
-        base = np.abs(base) if amount.per == "path" else base
-        if amount.of_wheels:
-            return own.seen(0.5 * base, (-base if side == "left" else base) / robot.track)
-        if amount.channel == "along":
-            return own.seen(base, None)
-        if amount.channel == "sideways":
-            return own.seen(np.asarray(1j * base), None)
-        return own.seen(None, base)
-
-    def of_side(side: Side, at: NDArray[np.intp]) -> Floats:
-        own = _Levers(levers.along[at], levers.turn[at])
-        return np.concatenate([pushed(own, amount, at, side) for amount in amounts], axis=-1)
-
-    return partial(of_side, "left"), partial(of_side, "right")
-
-
-Side = Literal["left", "right"]
-_OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
-
-
-def _bases(path: DrivenPath, duration: Floats) -> dict[str, Floats]:
-    """What errors are proportional to, in each step, (n,); a path is the size of a travel."""
-    (left, right), (along, _, turn) = path.travel, path.motion
-    return {"left": left, "right": right, "along": along, "turn": turn, "duration": duration}
-
-
-def _base_of(amount: Amount, side: Side) -> str:
-    """Name of the quantity for one wheel."""
-    if amount.of_wheels:
-        return side
-    return "along" if amount.per in ("travel", "path") else amount.per
-
-
-def _shares(path: DrivenPath, duration: Floats) -> dict[Amount, tuple[Floats, Floats]]:
-    """`Dependence.shares` of all amounts."""
-    sizes = {name: np.abs(base) for name, base in _bases(path, duration).items()}
-
-    def of_side(amount: Amount, side: Side) -> Floats:
-        return np.zeros(0) if amount.channel == _OTHER[side] else sizes[_base_of(amount, side)]
-
-    return {amount: (of_side(amount, "left"), of_side(amount, "right")) for amount in AMOUNTS}
-
-
-class _Levers(NamedTuple):
-    """Lever arms: how errors of steps move the end of their leg, in the frame of its start."""
-
-    along: NDArray[np.complex128]
-    """For a metre along."""
-    turn: NDArray[np.complex128]
-    """For a radian [m]."""
-
-    def seen(self, moved: Floats | NDArray[np.complex128] | None, turn: Floats | None) -> Floats:
-        """Relative pose for errors along (sideways imaginary) and in heading, (..., 3)."""
-        found = np.zeros((*self.along.shape, 3))
-        for part, lever in ((moved, self.along), (turn, self.turn)):
-            if part is not None:
-                place = lever * part
-                found[..., 0] += place.real
-                found[..., 1] += place.imag
-        if turn is not None:
-            found[..., 2] = turn
-        return found
-
-
-def _levers(runs: Concatenated, path: DrivenPath, view: View) -> _Levers:
-    leg = np.searchsorted(runs.begin, np.arange(path.motion.turn.size), side="right") - 1
-    leg = np.clip(leg, 0, None)
-    facing = np.exp(-1j * (path.yaw[runs.begin] + view.yaw))[leg]
-    middle = np.exp(1j * (path.yaw[:-1] + 0.5 * path.motion.turn))
-    marker = path.position + complex(view.ahead, view.left) * np.exp(1j * path.yaw)
-    arm = marker[runs.end][leg] - 0.5 * (path.position[:-1] + path.position[1:])
-    return _Levers(facing * middle, 1j * facing * arm)

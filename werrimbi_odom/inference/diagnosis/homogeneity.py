@@ -18,8 +18,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, step_jacobians, summed_over_legs
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, summed_over_legs
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.step_jacobians import step_jacobians
 from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
 from werrimbi_odom.inference.fitting.clusters import (

@@ -29,7 +29,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
     parameters_of_candidate,
     scores,
 )
-from werrimbi_odom.inference.legs.cutting import at_edges
+from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.rules import (
     INSTEAD_FITTED,
     REFITTED,

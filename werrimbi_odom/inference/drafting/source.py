@@ -7,7 +7,7 @@ from __future__ import annotations
 import textwrap
 
 from werrimbi_odom.effects import shapes
-from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.law_forms import INDENT, Form, Seen
 
 _ERROR = {

@@ -13,12 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.evidence import (
-    BATCH,
-    Amount,
-    step_jacobians,
-    summed_over_legs,
-)
+from werrimbi_odom.inference.diagnosis.evidence import BATCH, summed_over_legs
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount, step_jacobians
 from werrimbi_odom.inference.drafting.terms import Term
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected

@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects.shapes import mean_product, mean_ratio, mean_step, steady
-from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.law_forms import unit_of
 from werrimbi_odom.inference.drafting.variable_source import Signal
 from werrimbi_odom.inference.rules import CLEAR_OF_ZERO, GATE_SPEEDS, GATE_WIDTH, ROLLS_BACKWARDS

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.formula import in_a_line, symbols_of
 from werrimbi_odom.inference.drafting.law_forms import INDENT, Declared, Form, Seen, wide
 from werrimbi_odom.inference.drafting.terms import Term, unit_of_coefficient

@@ -23,8 +23,8 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
+from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
 from werrimbi_odom.inference.drafting.plan import (

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.caches import recalled, remember, results_of, side_by_side
-from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
+from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
 from werrimbi_odom.model.driven_motion import features

@@ -32,7 +32,7 @@ from werrimbi_odom.inference.fitting.identifiable import Directions, determined,
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
-from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.rules import (
     JUMP_OF_A_LEG,
     LEAST_WHEEL_NOISE,

@@ -32,7 +32,7 @@ from werrimbi_odom.inference.fitting.filtering import (
 )
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
 from werrimbi_odom.inference.rules import EVENT_STEP
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath, noise_of_legs
-from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.course import followed
 from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

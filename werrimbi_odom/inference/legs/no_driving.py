@@ -10,44 +10,35 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
+from scipy.ndimage import median_filter
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
-from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.clock import clock_offset
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
+from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
-    NO_DRIVING_EDGE,
     NO_DRIVING_FEWEST,
     NO_DRIVING_FEWEST_FIRM,
     NO_DRIVING_FIRM,
     NO_DRIVING_FOLLOWS,
-    NO_DRIVING_GENTLE,
     NO_DRIVING_GOES,
     NO_DRIVING_JOINED,
-    NO_DRIVING_LATE,
     NO_DRIVING_MORE,
     NO_DRIVING_MOST,
-    NO_DRIVING_NOISE,
-    NO_DRIVING_OFF,
     NO_DRIVING_QUICK,
-    NO_DRIVING_ROUGH,
     NO_DRIVING_SET_DOWN,
     NO_DRIVING_SILENT,
     NO_DRIVING_SPLIT,
-    NO_DRIVING_STOPPED,
-    NO_DRIVING_STOPPED_FOR,
     NO_DRIVING_TREMBLES,
     NO_DRIVING_TURN,
     NO_DRIVING_TURNS,
@@ -64,31 +55,6 @@ HELD = "the wheels turned and the robot did not: held, or against a wall"
 CARRIED = "the robot moved and its wheels did not: carried, or pushed"
 UNKNOWN = "the robot drove, and its heading is not known: it was held or carried before or after"
 BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
-
-
-@dataclass(frozen=True, slots=True)
-class _MeasuredMotion:
-    """One quantity measured by the reference, compared with the wheels; k windows."""
-
-    agreement: Agreement
-    beyond: Floats
-    """Deviation of the measurement over its threshold; (k,)."""
-    edge: NDArray[np.bool_]
-    """Windows that are outliers if next to one above the threshold, (k,)."""
-    speaks: NDArray[np.bool_]
-    """Windows in which wheels and robot clearly move together, (k,)."""
-    enough: float
-    """Least total turn [rad] or path [m] that a stretch must put in doubt."""
-
-    @property
-    def time(self) -> Floats:
-        """Midpoints of the windows [s]."""
-        return self.agreement.windows.time
-
-    def at(self, values: Floats, time: Floats) -> Floats:
-        """Interpolate values of the windows at some times."""
-        known = np.isfinite(values)
-        return np.interp(time, self.time[known], values[known])
 
 
 def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
@@ -115,18 +81,18 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:
     """Find stretches in which the robot was held or carried, in order."""
-    seen: list[_MeasuredMotion] = []
+    seen: list[MeasuredMotion] = []
     turns = windows_of(counters, reference, robot, ways=False)
     by_turns = None if turns is None else turns_agree(turns, robot.track)
     if by_turns is not None:
         span = by_turns.windows.steps * by_turns.windows.step
-        seen.append(_judged(by_turns, NO_DRIVING_TURNS * span, NO_DRIVING_TURN, turns=True))
+        seen.append(judged_motion(by_turns, NO_DRIVING_TURNS * span, NO_DRIVING_TURN, turns=True))
     ways = windows_of(counters, reference, robot, ways=True)
     by_ways = None if ways is None else ways_agree(ways, by_turns, robot.track)
     if by_ways is not None:
         rolling = by_ways.windows.rolled > by_ways.windows.still
         typical = float(np.median(by_ways.gross[rolling]))
-        seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY, turns=False))
+        seen.append(judged_motion(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY, turns=False))
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     if by_turns is not None:
@@ -145,76 +111,6 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     return tuple(parts)
 
 
-def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> _MeasuredMotion:
-    """Flag windows whose deviation neither driving nor clock jitter explains.
-
-    Parameters
-    ----------
-    slowest : float
-        Turn or path per window below which nothing counts as moving.
-    """
-    found = _standing(found)
-    windows, expected, gross = found.windows, found.expected, found.gross
-    reach = 2 * max(1, round(NO_DRIVING_LATE / windows.step)) + 1
-    low, high = minimum_filter1d(expected, reach), maximum_filter1d(expected, reach)
-    off = np.maximum(np.maximum(low - windows.measured, windows.measured - high), 0.0)
-    rolls = windows.rolled > windows.still
-    keeps = rolls & (gross > 0.0) & (found.off <= NO_DRIVING_EDGE * gross)
-    noise = float(np.median(found.off[keeps]))
-    rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
-    # How roughly wheels follow their law says nothing of a robot whose wheels stand. (And what is
-    # measured at rest may all be of one carry.)
-    gentle = keeps & (gross <= np.quantile(gross[keeps], NO_DRIVING_GENTLE))
-    scatter = np.where(rolls, noise, min(noise, float(np.median(found.off[gentle]))))
-    least = np.maximum(NO_DRIVING_NOISE * scatter, slowest)
-    beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
-    if turns:  # a gentle path is already most of what both wheels could do
-        beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
-    # Noise must not lengthen a stretch. At rest, position noise acts in two coordinates, in motion
-    # in one along the path (medians, by sigma); and it seldom halves a true displacement.
-    at_rest = 1.0 if turns else np.sqrt(2.0 * np.log(2.0)) * MEDIAN_TO_SIGMA
-    halved = np.abs(windows.measured) < 0.5 * np.abs(expected)
-    unsure = least * np.where(halved, 0.5, np.where(np.abs(expected) > least, 1.0, at_rest))
-    edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, unsure)
-    moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
-    return _MeasuredMotion(found, beyond, edge, moves & keeps, enough)
-
-
-def _standing(found: Agreement) -> Agreement:
-    """Set the prediction to zero, or to what the wheels' creep gives, where wheels stand.
-
-    A law fitted to straight driving predicts arbitrary turns, and a driver that integrates speeds
-    lets the wheels creep at rest. But a robot may also spin that slowly.
-    """
-    windows = found.windows
-    expected, gross = (
-        np.where(windows.rolled > windows.still, each, 0.0)
-        for each in (found.expected, found.gross)
-    )
-    creeps = found.off < np.abs(windows.measured)
-    return replace(found, expected=np.where(creeps, found.expected, expected), gross=gross)
-
-
-def _stopped(found: Agreement, low: Floats, high: Floats, least: Floats) -> NDArray[np.bool_]:
-    """Windows in a row in which the robot should clearly move and does not; (k,).
-
-    Parameters
-    ----------
-    low, high : ndarray, shape (k,)
-        Range of the prediction over a window and its neighbours.
-    least : ndarray, shape (k,)
-        Threshold for clear motion.
-    """
-    windows = found.windows
-    expected = np.where(low * high > 0.0, np.minimum(np.abs(low), np.abs(high)), 0.0)
-    still = np.abs(windows.measured) < NO_DRIVING_STOPPED * expected
-    rows = np.zeros(still.size, dtype=np.bool_)
-    for first, last in _runs_of(still & (expected > least)):
-        if (last + 1 - first) * windows.step >= NO_DRIVING_STOPPED_FOR:
-            rows[first : last + 1] = True
-    return rows
-
-
 def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
     """Stretches with turns that the wheels cannot produce, where the drive fits no law of turns."""
     slowest = NO_DRIVING_TURNS * windows.steps * windows.step
@@ -225,7 +121,7 @@ def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
     half = 0.5 * windows.steps * windows.step
     last_of_all = float(windows.time[-1]) + half
     found: list[NoDriving] = []
-    for first, last in _runs_of(turned > np.maximum(slowest, could)):
+    for first, last in runs_of(turned > np.maximum(slowest, could)):
         inside = slice(first, last + 1)
         if np.count_nonzero(sure[inside]) < windows.steps + NO_DRIVING_MORE:
             continue
@@ -239,14 +135,14 @@ def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
     return found
 
 
-def _stretches(seen: _MeasuredMotion) -> list[tuple[float, float]]:
+def _stretches(seen: MeasuredMotion) -> list[tuple[float, float]]:
     """Stretches [s] whose deviation stays above what driving explains for long enough."""
     windows, off = seen.agreement.windows, seen.agreement.off
     more = np.abs(windows.measured) > np.abs(seen.agreement.expected)
     surely = seen.beyond > 1.0
     found = []
     # A hand slows a robot unevenly: smaller deviations in between belong to the stretch.
-    for begin, end in _runs_of(surely | seen.edge):
+    for begin, end in runs_of(surely | seen.edge):
         rows = begin + np.flatnonzero(surely[begin : end + 1])
         if rows.size < max(NO_DRIVING_FEWEST_FIRM, windows.steps + 1):
             continue
@@ -271,7 +167,7 @@ def _stretches(seen: _MeasuredMotion) -> list[tuple[float, float]]:
     return found
 
 
-def _reaching(stretch: tuple[float, float], seen: Sequence[_MeasuredMotion]) -> tuple[float, float]:
+def _reaching(stretch: tuple[float, float], seen: Sequence[MeasuredMotion]) -> tuple[float, float]:
     """Extend a stretch by the adjacent outlier windows, of any measured quantity.
 
     A robot turned by hand while its wheels begin to turn can match them for a moment by chance.
@@ -286,7 +182,7 @@ def _reaching(stretch: tuple[float, float], seen: Sequence[_MeasuredMotion]) -> 
 
 
 def _joined(
-    found: Sequence[tuple[float, float]], seen: Sequence[_MeasuredMotion]
+    found: Sequence[tuple[float, float]], seen: Sequence[MeasuredMotion]
 ) -> list[tuple[float, float]]:
     """Merge stretches, and with the ends of the drive, unless driving is seen between."""
     if not found:
@@ -314,7 +210,7 @@ def _joined(
     return [(begin, end) for begin, end in joined if end > begin]
 
 
-def _by_kind(begin: float, end: float, seen: Sequence[_MeasuredMotion]) -> list[NoDriving]:
+def _by_kind(begin: float, end: float, seen: Sequence[MeasuredMotion]) -> list[NoDriving]:
     """Split a stretch by what happened in it: held, carried, or one after the other."""
     grid = np.linspace(begin, end, max(2, round((end - begin) / _GRID)))
     shares = np.stack([each.at(each.beyond, grid) for each in seen])
@@ -334,7 +230,7 @@ def _by_kind(begin: float, end: float, seen: Sequence[_MeasuredMotion]) -> list[
         weight = shares.max(axis=0)
         moved[:] = float(np.average(measured > expected, weights=weight) > 0.5)
     # Short parts take the kind of the longest: a hand comes or goes a moment sooner or later.
-    runs = [*_runs_of(moved > 0.5), *_runs_of(moved < 0.5)]
+    runs = [*runs_of(moved > 0.5), *runs_of(moved < 0.5)]
     longest = max(runs, key=lambda run: run[1] - run[0])
     for first, last in runs:
         if (last + 1 - first) * _GRID < NO_DRIVING_SPLIT:
@@ -409,15 +305,3 @@ def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[N
         if number != longest and end > begin:
             found.append(NoDriving(begin, end, parts[min(number, len(parts) - 1)].why, UNKNOWN))
     return sorted(found)
-
-
-def _runs_of(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last index of each run of True values."""
-    steps = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
-    return list(
-        zip(
-            np.flatnonzero(steps > 0).tolist(),
-            (np.flatnonzero(steps < 0) - 1).tolist(),
-            strict=True,
-        )
-    )

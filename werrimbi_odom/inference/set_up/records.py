@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.comparison.residuals import Measure
+from werrimbi_odom.inference.legs.aligned_run import usable_rows
 from werrimbi_odom.inference.legs.counters import between_messages, summed
-from werrimbi_odom.inference.legs.cutting import leg_ends, usable_rows
+from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
 from werrimbi_odom.inference.set_up.robot import mount_of

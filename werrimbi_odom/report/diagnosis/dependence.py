@@ -8,7 +8,8 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, place_of
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.style import escaped

@@ -1,0 +1,166 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Ticks and reference put on one clock, with the stretches that no leg may span."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import NoDriving, Run
+from werrimbi_odom.inference.legs.clock import clock_offset
+from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
+from werrimbi_odom.inference.legs.matched_run import AlignedRun, _poses, _typical
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.rules import (
+    FEW_POSES,
+    MOMENT,
+    NO_DRIVING_ENDS,
+    QUARTER_TURN,
+    TURN_WORTH_SAYING,
+    WAY_WORTH_SAYING,
+)
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+
+def record_of(
+    run: Run,
+    robot: Robot,
+    limits: EncoderLimits | None = None,
+    leg: float = 1.0,
+    turn: float = QUARTER_TURN,
+) -> AlignedRun:
+    """Put ticks and reference on one clock, and list the stretches to exclude.
+
+    The clocks differ by the reference's delay of the robot file, if it has one.
+
+    Parameters
+    ----------
+    run, robot, limits
+        As for `match`.
+    leg, turn : float
+        Travel that makes a leg [m, rad]; gaps are measured in legs.
+
+    Raises
+    ------
+    InputError
+        As `match`.
+    """
+    run = looked_at(run, robot, limits)
+    reference = run.reference
+    if reference is None:
+        raise InputError(
+            f"{run.path}: there is no reference to compare with "
+            "(reference.csv: t_s,x_m,y_m,yaw_rad)"
+        )
+    delay = clock_offset(robot)
+    reference = reference.earlier(delay)
+    happened, taken_out = (
+        tuple((begin - delay, end - delay) for begin, end in parts)
+        for parts in (run.happened, run.taken_out)
+    )
+    counters = counters_of(run, robot, limits)
+    first, last = float(counters.time[0]), float(counters.time[-1])
+    known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
+    rows = usable_rows(reference.time, known, first, last)
+    if rows.size < 2:
+        raise InputError(
+            f"{run.path}: fewer than two reference poses between the first tick "
+            f"(t_s {first:g}) and the last ({last:g}); are both clocks the same?"
+        )
+    measured = _poses(reference, rows)
+    found = _silences(run, robot, counters, measured.time, taken_out, leg, turn)
+    return AlignedRun(
+        run.name,
+        counters,
+        measured,
+        delay,
+        touched(measured.time, [*map(_surely_around, found), *taken_out]),
+        found,
+        _typical(reference.sigma_xy),
+        _typical(reference.sigma_yaw),
+        happened,
+    )
+
+
+def _surely_around(part: LeftOut) -> tuple[float, float]:
+    """Stretch that no leg may touch, widened where its ends are only known to half a window."""
+    unsure = NO_DRIVING_ENDS if part.why in ("held", "carried") else 0.0
+    return part.begin - unsure, part.end + unsure
+
+
+def _silences(
+    run: Run,
+    robot: Robot,
+    counters: Counters,
+    seen: Floats,
+    taken_out: Sequence[tuple[float, float]],
+    leg: float,
+    turn: float,
+) -> tuple[LeftOut, ...]:
+    """Exclusions of a run: no driving, counter jumps, and gaps of ticks or reference."""
+    way = counters.way(robot, leg, turn)
+    parts = [("the reference is", seen, np.interp(seen, counters.time, way))]
+    inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
+    parts.append(("the ticks are", counters.time[inside], way[inside]))
+    found, started = [], float(counters.time[0])
+    for who, time, gone in parts:
+        unheard = gaps_in(time, gone) & ~touched(time, taken_out)
+        for index in np.flatnonzero(unheard).tolist():
+            begin, end = float(time[index]), float(time[index + 1])
+            driven = _driven(robot, counters, begin, end)
+            words = f"{who} silent while {driven}"
+            found.append(LeftOut(run.path, begin, end, "gap", words, started))
+    others = [
+        *(NoDriving(begin, end, "counter", words) for begin, end, words in counters.leaps),
+        *(run.no_driving or ()),
+    ]
+    found += [
+        LeftOut(run.path, *part, started)
+        for part in others
+        if part.end > seen[0] and part.begin < seen[-1]
+    ]
+    return tuple(sorted(found, key=lambda part: part.begin))
+
+
+def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
+    within = (counters.time > begin) & (counters.time < end)
+    time = np.concatenate([[begin], counters.time[within], [end]])
+    left, right = (np.diff(counters.at(time), axis=0) * [robot.left_tick, robot.right_tick]).T
+    path = float(np.abs(0.5 * (left + right)).sum())
+    turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
+    words = [f"drove {path:.1f} m"] if path >= WAY_WORTH_SAYING else []
+    words += [f"turned {turned:.0f}°"] if turned >= TURN_WORTH_SAYING or not words else []
+    return f"the robot {' and '.join(words)}"
+
+
+def usable_rows(
+    time: Floats, known: NDArray[np.bool_], first: float, last: float
+) -> NDArray[np.intp]:
+    """Rows with a known value within the ticks' time span, in strictly ascending time.
+
+    Parameters
+    ----------
+    time, known : ndarray, shape (r,)
+        Time of each row of a reference [s], and whether it holds the wanted value.
+    first, last : float
+        Time of the first and the last tick [s].
+    """
+    within = known & (time >= first) & (time <= last)
+    if within.sum() < FEW_POSES:
+        # Few poses are start and end measured by tape: the robot stood still for a moment before
+        # the first tick and after the last.
+        within = known & (time >= first - MOMENT) & (time <= last + MOMENT)
+    rows = np.flatnonzero(within)
+    if rows.size == 0:
+        return rows
+    latest = np.maximum.accumulate(time[rows])
+    later = np.concatenate([[True], time[rows][1:] > latest[:-1]])
+    return np.asarray(rows[later])

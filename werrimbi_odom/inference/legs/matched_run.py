@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run on one clock, and its legs: steps split at reference poses.
+
+A reference pose falls between two tick messages. Steps are split there, in counts, so that
+splitting a step changes neither its motion nor its noise. Everything that is fitted later (radii,
+base, effects, noise) acts on these counts. So a run is split once, and again only when the
+reference's clock is shifted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference.legs.counters import Counters, nodes_at
+from werrimbi_odom.inference.legs.gaps import LeftOut, touched
+from werrimbi_odom.inference.rules import (
+    EDGE,
+    EDGE_LEGS,
+)
+from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.pose import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class AlignedRun:
+    """A run on one clock: counters, r usable reference poses, excluded stretches."""
+
+    name: str
+    counters: Counters
+    measured: Reference
+    """Usable poses, shape (r,), at the times at which they were seen."""
+    delay: float
+    """Delay of the reference by the robot that the run is cut by, which its times are free of
+    [s]."""
+    gap: NDArray[np.bool_]
+    """Excluded intervals between poses, shape (r - 1,)."""
+    left_out: tuple[LeftOut, ...]
+    sigma_xy: float | None
+    """Stated standard deviation of the reference's position [m]."""
+    sigma_yaw: float | None
+    """Stated standard deviation of the reference's heading [rad]."""
+    happened: tuple[tuple[float, float], ...] = ()
+    """See `Run.happened`; free of the delay, as `measured`."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatchedRun:
+    """A run on common nodes: n steps, m legs."""
+
+    record: AlignedRun
+    rows: NDArray[np.intp]
+    """Poses of the record at which legs begin and end, shape (m + 1,)."""
+    measured: Reference
+    """These poses."""
+    gap: NDArray[np.bool_]
+    """Legs that are gaps, as they overlap an excluded stretch; shape (m,)."""
+    delay: float
+    """Delay of the reference: what it stamps t was seen at t - delay [s]."""
+    time: Floats
+    """Stamps of the nodes, shape (n + 1,), [s]."""
+    left: Floats
+    """Counts of the left wheel in each step, shape (n,)."""
+    right: Floats
+    """Counts of the right wheel in each step, shape (n,)."""
+    ends: NDArray[np.intp]
+    """Nodes at which legs begin and end, shape (m + 1,)."""
+    channels: Mapping[str, Span[Floats]]
+    """Extra measured channels, at the start and end of each step."""
+
+    @property
+    def name(self) -> str:
+        """Name of the run."""
+        return self.record.name
+
+    @property
+    def counters(self) -> Counters:
+        """Encoder counts."""
+        return self.record.counters
+
+    @property
+    def sigma_xy(self) -> float | None:
+        """Stated standard deviation of the reference's position [m]."""
+        return self.record.sigma_xy
+
+    @property
+    def sigma_yaw(self) -> float | None:
+        """Stated standard deviation of the reference's heading [rad]."""
+        return self.record.sigma_yaw
+
+    @property
+    def intervals(self) -> Floats:
+        """Reference intervals in each leg, shape (m,): each adds an incremental error."""
+        return np.diff(self.rows).astype(np.float64)
+
+    @property
+    def stepped(self) -> NDArray[np.bool_]:
+        """Legs with an abrupt event, whose end pose may therefore be anything; shape (m,)."""
+        return touched(self.measured.time, self.record.happened)
+
+    @property
+    def legs(self) -> int:
+        """Number of legs, including those marked as gaps."""
+        return self.ends.size - 1
+
+
+def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
+    """Legs of each run that a clock shift could move outside the ticks; all False if legs are few.
+
+    Beyond the ends of the record the motion is unknown. If it begins or ends in motion, these legs
+    would count against a delay even if that is true.
+    """
+    found = []
+    for run in runs:
+        first, last = run.counters.time[0], run.counters.time[-1]
+        begin, end = run.measured.time[:-1], run.measured.time[1:]
+        outside = (begin < first + EDGE) | (end > last - EDGE)
+        found.append(outside if run.legs > EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
+    return tuple(found)
+
+
+def divided(record: AlignedRun, rows: NDArray[np.intp]) -> MatchedRun:
+    """Cut a record at the given reference poses."""
+    measured = _poses(record.measured, rows)
+    time, left, right, ends, channels = nodes_at(record.counters, measured.time)
+    gap = _gaps_between(record, rows)
+    return MatchedRun(record, rows, measured, gap, record.delay, time, left, right, ends, channels)
+
+
+def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
+    """Merge legs: keep the nodes, with legs between the given poses only."""
+    return replace(
+        run,
+        rows=rows,
+        measured=_poses(run.record.measured, rows),
+        gap=_gaps_between(run.record, rows),
+        ends=run.ends[np.searchsorted(run.rows, rows)],
+    )
+
+
+def delayed(run: MatchedRun, delay: float) -> MatchedRun:
+    """Same legs with a reference delay: what it stamps t was seen at t - `delay` [s]."""
+    if delay == run.delay:
+        return run
+    counters = run.counters
+    seen = run.measured.time + (run.record.delay - delay)
+    seen = np.clip(seen, counters.time[0], counters.time[-1])
+    time, left, right, ends, channels = nodes_at(counters, np.maximum.accumulate(seen))
+    return replace(
+        run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
+    )
+
+
+def _gaps_between(record: AlignedRun, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+    before = np.concatenate([[0], np.cumsum(record.gap)])
+    return np.asarray(np.diff(before[rows]) > 0)
+
+
+def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
+    columns: list[Any] = [reference.time, reference.x, reference.y, reference.yaw]
+    if rows.size < reference.time.size:
+        columns = [part[rows] for part in columns]
+    gyro = reference.gyro
+    if gyro is not None:
+        gyro = gyro._replace(turned=gyro.turned[rows])
+    if reference.own_axes:  # stated per scan match; a localiser states its absolute error
+        for sigma in (reference.sigma_xy, reference.sigma_yaw):
+            columns.append(None if sigma is None else sigma[rows])
+    return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
+
+
+def _typical(sigma: Floats | None) -> float | None:
+    """Root mean square of a stated noise; None if there is none."""
+    if sigma is None or not np.isfinite(sigma).any():
+        return None
+    return float(np.sqrt(np.nanmean(np.square(sigma))))
