@@ -83,14 +83,11 @@ def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
 
 
 def _in_place_of_a_size(name: str, rounds: tuple[Round, ...], final: Fitted) -> Iterator[str]:
-    """Effects that make a size unnecessary, in a model about as likely."""
-    last = rounds[-1]
-    if last.before.names != final.names:
-        return
+    """Effects that make a size unnecessary, in a model about as likely, in any round."""
     limit = final.total + RIVAL * final.scatter
-    for fit in last.tried:
+    for fit in (fit for this in rounds for fit in this.tried if not fit.at_bound):
         fewer = len(fit.calibrated) < len(final.calibrated) and name not in fit.calibrated
-        if fewer and not fit.at_bound and fit.total < limit:
+        if fewer and fit.names[-1] not in final.names and fit.total < limit:
             yield fit.names[-1]
 
 
