@@ -80,6 +80,23 @@ def test_what_was_measured_is_never_refused(seed: int, noise: float) -> None:
     assert_never_refused(*recorded(seed), noise, seed)
 
 
+@pytest.mark.parametrize("factor", [1000.0, 100.0, 0.01, 0.001])
+def test_a_radius_in_another_unit_makes_no_circle_of_a_measurement(factor: float) -> None:
+    run, truth = recorded(1)
+    wrong = replace(ROBOT, wheel_radius=factor * ROBOT.wheel_radius)
+    noise = np.random.default_rng(1).normal(0.0, 1e-3, truth.shape)
+    measured = replace(run, reference=Reference(run.reference.time, *(truth + noise)))
+    assert require_independent(measured, wrong) == ""
+
+
+@pytest.mark.parametrize("factor", [1000.0, 0.001])
+def test_a_radius_in_another_unit_hides_no_circle(factor: float) -> None:
+    run, _ = recorded(1)
+    circle = replace(run, reference=own_odometry(run, ROBOT))
+    with pytest.raises(InputError, match="it was made from the same counts"):
+        require_independent(circle, replace(ROBOT, wheel_radius=factor * ROBOT.wheel_radius))
+
+
 def assert_never_refused(run: Run, truth: np.ndarray, noise: float, seed: int) -> None:
     """As poses, and as positions alone."""
     rng = np.random.default_rng(seed)

@@ -115,8 +115,10 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
         if not known:  # the sign of the motion is taken from the wheels
             ways = np.abs(ways) * np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
         best = min(best, _typical(ways, wheels))
-    quantum = _rounding(run, robot)
-    return Closeness(best, float(np.median(np.abs(ways))), quantum)
+    # A count is as long as the reference says: the radius that was entered may be 1000 times off.
+    rolled = 0.5 * float(np.abs(wheels).sum())
+    scale = float(np.abs(ways).sum()) / rolled if rolled > 0.0 else 1.0
+    return Closeness(best, float(np.median(np.abs(ways))), scale * _rounding(run, robot))
 
 
 def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:
