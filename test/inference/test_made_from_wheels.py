@@ -84,7 +84,7 @@ def test_what_was_measured_is_never_refused(seed: int, noise: float) -> None:
 def test_a_radius_in_another_unit_makes_no_circle_of_a_measurement(factor: float) -> None:
     run, truth = recorded(1)
     wrong = replace(ROBOT, wheel_radius=factor * ROBOT.wheel_radius)
-    noise = np.random.default_rng(1).normal(0.0, 1e-3, truth.shape)
+    noise = np.random.default_rng(1).normal(0.0, 3e-4, truth.shape)
     measured = replace(run, reference=Reference(run.reference.time, *(truth + noise)))
     assert require_independent(measured, wrong) == ""
 
