@@ -6,36 +6,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from test.files.recorded import ROBOT, driven
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.robot import Robot
 
-TRUE = WhiteNoiseRobot()
-ROBOT = Robot(TRUE.separation, TRUE.left_radius, *2 * [TRUE.ticks_per_revolution])
-
 
 def refuse_wrong_columns(run: Run, robot: Robot = ROBOT) -> None:
     columns.refuse_wrong_columns(run, robot)
-
-
-def driven(seed: int, moves: float = 60.0) -> Run:
-    """Lines, curves, spins and stops, forwards and backwards."""
-    random = np.random.default_rng(seed)
-    recorded = drive(TRUE, wandering(random, moves), random, every=5)
-    ticks, seen = recorded.ticks, recorded.reference
-    return Run(
-        "drive",
-        Path("drive"),
-        Ticks(ticks.time, ticks.left, ticks.right),
-        Reference(seen.time, seen.x, seen.y, seen.yaw),
-    )
 
 
 def seen(run: Run, **columns: np.ndarray | Callable[[Reference], np.ndarray]) -> Run:

@@ -5,33 +5,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from test.files import recorded
+from test.files.recorded import ROBOT
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_checks import held_poses, without_held_poses, words_about_held
-from werrimbi_odom.model.robot import Robot
-
-TRUE = WhiteNoiseRobot()
-ROBOT = Robot(TRUE.separation, TRUE.left_radius, *2 * [TRUE.ticks_per_revolution])
 
 
 def driven(seed: int, **seen: float) -> Run:
     """A minute of lines, curves, spins and stops."""
-    random = np.random.default_rng(seed)
-    recorded = drive(TRUE, wandering(random, 30.0), random, every=5, **seen)
-    ticks, extrinsics_of = recorded.ticks, recorded.reference
-    return Run(
-        "drive",
-        Path("drive"),
-        Ticks(ticks.time, ticks.left, ticks.right),
-        Reference(extrinsics_of.time, extrinsics_of.x, extrinsics_of.y, extrinsics_of.yaw),
-    )
+    return recorded.driven(seed, 30.0, **seen)
 
 
 def held(reference: Reference, begin: int, end: int) -> Reference:

@@ -75,8 +75,8 @@ ELSEWHERE = {
         "_SAME": "rounding",
     },
     "fitting/caches.py": {"THREADS": "time that it takes"},
-    "fitting/candidate_starts.py": {"_ALL_ROUND": "where a fit starts", "_SHARES": "the same"},
-    "fitting/start_headings.py": {"_ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
+    "fitting/candidate_starts.py": {"_SHARES": "where a fit starts"},
+    "fitting/start_headings.py": {"ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
     "fitting/filtering.py": {
         "STRETCH": "size of a block",
         "SIDE_BY_SIDE": "size of a block",

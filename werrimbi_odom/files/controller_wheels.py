@@ -12,9 +12,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.wheel_joints import SIDES
 
-_OF_CONTROLLER = {"wheel_separation": "separation", "wheel_radius": "radius"}
-
-
+_SIZES = ("wheel_separation", "wheel_radius")
 _MULTIPLIERS = (
     "wheel_separation_multiplier",
     "left_wheel_radius_multiplier",
@@ -38,7 +36,7 @@ def of_controller(path: Path) -> FirstRobot:
     except (OSError, UnicodeDecodeError, YAMLError, RecursionError) as error:
         raise InputError(f"{path} cannot be read: {' '.join(str(error).split())[:200]}") from error
     for block in _blocks(content):
-        sizes = [block.get(name) for name in _OF_CONTROLLER]
+        sizes = [block.get(name) for name in _SIZES]
         if all(isinstance(size, int | float) and size > 0.0 for size in sizes):
             given = {
                 name: float(block[name])

@@ -148,21 +148,16 @@ def search_round(
             and other.candidate.per_run != score.candidate.per_run
             and other.gain > SAME_BY_RUN * score.gain
         ]
-        starts = [started_with(runs, point, score)]
-        options = [score.candidate]
+        options = [(point, score)]
         if variants:
-            best = max(variants, key=lambda other: other.gain)
-            starts.append(started_with(runs, point, best))
-            options.append(best.candidate)
+            options.append((point, max(variants, key=lambda other: other.gain)))
         if score.candidate.name in instead:
-            other = instead[score.candidate.name]
-            starts.append(started_with(runs, _as_given(point, given), other))
-            options.append(other.candidate)
+            options.append((_as_given(point, given), instead[score.candidate.name]))
         names = (*before.names, score.candidate.name)
-        fits = [
-            fitted(runs, start, names, (*before.numbers, *parameters_of_candidate(option)), given)
-            for start, option in zip(starts, options, strict=True)
-        ]
+        fits = []
+        for begin, option in options:
+            numbers = (*before.numbers, *parameters_of_candidate(option.candidate))
+            fits.append(fitted(runs, started_with(runs, begin, option), names, numbers, given))
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)

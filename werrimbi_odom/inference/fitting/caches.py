@@ -59,8 +59,4 @@ def side_by_side(works: Sequence[Callable[[], Found]], steps: int) -> list[Found
     if steps not in WORTH_THREADS:
         return [work() for work in works]
     with ThreadPoolExecutor(THREADS) as pool:
-        return list(pool.map(_called, works))
-
-
-def _called(work: Callable[[], Found]) -> Found:
-    return work()
+        return list(pool.map(lambda work: work(), works))

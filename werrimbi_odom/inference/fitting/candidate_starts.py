@@ -14,17 +14,15 @@ from werrimbi_odom.inference.fitting.free_parameters import STEP, Model
 from werrimbi_odom.inference.fitting.prediction import predict_all, turns_over
 from werrimbi_odom.inference.fitting.score_tests import Score
 from werrimbi_odom.inference.fitting.start_headings import (
-    squares_of_runs,
+    ALL_ROUND,
     starts_unmeasured,
     turned_to_the_first_legs,
 )
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import wrap_all
 
-_ALL_ROUND = np.arange(8) * 0.25 * np.pi
 _SHARES = np.array([1.0, 0.5, 0.25])
-"""Directions in which a measured point is looked for [rad], and distances relative to what its
-score suggests."""
+"""Distances at which a measured point is looked for, relative to what its score suggests."""
 
 
 def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
@@ -57,12 +55,12 @@ def _turned_with_the_headings(runs: Concatenated, point: Point, score: Score) ->
     off in both.
     """
     starts = []
-    around = np.outer(_SHARES, np.exp(1j * _ALL_ROUND)).ravel()
+    around = np.outer(_SHARES, np.exp(1j * ALL_ROUND)).ravel()
     for place in complex(*score.coefficients) * around:
         there = replace(score, coefficients=np.array([place.real, place.imag]))
         model = with_candidate(point.model, there)
         starts.append(turned_to_the_first_legs(runs, replace(point, model=model)))
-    return min(starts, key=lambda start: float(np.sum(squares_of_runs(runs, start))))
+    return min(starts, key=lambda start: start[1])[0]
 
 
 def with_candidate(model: Model, score: Score) -> Model:

@@ -18,7 +18,8 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 _FIRST_NODES = 12
-_ALL_ROUND = np.arange(8) * 0.25 * np.pi
+ALL_ROUND = np.arange(8) * 0.25 * np.pi
+"""Trial directions [rad]."""
 
 
 def first_heading(robot: Robot, run: MatchedRun) -> float | None:
@@ -38,11 +39,11 @@ def first_heading(robot: Robot, run: MatchedRun) -> float | None:
     return float(np.angle(np.sum(np.conj(shape) * (measured[usable] - measured[usable[0]]))))
 
 
-def turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
+def turned_to_the_first_legs(runs: Concatenated, point: Point) -> tuple[Point, float]:
     """Re-estimate unmeasured start headings from the first legs, where that lowers the cost.
 
     A heading fitted without some effect can be so far off once the effect is in that least squares
-    does not converge.
+    does not converge. Also return the sum of the squared whitened innovations.
     """
     return _cheapest(runs, point, [_of_the_first_legs(runs, point.model)])
 
@@ -53,9 +54,11 @@ def turned_to_all_sides(runs: Concatenated, point: Point) -> Point:
     In a drive that begins with spins on the spot the first legs do not tell the heading, and least
     squares would not find one that is far away.
     """
+    if not starts_unmeasured(point.model):
+        return point
     known = [own.get(START_YAW) for own in point.model.own]
-    tried = [[None if at is None else at + turn for at in known] for turn in _ALL_ROUND[1:]]
-    return _cheapest(runs, point, [_of_the_first_legs(runs, point.model), *tried])
+    tried = [[None if at is None else at + turn for at in known] for turn in ALL_ROUND[1:]]
+    return _cheapest(runs, point, [_of_the_first_legs(runs, point.model), *tried])[0]
 
 
 def _of_the_first_legs(runs: Concatenated, model: Model) -> list[float | None]:
@@ -64,24 +67,22 @@ def _of_the_first_legs(runs: Concatenated, model: Model) -> list[float | None]:
 
 def _cheapest(
     runs: Concatenated, point: Point, headings: Iterable[Sequence[float | None]]
-) -> Point:
+) -> tuple[Point, float]:
     """Choose the start heading of each run among its own and some others, by the run's cost."""
-    if not starts_unmeasured(point.model):
-        return point
     chosen = point.model.own
-    least = squares_of_runs(runs, point)
+    least = _squares_of_runs(runs, point)
     for tried in headings:
         own = tuple(
             dict(mine) if at is None else {**mine, START_YAW: at}
             for mine, at in zip(point.model.own, tried, strict=True)
         )
-        squares = squares_of_runs(runs, replace(point, model=Model(point.model.robot, own)))
+        squares = _squares_of_runs(runs, replace(point, model=Model(point.model.robot, own)))
         better = squares < least
         least = np.where(better, squares, least)
         chosen = tuple(
             new if took else mine for new, mine, took in zip(own, chosen, better, strict=True)
         )
-    return replace(point, model=Model(point.model.robot, chosen))
+    return replace(point, model=Model(point.model.robot, chosen)), float(np.sum(least))
 
 
 def starts_unmeasured(model: Model) -> bool:
@@ -89,7 +90,7 @@ def starts_unmeasured(model: Model) -> bool:
     return any(START_YAW in mine for mine in model.own)
 
 
-def squares_of_runs(runs: Concatenated, point: Point) -> Floats:
+def _squares_of_runs(runs: Concatenated, point: Point) -> Floats:
     """Sum of the squared whitened innovations of each run, shape (runs,)."""
     of_legs = np.sum(unexpected(runs, point).whitened() ** 2, axis=-1)
     return np.asarray(np.add.reduceat(of_legs, runs.legs[:-1]))

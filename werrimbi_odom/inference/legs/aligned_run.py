@@ -15,7 +15,7 @@ from werrimbi_odom.files.run import NoDriving, Run
 from werrimbi_odom.inference.legs.clock import clock_offset
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
-from werrimbi_odom.inference.legs.matched_run import AlignedRun, _poses, _typical
+from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     FEW_POSES,
@@ -75,7 +75,7 @@ def record_of(
             f"{run.path}: fewer than two reference poses between the first tick "
             f"(t_s {first:g}) and the last ({last:g}); are both clocks the same?"
         )
-    measured = _poses(reference, rows)
+    measured = poses_at(reference, rows)
     found = _silences(run, robot, counters, measured.time, taken_out, leg, turn)
     return AlignedRun(
         run.name,
@@ -84,8 +84,8 @@ def record_of(
         delay,
         touched(measured.time, [*map(_surely_around, found), *taken_out]),
         found,
-        _typical(reference.sigma_xy),
-        _typical(reference.sigma_yaw),
+        typical_sigma(reference.sigma_xy),
+        typical_sigma(reference.sigma_yaw),
         happened,
     )
 

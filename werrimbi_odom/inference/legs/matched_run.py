@@ -127,7 +127,7 @@ def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
 
 def divided(record: AlignedRun, rows: NDArray[np.intp]) -> MatchedRun:
     """Cut a record at the given reference poses."""
-    measured = _poses(record.measured, rows)
+    measured = poses_at(record.measured, rows)
     time, left, right, ends, channels = nodes_at(record.counters, measured.time)
     gap = _gaps_between(record, rows)
     return MatchedRun(record, rows, measured, gap, record.delay, time, left, right, ends, channels)
@@ -138,7 +138,7 @@ def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
     return replace(
         run,
         rows=rows,
-        measured=_poses(run.record.measured, rows),
+        measured=poses_at(run.record.measured, rows),
         gap=_gaps_between(run.record, rows),
         ends=run.ends[np.searchsorted(run.rows, rows)],
     )
@@ -162,7 +162,8 @@ def _gaps_between(record: AlignedRun, rows: NDArray[np.intp]) -> NDArray[np.bool
     return np.asarray(np.diff(before[rows]) > 0)
 
 
-def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
+def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
+    """Some poses of a reference, without the stated noise of its absolute poses."""
     columns: list[Any] = [reference.time, reference.x, reference.y, reference.yaw]
     if rows.size < reference.time.size:
         columns = [part[rows] for part in columns]
@@ -175,7 +176,7 @@ def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
     return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
 
 
-def _typical(sigma: Floats | None) -> float | None:
+def typical_sigma(sigma: Floats | None) -> float | None:
     """Root mean square of a stated noise; None if there is none."""
     if sigma is None or not np.isfinite(sigma).any():
         return None
