@@ -101,12 +101,13 @@ def diagnose(
 
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for recordings that are already read."""
-    from werrimbi_odom.inference.manoeuvres.advice import told_of
+    from werrimbi_odom.inference.manoeuvres.advice import told_of, with_leg
     from werrimbi_odom.report.diagnosis.document import document_of
     from werrimbi_odom.report.diagnosis.tables import json_of
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
     told = told_of(given, show)
+    given = with_leg(given, told.leg)
 
     def steps() -> NextSteps:
         better = beside(given.source.path, "better")
@@ -118,7 +119,10 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     return Result(
         found=told,
         document=lambda: document_of(told, steps()),
-        figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights, told.changes),
+        figures_of_json=lambda: {
+            **json_of(told.diagnosis, told.manoeuvre, told.sights, told.changes),
+            "leg_m": told.leg,
+        },
     )
 
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
@@ -13,6 +13,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnos
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
 from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre, next_manoeuvre, strongest
+from werrimbi_odom.inference.manoeuvres.within_a_turn import settles, shorter_leg
 from werrimbi_odom.progress import Show, silent
 
 
@@ -29,6 +30,8 @@ class Told:
     """Whether held-out drives were given; otherwise the diagnosis held out parts itself."""
     changes: Sequence[Moved] = ()
     """Changes between the fitted drives."""
+    open_at: float | None = None
+    """Length of legs that leave this verdict *ambiguous*, where shorter ones were needed [m]."""
 
 
 def told_of(given: Recordings, show: Show = silent) -> Told:
@@ -39,15 +42,39 @@ def told_of(given: Recordings, show: Show = silent) -> Told:
     InputError
         When the drives do not allow it; the message says why.
     """
+    diagnosis = _diagnosis(given, show)
+    leg, open_at = given.how.leg, None
+    if shorter := shorter_leg(diagnosis, leg):
+        again = _diagnosis(with_leg(given, shorter), _again(show, shorter))
+        if settles(again, diagnosis):
+            diagnosis, leg, open_at = again, shorter, leg
+    show(0.97, "the next step")
     effects = given.collection.effects
-    diagnosis = diagnose(
+    return Told(
+        diagnosis,
+        next_manoeuvre(diagnosis),
+        detection_limits(diagnosis, effects),
+        leg,
+        bool(given.holdout),
+        changes_between(diagnosis, effects),
+        open_at,
+    )
+
+
+def with_leg(given: Recordings, leg: float) -> Recordings:
+    """The same drives, to be judged with legs of this length [m]."""
+    return replace(given, how=replace(given.how, leg=leg))
+
+
+def _diagnosis(given: Recordings, show: Show) -> Diagnosis:
+    effects = given.collection.effects
+    return diagnose(
         given.runs, given.robot, effects, given.evaluation, holdout=given.holdout, show=show
     )
-    show(0.97, "the next step")
-    manoeuvre = next_manoeuvre(diagnosis)
-    sights = detection_limits(diagnosis, effects)
-    changes = changes_between(diagnosis, effects)
-    return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout), changes)
+
+
+def _again(show: Show, leg: float) -> Show:
+    return lambda share, words: show(share, f"legs of {leg:g} m: {words}")
 
 
 def significant(diagnosis: Diagnosis) -> list[Dependence]:

@@ -133,3 +133,9 @@ metre, and the reported range of a variable leaves out as much at either end."""
 NEIGHBOUR = 1.6
 """Distance of neighbouring floor cells, in widths: cells that share a corner are 1.4 apart, and
 steps are seldom in the very middle of their cell."""
+
+LEGS_A_TURN = 3
+"""Legs of a turn of the wheel, where what happens within a turn must be told. Derived: from end to
+end of a leg of a third of a turn, what goes once round in a turn (an axle off the centre) and what
+goes twice round (an oval wheel) both change by sin(60 degrees), 0.87, of the most that they can;
+of half a turn, the second cancels."""

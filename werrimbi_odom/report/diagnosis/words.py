@@ -67,7 +67,8 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
-    left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
+    left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
+    left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
     left_out += without_events(told)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
@@ -75,6 +76,17 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     said[place:place] = left_out
     checks = [f"Check {name}" for name in diagnosis.rivals]
     return paragraphs(said, hanging=[*_HEADS, *checks])
+
+
+def _shorter(told: Told) -> list[str]:
+    """Why the legs are shorter than was asked for."""
+    if told.open_at is None:
+        return []
+    return [
+        f"Legs of {told.open_at:g} m leave it open: over whole turns of a wheel it is like "
+        f"another error. Legs of {told.leg:g} m show what happens within a turn; all that is "
+        "said here, and the command below, is of those."
+    ]
 
 
 def _changes(told: Told) -> list[str]:

@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What happens within a turn of a wheel is told by legs that are shorter than a turn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import werrimbi_odom as wo
+from test.inference.positions import positions_of_a_point
+from test.model.drives import ROBOT
+from werrimbi_odom.api.result import Result
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.within_a_turn import shorter_leg
+from werrimbi_odom.report.terminal import as_text
+
+BUMPED = replace(ROBOT, effects=(find("right_tread_bump").using(height=2.0e-3, place=0.7),))
+FILE = """\
+odom_node:
+  ros__parameters:
+    wheel_separation: 0.35
+    wheel_radius: 0.05
+    left_ticks_per_revolution: 2000.0
+    right_ticks_per_revolution: 2000.0
+    left_wheel_noise: 0.0004
+    right_wheel_noise: 0.0004
+"""
+
+
+def on_a_circle(seconds: int, seed: int) -> Run:
+    """To the left, on a circle of one metre."""
+    speeds = [0.3] * (seconds // 10)
+    return positions_of_a_point("circle", speeds, speeds, truth=BUMPED, seed=seed)
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> wo.RobotFile:
+    path = tmp_path_factory.mktemp("within") / "robot.yaml"
+    path.write_text(FILE, encoding="utf-8")
+    return wo.read_robot(path)
+
+
+@pytest.fixture(scope="module")
+def found(robot: wo.RobotFile) -> Result[Told]:
+    return wo.diagnose(robot, on_a_circle(60, 1))
+
+
+def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(found: Result[Told]) -> None:
+    said = found.to_dict()
+    assert (said["verdict"], said["effect"]) == ("named", "right_tread_bump")
+    assert found.found.open_at == 1.0
+    assert said["leg_m"] == pytest.approx(2.0 * math.pi * ROBOT.wheel_radius / 3.0, abs=0.005)
+    (size,) = (each["parameters"]["height"] for each in said["found"])
+    assert size["value"] == pytest.approx(2.0e-3, abs=3.0 * size["std"])
+
+
+def test_the_printed_command_keeps_those_legs_and_what_is_left_is_noise(
+    found: Result[Told], robot: wo.RobotFile, tmp_path: Path
+) -> None:
+    words = " ".join(as_text(found.document().words).split())
+    assert "Legs of 1 m leave it open" in words
+    assert "add right_tread_bump" in words
+    assert "--leg 0.1" in words
+    drive, better = on_a_circle(60, 1), tmp_path / "better.yaml"
+    wo.add("right_tread_bump", robot, drive, leg=0.1).write_robot(better)
+    assert wo.diagnose(wo.read_robot(better), drive).to_dict()["verdict"] == "none"
+
+
+def test_legs_that_are_short_enough_already_are_left_alone(found: Result[Told]) -> None:
+    open_still = replace(found.found.diagnosis, verdict="ambiguous", rivals=("right_tread_bump",))
+    assert shorter_leg(open_still, 1.0) == pytest.approx(0.1)
+    assert shorter_leg(open_still, 0.15) is None
+    assert shorter_leg(replace(open_still, rivals=("track_width",)), 1.0) is None
+    assert shorter_leg(found.found.diagnosis, 1.0) is None
