@@ -65,19 +65,13 @@ class _Shuttle:
 
 @dataclass(slots=True)
 class DriveMemory:
-    """State behind `Drive`: constant in size, updated once per step.
-
-    Parameters
-    ----------
-    flicker : float
-        A wheel that goes back by less (or by less than `ROLLBACK`) has not reversed [m].
-    left_angle, right_angle : float
-        Angles of the wheels at the first message, from the counters' zeros [rad].
-    """
+    """State behind `Drive`: constant in size, updated once per step."""
 
     flicker: float
+    """A wheel that goes back by less (or by less than `ROLLBACK`) has not reversed [m]."""
     left_angle: float = 0.0
     right_angle: float = 0.0
+    """Angles of the wheels at the first message, from the counters' zeros [rad]."""
     _time: float = 0.0
     _distance: float = 0.0
     _means: _Means | None = None

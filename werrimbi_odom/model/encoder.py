@@ -58,19 +58,13 @@ class EncoderTally:
 
 @dataclass(frozen=True, slots=True)
 class EncoderLimits:
-    """When counter readings are rejected.
-
-    Parameters
-    ----------
-    max_wheel_speed : float
-        Fastest possible wheel speed [m/s]; 0 if unknown. If given, faster steps are rejected until
-        a second message confirms them. If unknown, only a fall to zero is checked.
-    gap_duration : float
-        Intervals longer than this [s] are counted as gaps; their motion is kept.
-    """
+    """When counter readings are rejected."""
 
     max_wheel_speed: float = 0.0
+    """Fastest possible wheel speed [m/s]; 0 if unknown. If given, faster steps are rejected until a
+    second message confirms them. If unknown, only a fall to zero is checked."""
     gap_duration: float = 1.0
+    """Intervals longer than this [s] are counted as gaps; their motion is kept."""
 
 
 class WheelStep(NamedTuple):

@@ -21,18 +21,11 @@ _BLOCK = 1024  # pieces constructed together
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PiecesOfRun(Sequence[Piece]):
-    """A run cut into pieces; each is constructed when it is accessed.
-
-    Parameters
-    ----------
-    track : float
-    time : ndarray, shape (n + 1,)
-        Stamps before the first step and after each [s].
-    course : PathInPieces
-    """
+    """A run cut into pieces; each is constructed when it is accessed."""
 
     track: float
     time: Floats
+    """Stamps before the first step and after each [s], shape (n + 1,)."""
     course: PathInPieces
 
     def __len__(self) -> int:

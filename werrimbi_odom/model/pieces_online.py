@@ -33,13 +33,6 @@ SETTLED = 10.0
 class PieceTolerance:
     """Largest deviation of a piece from constant curvature, beyond quantisation.
 
-    Parameters
-    ----------
-    path : float
-        Distance between the path and the piece's arc [m].
-    heading : float
-        Angle between the heading and that of the arc [rad].
-
     Notes
     -----
     The effect on the covariance is of second order in deviation over track: a lateral deviation δ
@@ -48,7 +41,9 @@ class PieceTolerance:
     """
 
     path: float = 0.003
+    """Distance between the path and the piece's arc [m]."""
     heading: float = 0.01
+    """Angle between the heading and that of the arc [rad]."""
 
 
 class PieceRule(NamedTuple):

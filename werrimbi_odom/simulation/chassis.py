@@ -62,52 +62,34 @@ wheel lose its grip."""
 
 @dataclass(frozen=True)
 class WheelPlan:
-    """Parameters of one wheel.
-
-    Parameters
-    ----------
-    side : str
-        "left" or "right".
-    y : float
-        Position of its hub along the axle from the middle of the body, left positive [m].
-    radius : float
-        Rolling radius [m].
-    offset : float
-        Distance of the wheel's centre from its axle [m]; not zero for an eccentric wheel.
-    phase : float
-        Angle of the wheel [rad] at which its centre is straight ahead of its axle.
-    ovality : float
-        (largest - smallest radius) / (2 radius); the wheel is an ellipsoid.
-    play : float
-        Backlash between the encoder's shaft and the wheel [rad].
-    """
+    """Parameters of one wheel."""
 
     side: str
+    """"left" or "right"."""
     y: float
+    """Position of its hub along the axle from the middle of the body, left positive [m]."""
     radius: float
+    """Rolling radius [m]."""
     offset: float = 0.0
+    """Distance of the wheel's centre from its axle [m]; not zero for an eccentric wheel."""
     phase: float = 0.0
+    """Angle of the wheel [rad] at which its centre is straight ahead of its axle."""
     ovality: float = 0.0
+    """(largest - smallest radius) / (2 radius); the wheel is an ellipsoid."""
     play: float = 0.0
+    """Backlash between the encoder's shaft and the wheel [rad]."""
 
 
 @dataclass(frozen=True)
 class Chassis:
-    """Parameters of the body in the engine.
-
-    Parameters
-    ----------
-    left, right : WheelPlan
-    mass : float
-        Total mass [kg].
-    axle_yaw : float
-        Rotation of the axle relative to the body, anticlockwise [rad].
-    """
+    """Parameters of the body in the engine."""
 
     left: WheelPlan
     right: WheelPlan
     mass: float
+    """Total mass [kg]."""
     axle_yaw: float = 0.0
+    """Rotation of the axle relative to the body, anticlockwise [rad]."""
 
     @property
     def height(self) -> float:

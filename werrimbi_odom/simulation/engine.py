@@ -68,24 +68,17 @@ Shifter = Callable[[Stride], Shift]
 
 @dataclass(frozen=True)
 class TruePath:
-    """Ground truth without measurement noise; arrays of shape (n,), one row per PERIOD.
-
-    Parameters
-    ----------
-    t_s : ndarray
-        Time since the start of the simulation [s].
-    x_m, y_m, yaw_rad : ndarray
-        Pose of the axle's midpoint in the world; the yaw counts full turns.
-    left_angle_rad, right_angle_rad : ndarray
-        Angles of the encoder shafts relative to the body, positive forwards.
-    """
+    """Ground truth without measurement noise; arrays of shape (n,), one row per PERIOD."""
 
     t_s: Floats
+    """Time since the start of the simulation [s]."""
     x_m: Floats
     y_m: Floats
     yaw_rad: Floats
+    """Pose of the axle's midpoint in the world; the yaw counts full turns."""
     left_angle_rad: Floats
     right_angle_rad: Floats
+    """Angles of the encoder shafts relative to the body, positive forwards."""
 
 
 class Engine:

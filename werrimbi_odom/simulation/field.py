@@ -41,71 +41,51 @@ BEHIND = Lidar(mount=AxlePose(-0.032, 0.0, 0.0))
 
 @dataclass(frozen=True)
 class FieldSensors:
-    """Sensors on board, and their errors.
-
-    Parameters
-    ----------
-    wheels_hz, imu_hz, localiser_hz : float
-        Message rates of wheel angles, gyro, and localiser [Hz].
-    stamp_jitter : float
-        Standard deviation of header stamps about the time of measurement [s].
-    latency : float
-        Mean delay from the stamp to the reception of a message [s], exponentially distributed.
-    gyro_noise : float
-        Standard deviation of a reading [rad/s].
-    gyro_bias, gyro_scale : float
-        Ranges of the bias [rad/s] and of the scale error, drawn once for each robot.
-    wander_xy, wander_yaw, wander_time : float
-        Standard deviations of the localiser's error [m, rad], and its time constant [s].
-    jumps, jump_xy, jump_yaw : float
-        Number of jumps in a drive, and their standard deviations [m, rad].
-    lidar : Lidar
-        The lidar, in a furnished room around the drive.
-    """
+    """Sensors on board, and their errors."""
 
     wheels_hz: float = 20.0
     imu_hz: float = 50.0
     localiser_hz: float = 10.0
+    """Message rates of wheel angles, gyro, and localiser [Hz]."""
     stamp_jitter: float = 4e-3
+    """Standard deviation of header stamps about the time of measurement [s]."""
     latency: float = 8e-3
+    """Mean delay from the stamp to the reception of a message [s], exponentially distributed."""
     gyro_noise: float = 3e-3
+    """Standard deviation of a reading [rad/s]."""
     gyro_bias: float = 5e-3
     gyro_scale: float = 0.02
+    """Ranges of the bias [rad/s] and of the scale error, drawn once for each robot."""
     wander_xy: float = 0.03
     wander_yaw: float = 0.015
     wander_time: float = 15.0
+    """Standard deviations of the localiser's error [m, rad], and its time constant [s]."""
     jumps: int = 2
     jump_xy: float = 0.15
     jump_yaw: float = 0.08
+    """Number of jumps in a drive, and their standard deviations [m, rad]."""
     lidar: Lidar = BEHIND
+    """The lidar, in a furnished room around the drive."""
 
 
 @dataclass(frozen=True)
 class FieldDrive:
-    """One drive as measured by ordinary sensors; times [s] in the simulation's clock.
-
-    Parameters
-    ----------
-    wheels, imu, localiser : ndarray, shapes (n, 4), (m, 3), (k, 5)
-        Header stamp, time of reception, and: angles of both wheels [rad]; yaw rate [rad/s]; x, y
-        [m] and yaw [rad] of base_link in the map.
-    odometry : ndarray, shape (n, 3)
-        The robot's own dead reckoning x, y [m] and yaw [rad] with nominal sizes, per row of
-        `wheels`.
-    lidar, scans : Lidar, Sweeps
-        The lidar and its scans; `scans.time` has the header stamps.
-    truth : mapping
-        Ground truth for truth.json, which is not in the bag; times in the clock of the bag.
-    """
+    """One drive as measured by ordinary sensors; times [s] in the simulation's clock."""
 
     name: str
     wheels: Floats
     imu: Floats
     localiser: Floats
+    """Header stamp, time of reception, and: angles of both wheels [rad]; yaw rate [rad/s]; x, y [m]
+    and yaw [rad] of base_link in the map."""
     odometry: Floats
+    """The robot's own dead reckoning x, y [m] and yaw [rad] with nominal sizes, per row of
+    `wheels`, shape (n, 3)."""
     lidar: Lidar
     scans: Sweeps
+    """The lidar and its scans; `scans.time` has the header stamps."""
     truth: dict[str, object] = field(default_factory=dict)
+    """Ground truth for truth.json, which is not in the bag; times in the clock of the bag."""
 
 
 @dataclass(frozen=True)

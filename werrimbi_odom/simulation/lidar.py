@@ -21,77 +21,51 @@ _BLOCK = 1 << 14
 
 @dataclass(frozen=True)
 class Person:
-    """A person who walks to and fro between two points; the lidar sees one leg, a circle.
-
-    Parameters
-    ----------
-    start, end : (float, float)
-        Turning points [m].
-    period : float
-        Time of one return trip [s].
-    radius : float
-        Radius of the circle [m].
-    """
+    """A person who walks to and fro between two points; the lidar sees one leg, a circle."""
 
     start: tuple[float, float]
     end: tuple[float, float]
+    """Turning points [m]."""
     period: float = 8.0
+    """Time of one return trip [s]."""
     radius: float = 0.12
+    """Radius of the circle [m]."""
 
 
 @dataclass(frozen=True)
 class Room:
-    """Obstacles for the lidar, in world axes.
-
-    Parameters
-    ----------
-    walls : ndarray, shape (k, 4)
-        Line segments from x, y to x, y [m].
-    people : sequence of Person
-    """
+    """Obstacles for the lidar, in world axes."""
 
     walls: Floats
+    """Line segments from x, y to x, y [m], shape (k, 4)."""
     people: Sequence[Person] = ()
 
 
 @dataclass(frozen=True)
 class Lidar:
-    """A rotating lidar.
-
-    Parameters
-    ----------
-    beams : int
-        Number of beams of a turn.
-    rate_hz : float
-        Turns per second.
-    nearest, farthest : float
-        Range limits [m].
-    noise, noise_share : float
-        Standard deviation of a range: a length [m], and a share of the range; variances add.
-    bias : float
-        Added to each range [m].
-    lost, mixed : float
-        Shares of beams without an echo, and of beams at an edge with a range between near and far.
-    mount : AxlePose
-        Ahead and to the left of the axle's midpoint [m], and yaw [rad].
-    rotates : bool
-        Whether each beam has its own time; otherwise all are simultaneous, as in some simulators.
-    upside_down : bool
-        Whether beams go clockwise, seen from above.
-    """
+    """A rotating lidar."""
 
     beams: int = 218
+    """Number of beams of a turn."""
     rate_hz: float = 10.0
+    """Turns per second."""
     nearest: float = 0.12
     farthest: float = 8.0
+    """Range limits [m]."""
     noise: float = 5e-3
     noise_share: float = 5e-3
+    """Standard deviation of a range: a length [m], and a share of the range; variances add."""
     bias: float = 0.0
+    """Added to each range [m]."""
     lost: float = 0.02
     mixed: float = 0.0
+    """Shares of beams without an echo, and of beams at an edge, with a range between both."""
     mount: AxlePose = WORLD
+    """Ahead and to the left of the axle's midpoint [m], and yaw [rad]."""
     rotates: bool = True
+    """Whether each beam has its own time; otherwise all are simultaneous, as in some simulators."""
     upside_down: bool = False
+    """Whether beams go clockwise, seen from above."""
 
     @property
     def increment(self) -> float:
@@ -106,21 +80,14 @@ class Lidar:
 
 @dataclass(frozen=True)
 class Sweeps:
-    """Scans; n of them. Beam i has the direction i times the increment.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        Time of the first beam [s].
-    ranges : ndarray, shape (n, beams)
-        Ranges [m]; infinite without an echo.
-    truth : ndarray, shape (n, 3)
-        Pose of the lidar in the middle of each sweep: x, y [m], yaw [rad].
-    """
+    """Scans; n of them. Beam i has the direction i times the increment."""
 
     time: Floats
+    """Time of the first beam [s], shape (n,)."""
     ranges: Floats
+    """Ranges [m]; infinite without an echo, shape (n, beams)."""
     truth: Floats
+    """Pose of the lidar in the middle of each sweep: x, y [m], yaw [rad], shape (n, 3)."""
 
 
 def scanned(path: TruePath, room: Room, lidar: Lidar, seed: int) -> Sweeps:

@@ -16,19 +16,13 @@ Knot = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """A scripted drive: commands to the robot's speed controller, as from a joystick.
-
-    Parameters
-    ----------
-    name : str
-        Name of the run folder.
-    knots : tuple of (time, speed, yaw_rate)
-        Knots of the piecewise linear commands [s, m/s, rad/s] in the order of time; anticlockwise
-        is positive. Two knots at the same time make a step.
-    """
+    """A scripted drive: commands to the robot's speed controller, as from a joystick."""
 
     name: str
+    """Name of the run folder."""
     knots: tuple[Knot, ...]
+    """Knots of the piecewise linear commands [s, m/s, rad/s] in the order of time; anticlockwise is
+    positive. Two knots at the same time make a step."""
 
     @property
     def duration(self) -> float:
@@ -73,23 +67,16 @@ def _means(t: Floats, value: Floats, times: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class MoveLimits:
-    """Limits of speed and acceleration for moves.
-
-    Parameters
-    ----------
-    speed, acceleration : float
-        [m/s], [m/s^2].
-    yaw_rate, yaw_acceleration : float
-        [rad/s], [rad/s^2].
-    pause : float
-        Rest after each move [s].
-    """
+    """Limits of speed and acceleration for moves."""
 
     speed: float = 0.4
     acceleration: float = 0.5
+    """[m/s], [m/s^2]."""
     yaw_rate: float = 1.2
     yaw_acceleration: float = 2.5
+    """[rad/s], [rad/s^2]."""
     pause: float = 0.3
+    """Rest after each move [s]."""
 
 
 def moves(

@@ -37,39 +37,28 @@ class Happened:
 
 @dataclass(frozen=True)
 class Recording:
-    """One recorded drive; n rows of counters, m rows of reference, in one clock.
-
-    Parameters
-    ----------
-    name : str
-        Name of the manoeuvre.
-    t_s : ndarray, shape (n,)
-        Times of the counter readings [s].
-    left_ticks, right_ticks : ndarray of int64, shape (n,)
-        Cumulative signed counters with arbitrary start values, positive forwards.
-    reference_t_s, reference_x_m, reference_y_m, reference_yaw_rad : ndarray, shape (m,)
-        Measurements of the reference: the axle's midpoint in the reference's frame; yaw wrapped to
-        (-pi, pi], as from a motion capture system.
-    true_path : TruePath
-        Pose of the axle's midpoint in the world without measurement noise. Wheel noise is included,
-        because it moves the robot.
-    channels : mapping of str to ndarray of shape (n,)
-        Further measured columns of ticks.csv.
-    happened : tuple of Happened
-        Events; part of the truth, so not written with the drive.
-    """
+    """One recorded drive; n rows of counters, m rows of reference, in one clock."""
 
     name: str
+    """Name of the manoeuvre."""
     t_s: Floats
+    """Times of the counter readings [s], shape (n,)."""
     left_ticks: Counts
     right_ticks: Counts
+    """Cumulative signed counters with arbitrary start values, positive forwards, shape (n,)."""
     reference_t_s: Floats
     reference_x_m: Floats
     reference_y_m: Floats
     reference_yaw_rad: Floats
+    """Measurements of the reference: the axle's midpoint in the reference's frame; yaw wrapped to
+    (-pi, pi], as from a motion capture system, shape (m,)."""
     true_path: TruePath
+    """Pose of the axle's midpoint in the world without measurement noise. Wheel noise is included,
+    because it moves the robot."""
     channels: Mapping[str, Floats] = field(default_factory=dict)
+    """Further measured columns of ticks.csv, shape (n,)."""
     happened: tuple[Happened, ...] = ()
+    """Events; part of the truth, so not written with the drive."""
 
     @property
     def poses(self) -> Iterator[tuple[float, float, float, float]]:

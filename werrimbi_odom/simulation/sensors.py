@@ -22,35 +22,24 @@ WORLD = AxlePose(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class ReferenceSensor:
-    """A motion capture system, or another external measurement of the robot's pose.
-
-    Parameters
-    ----------
-    rate_hz : float
-        Sampling rate, with its own sampling times.
-    sigma_xy, sigma_yaw : float
-        Standard deviations of each coordinate [m] and of the yaw [rad], white noise.
-    frame : AxlePose
-        Pose of the reference's frame in the world.
-    mount : AxlePose
-        Of the marker on the robot: ahead and to the left of the axle's midpoint [m], and yaw [rad].
-    delay : float
-        A sample with stamp t was measured at t - delay [s].
-    heading_delay : float
-        Additional delay of the yaw [s].
-    mirrored : str
-        "no", "y_down" (y and yaw with the wrong sign) or "exchanged" (x and y exchanged, yaw
-        clockwise from the new x), as in a left-handed frame.
-    """
+    """A motion capture system, or another external measurement of the robot's pose."""
 
     rate_hz: float = 20.0
+    """Sampling rate, with its own sampling times."""
     sigma_xy: float = 1e-3
     sigma_yaw: float = 2e-3
+    """Standard deviations of each coordinate [m] and of the yaw [rad], white noise."""
     frame: AxlePose = WORLD
+    """Pose of the reference's frame in the world."""
     mount: AxlePose = WORLD
+    """Of the marker on the robot: ahead and left of the axle's midpoint [m], and yaw [rad]."""
     delay: float = 0.0
+    """A sample with stamp t was measured at t - delay [s]."""
     heading_delay: float = 0.0
+    """Additional delay of the yaw [s]."""
     mirrored: Literal["no", "y_down", "exchanged"] = "no"
+    """"no", "y_down" (y and yaw with the wrong sign) or "exchanged" (x and y exchanged, yaw
+    clockwise from the new x), as in a left-handed frame."""
 
     def times(self, end: float, rng: np.random.Generator) -> Floats:
         """Times of the samples until `end` [s], from a random start in the first 0.3 s."""

@@ -23,26 +23,19 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class SquareRecording:
-    """One recorded drive: n rows of counters, m of reference, on one clock.
-
-    Parameters
-    ----------
-    name : str
-        Name of the run, for error messages.
-    time, left, right : ndarray, shape (n,)
-        Stamps [s] and cumulative counts.
-    reference_time, reference_x, reference_y, reference_yaw : ndarray, shape (m,)
-        [s, m, m, rad]; NaN where not measured.
-    """
+    """One recorded drive: n rows of counters, m of reference, on one clock."""
 
     name: str
+    """Name of the run, for error messages."""
     time: Floats
     left: Counts
     right: Counts
+    """Stamps [s] and cumulative counts, shape (n,)."""
     reference_time: Floats
     reference_x: Floats
     reference_y: Floats
     reference_yaw: Floats
+    """[s, m, m, rad]; NaN where not measured, shape (m,)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,18 +26,12 @@ OTHER_VEHICLES = (
 
 @dataclass(frozen=True, slots=True)
 class CountedSquare:
-    """Odometry of one square.
-
-    Parameters
-    ----------
-    travel : WheelTravel
-        Steps of wheel travel [m], with the radii that the odometry used.
-    yaw : float
-        Heading at the start, relative to the first leg [rad].
-    """
+    """Odometry of one square."""
 
     travel: WheelTravel[Floats]
+    """Steps of wheel travel [m], with the radii that the odometry used."""
     yaw: float = 0.0
+    """Heading at the start, relative to the first leg [rad]."""
 
     def end(self, track: float, left: float = 1.0, right: float = 1.0) -> Floats:
         """End position [m], shape (2,), on a base `track` [m] with each wheel's travel scaled."""
@@ -51,15 +45,6 @@ class CountedSquare:
 class Squares:
     """Offsets of n clockwise and m anticlockwise squares.
 
-    Parameters
-    ----------
-    side : float
-        Length of a leg, D [m].
-    cw, ccw : ndarray, shape (n, 2) and (m, 2)
-        End positions, measured minus odometry [m]; x along the first leg, y to its left.
-    driven_cw, driven_ccw : tuple of Driven
-        Odometry of each. Empty: all were perfect squares by odometry.
-
     Raises
     ------
     InputError
@@ -67,10 +52,14 @@ class Squares:
     """
 
     side: float
+    """Length of a leg, D [m]."""
     cw: Floats
     ccw: Floats
+    """End positions, measured minus odometry [m]; x along the first leg, y to its left,
+    shapes (n, 2) and (m, 2)."""
     driven_cw: tuple[CountedSquare, ...] = ()
     driven_ccw: tuple[CountedSquare, ...] = ()
+    """Odometry of each. Empty: all were perfect squares by odometry."""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.side) and self.side > 0.0):

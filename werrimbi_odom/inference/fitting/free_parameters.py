@@ -38,30 +38,20 @@ linear, large enough for a reference delay to exceed one interval of the ticks."
 
 @dataclass(frozen=True, slots=True)
 class FreeParameter:
-    """A parameter that a fit may change.
-
-    Parameters
-    ----------
-    name : str
-        A multiplier, ``effect.parameter``, or `START_YAW`.
-    unit : str
-        Its unit.
-    scale : float
-        Finite-difference step: small, yet well above rounding.
-    bounds : (float, float)
-        Physical limits; a fit that ends at one is a finding of its own.
-    undetermined : float
-        Standard deviation above which the data add nothing to prior knowledge.
-    per_run : bool
-        Whether each run has its own value.
-    """
+    """A parameter that a fit may change."""
 
     name: str
+    """A multiplier, ``effect.parameter``, or `START_YAW`."""
     unit: str
+    """Its unit."""
     scale: float
+    """Finite-difference step: small, yet well above rounding."""
     bounds: tuple[float, float]
+    """Physical limits; a fit that ends at one is a finding of its own."""
     undetermined: float
+    """Standard deviation above which the data add nothing to prior knowledge."""
     per_run: bool = False
+    """Whether each run has its own value."""
 
     def bounds_about(self, value: float) -> tuple[float, float]:
         """Bounds, widened to include a robot file's value beyond them."""

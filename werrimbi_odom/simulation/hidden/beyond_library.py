@@ -22,17 +22,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class OneTyreByPressure(Peculiarity):
-    """The pressure of one tyre varies, by a leak and a pump; it is measured (SIDE_tyre_kpa).
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    per_kpa : float
-        Relative increase of that wheel's radius per kilopascal above 180 [1/kPa].
-    """
+    """The pressure of one tyre varies, by a leak and a pump; it is measured (SIDE_tyre_kpa)."""
 
     side: Side
     per_kpa: float
+    """Relative increase of that wheel's radius per kilopascal above 180 [1/kPa]."""
 
     def _pressure(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
         """Times [s] and pressures [kPa] of a run, to be interpolated linearly."""
@@ -64,14 +58,10 @@ class BaseByPayload(Peculiarity):
     """A payload widens the contact patches of the tyres, which increases the effective wheel base.
 
     The payload is weighed (`payload_kg`, with a noise of 50 g).
-
-    Parameters
-    ----------
-    broadening : float
-        Relative increase of the base per kilogram [1/kg].
     """
 
     broadening: float
+    """Relative increase of the base per kilogram [1/kg]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Subtract the part of the turn that the wider base does not make."""
@@ -93,17 +83,11 @@ class BaseByPayload(Peculiarity):
 
 @dataclass(frozen=True)
 class OneTyreBackwards(Peculiarity):
-    """One tyre is mounted against its tread, and its tread blocks bend when it rolls backwards.
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    loss : float
-        Relative decrease of its radius while it rolls backwards.
-    """
+    """One tyre is mounted against its tread, and its tread blocks bend when it rolls backwards."""
 
     side: Side
     loss: float
+    """Relative decrease of its radius while it rolls backwards."""
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
         """Change the radius of the wheel with its direction of rolling."""
@@ -123,14 +107,10 @@ class SlideByTiltAndPayload(Peculiarity):
 
     The tilt is measured by an inclinometer (`tilt_rad`, positive with the left side up, with a
     noise of 1 mrad), the payload is weighed (`payload_kg`, with a noise of 50 g).
-
-    Parameters
-    ----------
-    creep : float
-        Creep to the right per metre driven, per radian of tilt and kilogram [1/(rad kg)].
     """
 
     creep: float
+    """Creep to the right per metre driven, per radian of tilt and kilogram [1/(rad kg)]."""
 
     def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
         """Times [s] and payloads [kg]; times [s] and tilts [rad]; to be interpolated."""
@@ -164,16 +144,11 @@ class OneTyreByLoadOverPressure(Peculiarity):
     """One tyre flattens under a payload, the more the lower its pressure.
 
     Both are measured (`payload_kg`, with a noise of 50 g; `SIDE_tyre_kpa`).
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    flattening : float
-        Relative decrease of that wheel's radius per payload over pressure [kPa/kg].
     """
 
     side: Side
     flattening: float
+    """Relative decrease of that wheel's radius per payload over pressure [kPa/kg]."""
 
     def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
         """Times [s] and payloads [kg]; times [s] and pressures [kPa] of a run."""

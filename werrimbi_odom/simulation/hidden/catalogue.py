@@ -50,37 +50,25 @@ class StrengthError(ValueError):
 
 @dataclass(frozen=True)
 class Entry:
-    """One entry of the catalogue.
-
-    Parameters
-    ----------
-    name : str
-    make : callable of (strength, rng)
-        Makes the peculiarity; its further parameters, such as a direction, are drawn from `rng`.
-    unit : str
-        Unit of the strength.
-    low, high : float
-        Realistic range of its distance from `null`, drawn log-uniformly.
-    says : str
-        Description in one line.
-    null : float
-        Strength at which there is no effect.
-    signed : bool
-        Whether this distance can be negative.
-    kind : "effect", "mistake", "outside", "robot" or "event"
-        Effect of the library, set-up mistake, effect outside the library, another kind of robot, or
-        abrupt event.
-    """
+    """One entry of the catalogue."""
 
     name: str
     make: Make
+    """Makes the peculiarity; its further parameters, such as a direction, are drawn from `rng`."""
     unit: str
+    """Unit of the strength."""
     low: float
     high: float
+    """Realistic range of its distance from `null`, drawn log-uniformly."""
     says: str
+    """Description in one line."""
     null: float = 0.0
+    """Strength at which there is no effect."""
     signed: bool = True
+    """Whether this distance can be negative."""
     kind: Kind = "effect"
+    """Effect of the library, set-up mistake, effect outside the library, another kind of robot, or
+    abrupt event."""
 
     def draw(self, rng: Rng) -> float:
         """Draw a realistic strength."""

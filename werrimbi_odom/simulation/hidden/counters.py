@@ -52,19 +52,13 @@ class MissedTicks(Peculiarity):
     """An encoder loses a share of its counts while its wheel is faster than a threshold.
 
     The loss is even, as if an interrupt missed every n-th mark, not random.
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    fraction : float
-        Lost share of the counts.
-    above : float
-        Threshold of the rim speed [m/s].
     """
 
     side: Side
     fraction: float
+    """Lost share of the counts."""
     above: float
+    """Threshold of the rim speed [m/s]."""
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator

@@ -19,16 +19,11 @@ from .peculiarity import Peculiarity
 
 @dataclass(frozen=True)
 class LongitudinalSlip(Peculiarity):
-    """Slip proportional to force: a driving wheel travels less than it rolls, a braking one more.
-
-    Parameters
-    ----------
-    coefficient : float
-        Share of the travel lost per acceleration of the wheel [s^2/m]. For a tyre of stiffness C
-        under a mass m it is m / C.
-    """
+    """Slip proportional to force: a driven wheel travels less than it rolls, a braked one more."""
 
     coefficient: float
+    """Share of the travel lost per acceleration of the wheel [s^2/m]. For a tyre of stiffness C
+    under a mass m it is m / C."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Each wheel lags by coefficient * acceleration * path."""
@@ -37,18 +32,12 @@ class LongitudinalSlip(Peculiarity):
 
 @dataclass(frozen=True)
 class CoulombSlip(Peculiarity):
-    """A wheel grips up to a certain force and slips above it.
-
-    Parameters
-    ----------
-    coefficient : float
-        Share of the travel lost per acceleration above the threshold [s^2/m].
-    above : float
-        Threshold of the wheel's acceleration [m/s^2].
-    """
+    """A wheel grips up to a certain force and slips above it."""
 
     coefficient: float
+    """Share of the travel lost per acceleration above the threshold [s^2/m]."""
     above: float
+    """Threshold of the wheel's acceleration [m/s^2]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Each wheel lags by coefficient * (|acceleration| - above) * path."""
@@ -73,15 +62,10 @@ def _falling_back(coefficient: float, above: float, robot: TrueRobot) -> Shifter
 
 @dataclass(frozen=True)
 class LateralSlip(Peculiarity):
-    """Tyres creep outwards in curves.
-
-    Parameters
-    ----------
-    creep : float
-        Outward speed per centripetal acceleration (speed times yaw rate) [s].
-    """
+    """Tyres creep outwards in curves."""
 
     creep: float
+    """Outward speed per centripetal acceleration (speed times yaw rate) [s]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Sideways motion of -creep * speed * turn."""
@@ -96,19 +80,13 @@ class LateralSlip(Peculiarity):
 
 @dataclass(frozen=True)
 class TurnDependentTrack(Peculiarity):
-    """The effective wheel base depends on the kind of turn.
-
-    Parameters
-    ----------
-    coefficient : float
-        Relative increase of the base: at sharpness 1, or in left turns (with opposite sign in right
-        turns).
-    on : "sharpness" or "sense"
-        Sharpness is |R - L| / (|R| + |L|): 0 on a line, 1 in pivots and spins.
-    """
+    """The effective wheel base depends on the kind of turn."""
 
     coefficient: float
+    """Relative increase of the base: at sharpness 1, or in left turns (with opposite sign in right
+    turns)."""
     on: Literal["sharpness", "sense"]
+    """Sharpness is |R - L| / (|R| + |L|): 0 on a line, 1 in pivots and spins."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Subtract the part of the turn that the wider base does not make."""
@@ -127,24 +105,16 @@ class TurnDependentTrack(Peculiarity):
 
 @dataclass(frozen=True)
 class CastorKick(Peculiarity):
-    """After each reversal the castor swings round and changes the heading.
-
-    Parameters
-    ----------
-    angle : float
-        Total change of heading [rad].
-    alternating : bool
-        True: +angle when it starts to drive forwards, -angle backwards; False: always +angle.
-    trail : float
-        Distance over which the swing decays by a factor e [m].
-    lead : float
-        Travel that counts as a reversal [m]; excludes the settling of a motor at a stop.
-    """
+    """After each reversal the castor swings round and changes the heading."""
 
     angle: float
+    """Total change of heading [rad]."""
     alternating: bool
+    """True: +angle when it starts to drive forwards, -angle backwards; False: always +angle."""
     trail: float = 0.04
+    """Distance over which the swing decays by a factor e [m]."""
     lead: float = 2e-3
+    """Travel that counts as a reversal [m]; excludes the settling of a motor at a stop."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Distribute the change of heading over the path after a reversal."""

@@ -16,18 +16,12 @@ from .peculiarity import Peculiarity
 
 @dataclass(frozen=True)
 class FloorSlope(Peculiarity):
-    """On a slope tyres creep downhill while they roll.
-
-    Parameters
-    ----------
-    creep : float
-        Drift per metre of path [1].
-    downhill : float
-        Downhill direction in the world [rad].
-    """
+    """On a slope tyres creep downhill while they roll."""
 
     creep: float
+    """Drift per metre of path [1]."""
     downhill: float
+    """Downhill direction in the world [rad]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Drift in a fixed direction of the world."""
@@ -42,18 +36,12 @@ class FloorSlope(Peculiarity):
 
 @dataclass(frozen=True)
 class GrainedFloor(Peculiarity):
-    """A ribbed floor: across the ribs a wheel's contact path is longer than the distance travelled.
-
-    Parameters
-    ----------
-    gain : float
-        Relative increase of the distance along the grain, and decrease across it.
-    grain : float
-        Direction of the grain in the world [rad].
-    """
+    """A ribbed floor: across the ribs a wheel's contact path is longer than the way travelled."""
 
     gain: float
+    """Relative increase of the distance along the grain, and decrease across it."""
     grain: float
+    """Direction of the grain in the world [rad]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Change of the distance by the direction of motion relative to the grain."""
@@ -68,20 +56,14 @@ class GrainedFloor(Peculiarity):
 
 @dataclass(frozen=True)
 class SlipperySpot(Peculiarity):
-    """An oil stain: a wheel on it travels less than it rolls. Outside the library.
-
-    Parameters
-    ----------
-    loss : float
-        Share of the travel lost on it.
-    x, y, radius : float
-        Centre in the world, and radius [m].
-    """
+    """An oil stain: a wheel on it travels less than it rolls. Outside the library."""
 
     loss: float
+    """Share of the travel lost on it."""
     x: float
     y: float
     radius: float
+    """Centre in the world, and radius [m]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Loss of each wheel by its position."""
@@ -103,18 +85,12 @@ class SlipperySpot(Peculiarity):
 
 @dataclass(frozen=True)
 class CablePull(Peculiarity):
-    """A dragged cable turns the robot towards one direction. Outside the library.
-
-    Parameters
-    ----------
-    rate : float
-        Change of heading per metre of path when at right angles to that direction [rad/m].
-    towards : float
-        The direction in the world [rad].
-    """
+    """A dragged cable turns the robot towards one direction. Outside the library."""
 
     rate: float
+    """Change of heading per metre of path when at right angles to that direction [rad/m]."""
     towards: float
+    """The direction in the world [rad]."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Turn proportional to the sine of the angle to that direction."""

@@ -36,25 +36,17 @@ def instants(every: float, until: float, rng: np.random.Generator) -> list[tuple
 
 @dataclass(frozen=True)
 class Knock(Peculiarity):
-    """The robot is moved within a short time without rotation of its wheels.
-
-    Parameters
-    ----------
-    kind : str
-        "push": sideways; "heading_kick": its heading; "bump": along; "wheel_slip": one wheel, left
-        or right, travels less than it rolls.
-    size : float
-        Size [m], or [rad] of a heading kick.
-    lasts : float
-        Duration of an event [s].
-    every : float
-        Mean time between events [s].
-    """
+    """The robot is moved within a short time without rotation of its wheels."""
 
     kind: Kind
+    """"push": sideways; "heading_kick": its heading; "bump": along; "wheel_slip": one wheel, left
+    or right, travels less than it rolls."""
     size: float
+    """Size [m], or [rad] of a heading kick."""
     lasts: float = 0.1
+    """Duration of an event [s]."""
     every: float = 25.0
+    """Mean time between events [s]."""
 
     def _moved(self, side: float, robot: TrueRobot) -> Shift:
         """Total motion of one event."""
@@ -97,21 +89,14 @@ class Knock(Peculiarity):
 
 @dataclass(frozen=True)
 class ReferenceJump(Peculiarity):
-    """The reference jumps to another position, for one pose or permanently.
-
-    Parameters
-    ----------
-    size : float
-        Length of the jump [m].
-    stays : bool
-        Whether the offset remains; otherwise the next pose is correct again.
-    every : float
-        Mean time between jumps [s].
-    """
+    """The reference jumps to another position, for one pose or permanently."""
 
     size: float
+    """Length of the jump [m]."""
     stays: bool
+    """Whether the offset remains; otherwise the next pose is correct again."""
     every: float = 25.0
+    """Mean time between jumps [s]."""
 
     def _jumps(self, until: float, rng: np.random.Generator) -> list[tuple[float, float]]:
         """Times [s] and directions [rad] of the jumps."""

@@ -18,15 +18,10 @@ from .peculiarity import Peculiarity
 
 @dataclass(frozen=True)
 class AskewAxle(Peculiarity):
-    """The axle is not perpendicular to the body, so the robot drives slightly sideways.
-
-    Parameters
-    ----------
-    angle : float
-        Angle from the body's forward axis to the direction of travel, anticlockwise [rad].
-    """
+    """The axle is not perpendicular to the body, so the robot drives slightly sideways."""
 
     angle: float
+    """Angle from the body's forward axis to the direction of travel, anticlockwise [rad]."""
 
     def chassis(self, chassis: Chassis) -> Chassis:
         """Rotate the axle with both wheels relative to the body."""
@@ -51,18 +46,12 @@ class ReferenceMount(Peculiarity):
 
 @dataclass(frozen=True)
 class ReferenceDelay(Peculiarity):
-    """The stamps of the reference are late.
-
-    Parameters
-    ----------
-    delay : float
-        A sample with stamp t was measured at t - delay [s].
-    heading_delay : float
-        Additional delay of the yaw [s].
-    """
+    """The stamps of the reference are late."""
 
     delay: float = 0.0
+    """A sample with stamp t was measured at t - delay [s]."""
     heading_delay: float = 0.0
+    """Additional delay of the yaw [s]."""
 
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
         """Add the delays."""
@@ -79,20 +68,14 @@ class WarmingGyro(Peculiarity):
 
     Its bias follows the temperature, which approaches the ambient one exponentially. The bias is
     zero at the start of a drive, as after a calibration.
-
-    Parameters
-    ----------
-    rate : float
-        Mean size of the initial rate of change of the bias over drives [rad/s^2].
-    settles : float
-        Time constant of the temperature [s].
-    unrest : float
-        Additional random walk of the bias over one second, as a share of its drift in one second.
     """
 
     rate: float
+    """Mean size of the initial rate of change of the bias over drives [rad/s^2]."""
     settles: float = 200.0
+    """Time constant of the temperature [s]."""
     unrest: float = 0.5
+    """Additional random walk of the bias over one second, as a share of its drift in one second."""
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator

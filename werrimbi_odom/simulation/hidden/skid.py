@@ -27,18 +27,13 @@ class SkidSteer(Peculiarity):
     The force of each tyre opposes its sliding on the floor and is proportional to its load and
     sliding velocity, with a larger factor across than along. The motion is that of zero total force
     and torque (without inertia).
-
-    Parameters
-    ----------
-    multiplier : float
-        Turn by the wheels over turn of the body, above 1; determines the lateral stiffness.
-    front, left : float
-        Share of the load on the front and on the left wheels.
     """
 
     multiplier: float
+    """Turn by the wheels over turn of the body, above 1; determines the lateral stiffness."""
     front: float = 0.5
     left: float = 0.5
+    """Share of the load on the front and on the left wheels."""
 
     def __post_init__(self) -> None:
         if self.multiplier <= 1.0:

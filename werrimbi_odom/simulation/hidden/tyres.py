@@ -39,15 +39,10 @@ def weighed(recording: Recording, loads: Floats, rng: np.random.Generator) -> Re
 
 @dataclass(frozen=True)
 class RadiusFollowsTemperature(Peculiarity):
-    """Both wheels expand with temperature (`wheel_temperature_c`, measured with a noise of 0.1 K).
-
-    Parameters
-    ----------
-    expansion : float
-        Relative increase per kelvin above 20 degrees Celsius [1/K].
-    """
+    """Both wheels expand with temperature (`wheel_temperature_c`, with a noise of 0.1 K)."""
 
     expansion: float
+    """Relative increase per kelvin above 20 degrees Celsius [1/K]."""
 
     def _temperature(self, rng: np.random.Generator) -> tuple[float, float, float, float]:
         """Temperature of a run: mean [C], swing [K], angular frequency [rad/s], phase [rad]."""
@@ -79,15 +74,10 @@ class RadiusFollowsTemperature(Peculiarity):
 
 @dataclass(frozen=True)
 class RadiusFollowsPayload(Peculiarity):
-    """Both tyres deflect under a payload, which is weighed (`payload_kg`, with a noise of 50 g).
-
-    Parameters
-    ----------
-    yielding : float
-        Relative decrease of the radius per kilogram [1/kg].
-    """
+    """Both tyres deflect under a payload, which is weighed (`payload_kg`, with a noise of 50 g)."""
 
     yielding: float
+    """Relative decrease of the radius per kilogram [1/kg]."""
 
     @staticmethod
     def _load(at: Floats | float, times: Floats, loads: Floats) -> Floats:
@@ -116,16 +106,11 @@ class RadiusFollowsPayload(Peculiarity):
 
 @dataclass(frozen=True)
 class TyreSquash(Peculiarity):
-    """The radius of a soft tyre changes with the square of its speed.
-
-    Parameters
-    ----------
-    loss : float
-        Relative decrease of the radius at the angular speed of a wheel of the initial radius at
-        1 m/s; negative for an increase. Centrifugal force and relaxation depend on angular speed.
-    """
+    """The radius of a soft tyre changes with the square of its speed."""
 
     loss: float
+    """Relative decrease of the radius at the angular speed of a wheel of the initial radius at 1
+    m/s; negative for an increase. Centrifugal force and relaxation depend on angular speed."""
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
         """Change the radius of each wheel with its own speed."""
@@ -146,21 +131,15 @@ class LoadTransfer(Peculiarity):
     By the balance of torques the moved load is the mass times the acceleration of the axle's middle
     times the height, over the distance between the tyres (or between axle and skid). Half the
     robot's weight on one tyre compresses its radius by the share `softness`.
-
-    Parameters
-    ----------
-    softness : float
-        Relative decrease of a radius under half the robot's weight.
-    height : float
-        Height of the centre of mass over half the base, for the lateral part.
-    length : float
-        The same height over the distance from axle to skid, for the longitudinal part; negative if
-        the driven wheels are unloaded as the robot accelerates; 0 for none.
     """
 
     softness: float
+    """Relative decrease of a radius under half the robot's weight."""
     height: float
+    """Height of the centre of mass over half the base, for the lateral part."""
     length: float
+    """The same height over the distance from axle to skid, for the longitudinal part; negative if
+    the driven wheels are unloaded as the robot accelerates; 0 for none."""
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Each wheel travels less or more by the change of its radius."""

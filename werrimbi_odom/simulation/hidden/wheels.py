@@ -24,21 +24,14 @@ def with_wheel(chassis: Chassis, side: Side, wheel: WheelPlan) -> Chassis:
 
 @dataclass(frozen=True)
 class EccentricWheel(Peculiarity):
-    """The axle does not pass through the wheel's centre.
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    amplitude : float
-        Distance between them [m].
-    phase : float
-        Angle of the wheel at which its centre is ahead of the axle [rad]; unrelated to the counter,
-        unless the robot's counters keep their zero.
-    """
+    """The axle does not pass through the wheel's centre."""
 
     side: Side
     amplitude: float
+    """Distance between them [m]."""
     phase: float
+    """Angle of the wheel at which its centre is ahead of the axle [rad]; unrelated to the counter,
+    unless the robot's counters keep their zero."""
 
     def chassis(self, chassis: Chassis) -> Chassis:
         """Offset the wheel from its axle."""
@@ -48,17 +41,11 @@ class EccentricWheel(Peculiarity):
 
 @dataclass(frozen=True)
 class OvalWheel(Peculiarity):
-    """An elliptic wheel: an error with twice its rotational frequency.
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    amplitude : float
-        Half the difference between its largest and its smallest radius [m].
-    """
+    """An elliptic wheel: an error with twice its rotational frequency."""
 
     side: Side
     amplitude: float
+    """Half the difference between its largest and its smallest radius [m]."""
 
     def chassis(self, chassis: Chassis) -> Chassis:
         """Replace the sphere by an ellipsoid."""
@@ -74,25 +61,17 @@ class TreadBump(Peculiarity):
     For a small rotation a wheel travels in proportion to the height of its hub. A soft tread has a
     contact patch, and raises the hub by the bump weighted with the pressure in the patch, which is
     a parabola with its maximum at the middle.
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    thickness : float
-        Thickness of the bump [m]; negative for the depth of a flat.
-    around : float
-        Angle of the wheel that it covers [rad].
-    at : float
-        Angle of the wheel at which its middle is on the floor [rad]; see `EccentricWheel.phase`.
-    patch : float
-        Half the angle of the contact patch [rad].
     """
 
     side: Side
     thickness: float
+    """Thickness of the bump [m]; negative for the depth of a flat."""
     around: float
+    """Angle of the wheel that it covers [rad]."""
     at: float
+    """Angle of the wheel at which its middle is on the floor [rad]; see `EccentricWheel.phase`."""
     patch: float = 0.25
+    """Half the angle of the contact patch [rad]."""
 
     def higher(self, angle: float) -> float:
         """Additional height of the hub at an angle of the wheel [m]."""
@@ -124,17 +103,11 @@ class TreadBump(Peculiarity):
 
 @dataclass(frozen=True)
 class Backlash(Peculiarity):
-    """Free play between the encoder's shaft and the wheel.
-
-    Parameters
-    ----------
-    side : "left" or "right"
-    travel : float
-        Travel from stop to stop at the rim [m].
-    """
+    """Free play between the encoder's shaft and the wheel."""
 
     side: Side
     travel: float
+    """Travel from stop to stop at the rim [m]."""
 
     def chassis(self, chassis: Chassis) -> Chassis:
         """Add play between wheel and shaft."""
@@ -144,16 +117,10 @@ class Backlash(Peculiarity):
 
 @dataclass(frozen=True)
 class RadiusDrift(Peculiarity):
-    """Both radii grow or shrink steadily; each drive starts with the true radii (cold wheels).
-
-    Parameters
-    ----------
-    rate : float
-        Relative increase per metre of path or per second.
-    per : "metre" or "second"
-    """
+    """Both radii grow or shrink steadily; each drive starts with the true radii (cold wheels)."""
 
     rate: float
+    """Relative increase per metre of path or per second."""
     per: Literal["metre", "second"]
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
