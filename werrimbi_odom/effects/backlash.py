@@ -8,6 +8,7 @@ from werrimbi_odom.effects.functions import limited, saturated
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
+from werrimbi_odom.model.right_wheel_effect import on_the_right
 
 TRAVEL = Parameter(
     "m", null=0.0, typical=2e-3, bounds=(0.0, 0.05), says="free travel at the rim, stop to stop"
@@ -45,33 +46,11 @@ def left_backlash(
     return wheels._replace(left=wheels.left - drive.left_direction * lost)
 
 
-@wheel_effect(
-    sketch=Sketch(
-        "backlash",
-        "play between the right encoder and its wheel",
-        "after each reversal the encoder turns alone first",
-        ("right",),
-    ),
-    travel=TRAVEL,
-)
+@on_the_right(left_backlash)
 def right_backlash(
     wheels: WheelTravel[Number], drive: Drive[Number], travel: float
 ) -> WheelTravel[Number]:
-    """The right encoder turns freely against its wheel for a while whenever the wheel reverses.
-
-    Play in gears, couplings, keys and belts: the first of the travel after each reversal is the
-    encoder's alone. Before the first reversal nobody knows where in its play the wheel stands, so
-    half of it, the fair guess, is taken from the first motion.
-
-    Formula    right -= direction * change of min(s, travel)          [m]
-               s: travel of the wheel since it reversed, direction: 1 forwards, -1 backwards
-    Signature  after each reversal of the right wheel, in spins too, the same piece of its travel is
-               missing
-    Ruler      hold the encoder's shaft (or let the motor brake) and turn the right wheel by hand
-               from stop to stop: the travel of a chalk mark on the tread
-    Alike      castor_kick, when driven to and fro only: drive spins both ways; encoder_skew and
-               reference_delay, when driven at one speed: drive slowly and fast
-    """
+    """As `left_backlash`, of the right wheel."""
     lost = _taken_up(drive.right_since_reversal, drive.right_reversals, travel)
     return wheels._replace(right=wheels.right - drive.right_direction * lost)
 

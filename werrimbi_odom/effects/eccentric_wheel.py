@@ -8,6 +8,7 @@ from werrimbi_odom.effects.functions import cos
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
+from werrimbi_odom.model.right_wheel_effect import on_the_right
 
 AMPLITUDE = Parameter(
     "m", null=0.0, typical=5e-4, bounds=(0.0, 0.02), says="from the axle to the wheel's centre"
@@ -50,31 +51,11 @@ def eccentric_left_wheel(
     return travel._replace(left=travel.left + _lead(drive.left_angle, amplitude, phase))
 
 
-@wheel_effect(
-    sketch=Sketch(
-        "eccentric",
-        "the axle is off the right wheel's centre",
-        "the right wheel leads and lags once a turn",
-        ("right",),
-    ),
-    quadrature=("amplitude", "phase"),
-    amplitude=AMPLITUDE,
-    phase=PHASE,
-)
+@on_the_right(eccentric_left_wheel)
 def eccentric_right_wheel(
     travel: WheelTravel[Number], drive: Drive[Number], amplitude: float, phase: float
 ) -> WheelTravel[Number]:
-    """The right wheel's axle misses its centre: its lever to the floor is now longer, now shorter.
-
-    The wheel leads and lags once in each of its turns and loses nothing over a whole one. The phase
-    belongs to the counter; where that starts anywhere, each drive has a phase of its own.
-
-    Formula    right -= amplitude * change of cos(right wheel's angle + phase)         [m]
-    Signature  heading and distance swing once in each turn of the right wheel, whatever the speed
-    Ruler      lift the robot, hold a block close to the tread and turn the wheel by hand: the gap
-               varies by twice the amplitude
-    Alike      eccentric_left_wheel, as long as both wheels turn alike: drive curves
-    """
+    """As `eccentric_left_wheel`, of the right wheel."""
     return travel._replace(right=travel.right + _lead(drive.right_angle, amplitude, phase))
 
 

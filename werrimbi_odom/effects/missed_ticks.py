@@ -8,6 +8,7 @@ from werrimbi_odom.effects.functions import limited
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
+from werrimbi_odom.model.right_wheel_effect import on_the_right
 
 RAMP = 0.05
 """Width of the onset as a share of the threshold: a fit needs a slope to estimate the threshold,
@@ -55,31 +56,11 @@ def left_missed_ticks(
     return travel._replace(left=travel.left / (1.0 - _lost(drive.left_speed.end, fraction, above)))
 
 
-@wheel_effect(
-    sketch=Sketch(
-        "lost_counts",
-        "the right encoder loses counts",
-        "above a speed the right encoder loses counts",
-        ("right",),
-    ),
-    fraction=FRACTION,
-    above=ABOVE,
-)
+@on_the_right(left_missed_ticks)
 def right_missed_ticks(
     travel: WheelTravel[Number], drive: Drive[Number], fraction: float, above: float
 ) -> WheelTravel[Number]:
-    """The right encoder loses counts when its wheel turns fast.
-
-    A counter that is read by interrupts, a filter on its lines or an optical disc at its limit lets
-    a share of the marks slip by above some speed.
-
-    Formula    right /= 1 - fraction, where |right speed| > above            [m] = [m] / [1]
-               (setting in within 5 % of that speed)
-    Signature  the right wheel goes farther than its counter says, above a speed and not below it
-    Ruler      lift the robot, chalk the right tyre and let it turn a hundred times, slowly, then
-               fast: the counter shows fewer counts when fast, by the fraction
-    Alike      unequal_wheel_radii, when driven at one speed: drive slow and fast lines
-    """
+    """As `left_missed_ticks`, of the right wheel."""
     return travel._replace(
         right=travel.right / (1.0 - _lost(drive.right_speed.end, fraction, above))
     )

@@ -8,6 +8,7 @@ from werrimbi_odom.effects.functions import share, sin
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
+from werrimbi_odom.model.right_wheel_effect import on_the_right
 
 AMPLITUDE = Parameter(
     "m",
@@ -60,35 +61,11 @@ def oval_left_wheel(
     return travel._replace(left=travel.left + more)
 
 
-@wheel_effect(
-    sketch=Sketch(
-        "oval",
-        "the right wheel is not round",
-        "the right wheel leads and lags twice a turn",
-        ("right",),
-    ),
-    quadrature=("amplitude", "phase"),
-    amplitude=AMPLITUDE,
-    phase=PHASE,
-)
+@on_the_right(oval_left_wheel)
 def oval_right_wheel(
     travel: WheelTravel[Number], drive: Drive[Number], amplitude: float, phase: float
 ) -> WheelTravel[Number]:
-    """The right wheel is not round: its lever to the floor is longer, and shorter, twice in a turn.
-
-    A tyre that stood under its load, a rim that was hit, a wheel printed or cast askew. The wheel
-    leads and lags twice in each of its turns; an ellipse is also a little longer round than a
-    circle of its mean radius. The phase belongs to the counter; where that starts anywhere, each
-    drive has a phase of its own.
-
-    Formula    right += amplitude / 2 * change of sin(2 * right wheel's angle + phase)
-               + (amplitude / radius)^2 / 4 * right                                [m]
-    Signature  heading and distance swing twice in each turn of the right wheel, whatever the speed
-    Ruler      lift the robot, hold a block close to the tread and turn the wheel by hand: the gap
-               varies by twice the amplitude, from widest to narrowest in a quarter of a turn
-    Alike      oval_left_wheel, as long as both wheels turn alike: drive curves. An axle off the
-               centre (eccentric_right_wheel) swings once in a turn
-    """
+    """As `oval_left_wheel`, of the right wheel."""
     more = _more(travel.right, drive.right_angle, amplitude, phase)
     return travel._replace(right=travel.right + more)
 

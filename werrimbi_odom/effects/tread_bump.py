@@ -10,6 +10,7 @@ from werrimbi_odom.effects.functions import limited, within_half_a_turn
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
+from werrimbi_odom.model.right_wheel_effect import on_the_right
 
 WIDTH = math.pi / 3.0
 """Angle of the wheel covered by the bump [rad]. Drives determine its height times its width, and
@@ -69,38 +70,11 @@ def left_tread_bump(
     return travel._replace(left=travel.left + height * _gained(drive.left_angle, place))
 
 
-@wheel_effect(
-    sketch=Sketch(
-        "tread_bump",
-        "a bump on the right tread",
-        "the right wheel gains on its bump, once a turn",
-        ("right",),
-    ),
-    height=HEIGHT,
-    place=PLACE,
-)
+@on_the_right(left_tread_bump)
 def right_tread_bump(
     travel: WheelTravel[Number], drive: Drive[Number], height: float, place: float
 ) -> WheelTravel[Number]:
-    """The right tread has a bump, or a flat, in one place: its lever to the floor is longer there.
-
-    Tape or a patch on the tread, something that stuck to it, a flat from braking hard or from
-    standing. While the wheel rolls on it, its hub stands higher and goes farther for the same
-    angle; the radius of the robot file is that of the rest of the tread. A narrow high bump and a
-    wide low one do the same to drives, so the height is told for a width of a sixth of a turn; of
-    one that covers 30 to 90 degrees it is then out by up to a sixth, whatever is stated. The place
-    belongs to the counter; where that starts anywhere, each drive has a place of its own.
-
-    Formula    right += height * angle that the right wheel turns while it stands on it    [m]
-               (that is from -30 to 30 degrees of its angle + place, in each turn)
-    Signature  heading and distance jump in one part of each turn of the right wheel, whatever the
-               speed
-    Ruler      lift the robot, hold a block close to the tread and turn the wheel by hand: the gap
-               is even but for one place
-    Alike      left_tread_bump, as long as both wheels turn alike: drive curves. An axle off the
-               centre (eccentric_right_wheel) swings once in a turn as well, but evenly: a small
-               bump is one to its drives, and more drives tell them apart
-    """
+    """As `left_tread_bump`, of the right wheel."""
     return travel._replace(right=travel.right + height * _gained(drive.right_angle, place))
 
 

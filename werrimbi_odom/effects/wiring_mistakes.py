@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.twins import turning_the_wrong_way
 from werrimbi_odom.model.effect import Sketch, wiring_mistake
+from werrimbi_odom.model.right_wheel_effect import on_the_right
 from werrimbi_odom.model.wiring import Wiring
 
 
@@ -50,24 +51,7 @@ def left_wheel_reversed(wiring: Wiring) -> Wiring:
     return wiring._replace(left_sign=-wiring.left_sign)
 
 
-@wiring_mistake(
-    sketch=Sketch(
-        "wrong_sign",
-        "the right counter has the wrong sign",
-        "driving forwards, the right counter falls",
-        ("right",),
-    ),
-)
+@on_the_right(left_wheel_reversed)
 def right_wheel_reversed(wiring: Wiring) -> Wiring:
-    """The right counter counts backwards while its wheel rolls forwards.
-
-    Motors on the two sides are mounted facing each other, so one of the encoders must be negated
-    somewhere; here it was not, or twice.
-
-    Formula    right = -right
-    Signature  straight driving comes out as spinning on the spot, and spins as straight driving
-    Ruler      push the robot forwards by hand: both counters must grow
-    Alike      left_wheel_reversed, on a robot that drives stern first before a mirrored reference:
-               push it forwards and look
-    """
+    """As `left_wheel_reversed`, of the right wheel."""
     return wiring._replace(right_sign=-wiring.right_sign)
