@@ -16,7 +16,8 @@ from ruamel.yaml import YAML
 
 from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter, Value
+from werrimbi_odom.files.node_parameter import NodeParameter, Value
+from werrimbi_odom.files.parameters import PARAMETERS
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.robot_file_rewrite import write_robot_file
 

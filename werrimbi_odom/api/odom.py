@@ -28,7 +28,8 @@ from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 from werrimbi_odom.progress import Show, silent
-from werrimbi_odom.report.odom_summary import Reckoning, document_of, reckoning_of
+from werrimbi_odom.report.odom_summary import document_of, json_of
+from werrimbi_odom.report.reckoning import Reckoning, reckoning_of
 
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
 _BLOCK = 32768  # rows formatted at once
@@ -86,7 +87,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     return Reckoned(
         found=found,
         document=lambda: document_of(found, robot.path),
-        figures_of_json=found.as_json,
+        figures_of_json=lambda: json_of(found),
     )
 
 

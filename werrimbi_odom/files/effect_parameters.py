@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 from werrimbi_odom.effects import lookup
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError, nearest
-from werrimbi_odom.files.parameters import PARAMETERS, NodeParameter
+from werrimbi_odom.files.node_parameter import NodeParameter
+from werrimbi_odom.files.parameters import PARAMETERS
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 
 EFFECTS = "effects"

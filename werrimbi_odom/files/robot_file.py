@@ -22,6 +22,7 @@ from werrimbi_odom.files.effect_parameters import (
     is_effect_or_near,
     named_effects,
 )
+from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.files.other_drivers_parameters import (
     OF_TURTLEBOT,
     TURTLEBOT,
@@ -33,8 +34,6 @@ from werrimbi_odom.files.parameters import (
     PARAMETERS,
     TICKS,
     VIRTUAL_TICKS_PER_REVOLUTION,
-    NodeParameter,
-    Value,
     defaults,
     find,
     limits_of,

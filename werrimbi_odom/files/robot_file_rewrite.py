@@ -12,12 +12,8 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.effect_parameters import (
     parameters_of,
 )
-from werrimbi_odom.files.parameters import (
-    PARAMETERS,
-    Value,
-    find,
-    robot_of,
-)
+from werrimbi_odom.files.node_parameter import Value
+from werrimbi_odom.files.parameters import PARAMETERS, find, robot_of
 from werrimbi_odom.files.robot_file import PARAMETER_KEY, RobotFile, robot_file_of_text
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.files.yaml_edit import known_values, with_values

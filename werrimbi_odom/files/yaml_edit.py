@@ -18,7 +18,7 @@ from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from werrimbi_odom.files.effect_parameters import EFFECTS
-from werrimbi_odom.files.parameters import Value
+from werrimbi_odom.files.node_parameter import Value
 from werrimbi_odom.files.yaml_text import plain, round_trip
 from werrimbi_odom.model.effect import AppliedEffect, Parameter
 

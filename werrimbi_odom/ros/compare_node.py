@@ -12,23 +12,19 @@ from __future__ import annotations
 import math
 import sys
 from collections import Counter, deque
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from std_msgs.msg import Float64
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
-from werrimbi_odom.ros import compare_parameters, counter_inputs
+from werrimbi_odom.ros import compare_parameters
 from werrimbi_odom.ros.compare_inputs import (
     REFERENCE_TYPES,
     Clockwork,
@@ -44,6 +40,7 @@ from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.live_diagnosis import watching_of
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.topics import publisher, subscribe
 
 WAITING = 1_000
 """Largest number of reference poses that wait for odometry."""
@@ -86,16 +83,17 @@ class CompareNode(Node):  # type: ignore[misc]
         self._level = DiagnosticStatus.OK
         self._moved_well = True
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._error = self._publisher(Vector3Stamped, "~/error")
-        self._pose = self._publisher(PoseWithCovarianceStamped, "~/error_with_covariance")
+        self._error = publisher(self, Vector3Stamped, "~/error")
+        self._pose = publisher(self, PoseWithCovarianceStamped, "~/error_with_covariance")
         self._leg_nees, self._nees, self._low, self._high, self._coverage = (
-            self._publisher(Float64, f"~/{name}")
+            publisher(self, Float64, f"~/{name}")
             for name in ("leg_nees", "nees", "nees_low", "nees_high", "coverage")
         )
-        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
-        self._subscribe(Odometry, "odom", self._on_odometry)
-        self._subscribe(REFERENCE_TYPES[kind], "reference", self._on_reference)
-        self._watching = watching_of(self, values, REFERENCE_TYPES[kind], self._subscribe)
+        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics")
+        listen = partial(subscribe, self, overridable=True)
+        listen(Odometry, "odom", self._on_odometry)
+        listen(REFERENCE_TYPES[kind], "reference", self._on_reference)
+        self._watching = watching_of(self, values, REFERENCE_TYPES[kind], listen)
         self.create_timer(PERIOD, self._report, clock=self._steady)
         topics = tuple(self.resolve_topic_name(name) for name in self._heard)
         self._company = Company(self, topics)
@@ -281,26 +279,6 @@ class CompareNode(Node):  # type: ignore[misc]
             self._told.add(key)
             self.get_logger().warning(f"{key}: {detail} (from now on only counted on /diagnostics)")
         self._counts[key] += 1
-
-    def _publisher(self, message_type: type, topic: str) -> Publisher:
-        callbacks = PublisherEventCallbacks(use_default_callbacks=False)
-        return self.create_publisher(
-            message_type, topic, QoSProfile(depth=100), event_callbacks=callbacks
-        )
-
-    def _subscribe(
-        self, message_type: type, topic: str, take: Callable[[Any], None], *, raw: bool = False
-    ) -> None:
-        with counter_inputs.qos_errors_of(topic):
-            self.create_subscription(
-                message_type,
-                topic,
-                take,
-                counter_inputs.sensor_qos(),
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-                raw=raw,
-            )
 
 
 def main(args: list[str] | None = None) -> int:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.files.parameters import NodeParameter, Value
+from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declaring import table

@@ -10,42 +10,29 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
 from builtin_interfaces.msg import Time as Stamp
 from rclpy.clock import Clock
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.exceptions import ParameterException
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, Int64, Int64MultiArray
 
-from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.counter_pairs import Pairing
-from werrimbi_odom.files.parameters import Value, robot_of
+from werrimbi_odom.files.node_parameter import Value
+from werrimbi_odom.files.parameters import robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.health import Health
+from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.wheel_side import COUNTER_LIMIT, WheelSide
 
 Take = Callable[[Stamp, float, float], None]
 """Callback for a reading: stamp, left and right counts."""
 Info = Mapping[str, Any]
 """DDS information on a message: source and reception stamps [ns]."""
-
-
-def sensor_qos() -> QoSProfile:
-    """Best effort and volatile match every publisher; the depth is 0.1 s at 1 kHz."""
-    return QoSProfile(
-        depth=100,
-        reliability=ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.VOLATILE,
-    )
 
 
 @dataclass(frozen=True)
@@ -270,25 +257,5 @@ def _side(values: Mapping[str, Value], side: str, bits: int) -> WheelSide:
 def _subscribe(
     wiring: InputOptions, message_type: type, topic: str, arrived: Callable[..., None]
 ) -> None:
-    with qos_errors_of(topic):
-        wiring.node.create_subscription(
-            message_type,
-            topic,
-            arrived,
-            sensor_qos(),
-            # Every default callback for a QoS event costs the executor some 10 µs per message, and
-            # with best effort and volatile no QoS can be incompatible.
-            event_callbacks=SubscriptionEventCallbacks(
-                message_lost=wiring.health.lose, use_default_callbacks=False
-            ),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        )
-
-
-@contextmanager
-def qos_errors_of(topic: str) -> Iterator[None]:
-    """Convert exceptions of rclpy on an invalid QoS override to one that names the topic."""
-    try:
-        yield
-    except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:
-        raise InputError(f"QoS override of {topic}: {error}") from error
+    lost = wiring.health.lose
+    subscribe(wiring.node, message_type, topic, arrived, overridable=True, lost=lost)

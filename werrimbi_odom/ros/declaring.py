@@ -14,7 +14,7 @@ from rclpy.parameter import Parameter as Given
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as robot_file
 from werrimbi_odom.files.effect_parameters import EFFECTS
-from werrimbi_odom.files.parameters import NodeParameter, Value
+from werrimbi_odom.files.node_parameter import NodeParameter, Value
 
 
 def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value]:

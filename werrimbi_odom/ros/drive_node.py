@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
@@ -21,9 +20,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point, Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Trigger
@@ -34,12 +31,13 @@ from werrimbi_odom.driving.limits import STILL, Command
 from werrimbi_odom.driving.watch import OdometryReading
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.ros import counter_inputs, drive_parameters, planar
+from werrimbi_odom.ros import drive_parameters, planar
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.topics import publisher, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 TICK = 0.02
@@ -80,16 +78,16 @@ class DriveNode(Node):  # type: ignore[misc]
         self._held_until = -math.inf
         self._told = self._driver.state
         self._shown_from: Pose | None = None
-        self._commands = self._publisher(TwistStamped if self._stamped else Twist, "cmd_vel")
+        self._commands = publisher(self, TwistStamped if self._stamped else Twist, "cmd_vel", 10)
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._path = self._publisher(Marker, "~/path", latched)
-        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
-        self._subscribe(Odometry, "odom", self._on_odometry)
+        self._path = publisher(self, Marker, "~/path", latched)
+        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics", 10)
+        subscribe(self, Odometry, "odom", self._on_odometry)
         if values["scan_topic"]:
-            self._subscribe(LaserScan, str(values["scan_topic"]), self._on_scan)
+            subscribe(self, LaserScan, str(values["scan_topic"]), self._on_scan)
         if values["imu_topic"]:
             self._gyro = UprightGyro(str(values["imu_topic"]), self.get_logger())
-            self._subscribe(Imu, str(values["imu_topic"]), self._on_imu)
+            subscribe(self, Imu, str(values["imu_topic"]), self._on_imu)
         self.create_service(Trigger, "~/start", self._on_start)
         self.create_service(Trigger, "~/stop", self._on_stop)
         self.create_service(Trigger, "~/check", self._on_check)
@@ -293,21 +291,6 @@ class DriveNode(Node):  # type: ignore[misc]
         return (
             f"another publishes {topic} too ({', '.join(sorted(names))}); a node that was killed "
             "is listed for 20 s"
-        )
-
-    def _publisher(self, kind: type, topic: str, qos: QoSProfile | None = None) -> Publisher:
-        callbacks = PublisherEventCallbacks(use_default_callbacks=False)
-        return self.create_publisher(
-            kind, topic, qos or QoSProfile(depth=10), event_callbacks=callbacks
-        )
-
-    def _subscribe(self, kind: type, topic: str, take: Callable[[Any], None]) -> None:
-        self.create_subscription(
-            kind,
-            topic,
-            take,
-            counter_inputs.sensor_qos(),
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
 
 

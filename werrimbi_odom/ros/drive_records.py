@@ -12,7 +12,7 @@ from pathlib import Path
 from rclpy.node import Node
 
 from werrimbi_odom.files.bag_writing import known_types
-from werrimbi_odom.files.parameters import Value
+from werrimbi_odom.files.node_parameter import Value
 from werrimbi_odom.ros.bagging import Bagging
 
 LINGER = 0.5

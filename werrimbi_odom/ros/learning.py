@@ -8,13 +8,10 @@ The estimator is `werrimbi_odom.model.phases`; this module subscribes, and decid
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Imu
 
 from werrimbi_odom.errors import InputError
@@ -24,6 +21,7 @@ from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import counter_inputs, planar
 from werrimbi_odom.ros.live_odometer import LiveOdometer
+from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 FINE = 0.03
@@ -87,20 +85,7 @@ class Learning(NoLearning):
             "pose_stamped": (PoseStamped, self._see_pose),
             "odometry": (Odometry, self._see_odometry),
         }[kind]
-        self._subscribe(wiring, message_type, see)
-
-    def _subscribe(
-        self, wiring: counter_inputs.InputOptions, message_type: type, see: Callable[[Any], None]
-    ) -> None:
-        with counter_inputs.qos_errors_of(self.topic):
-            wiring.node.create_subscription(
-                message_type,
-                self.topic,
-                see,
-                counter_inputs.sensor_qos(),
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            )
+        subscribe(wiring.node, message_type, topic, see, overridable=True)
 
     def after(self, tracker: LiveOdometer) -> None:
         """Process the last reading of the odometer."""

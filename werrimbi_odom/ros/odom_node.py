@@ -18,12 +18,9 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
@@ -39,6 +36,7 @@ from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
+from werrimbi_odom.ros.topics import publisher, subscribe
 from werrimbi_odom.ros.transforms import transform_sender
 
 STATUS_PERIOD = 0.2
@@ -74,10 +72,10 @@ class OdomNode(Node):  # type: ignore[misc]
         self._viewers = 0
         self._rounds = 0
         self._level = DiagnosticStatus.OK
-        self._odometry = self._publisher(Odometry, "odom", 100, overridable=True)
-        self._pieces = self._publisher(MarkerArray, "~/pieces", 100)
-        self._status = self._publisher(DiagnosticStatus, "~/status", 10)
-        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics", 10)
+        self._odometry = publisher(self, Odometry, "odom", 100, overridable=True)
+        self._pieces = publisher(self, MarkerArray, "~/pieces", 100)
+        self._status = publisher(self, DiagnosticStatus, "~/status", 10)
+        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics", 10)
         self._send_transform = (
             transform_sender(self, "enable_odom_tf") if values["enable_odom_tf"] else None
         )
@@ -85,12 +83,8 @@ class OdomNode(Node):  # type: ignore[misc]
         self._learning = learning_of(wiring, robot)
         self._slip = slip_of(wiring, robot)
         self._input = counter_inputs.subscribed(wiring)
-        self.create_subscription(
-            PoseWithCovarianceStamped,
-            "set_pose",
-            self._on_set_pose,
-            10,
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        subscribe(
+            self, PoseWithCovarianceStamped, "set_pose", self._on_set_pose, qos=QoSProfile(depth=10)
         )
         self.create_service(Trigger, "~/reset", self._on_reset)
         self.add_pre_set_parameters_callback(partial(odom_parameters.with_floats, self._changeable))
@@ -228,21 +222,6 @@ class OdomNode(Node):  # type: ignore[misc]
         self._diagnostics.publish(array)
 
     # ------------------------------------------------------------------------- set-up
-
-    def _publisher(
-        self, message_type: type, topic: str, depth: int, *, overridable: bool = False
-    ) -> Publisher:
-        overrides = QoSOverridingOptions.with_default_policies() if overridable else None
-        with counter_inputs.qos_errors_of(topic):
-            return self.create_publisher(
-                message_type,
-                topic,
-                QoSProfile(depth=depth),
-                # Every default callback for a QoS event costs the executor some 10 µs per message.
-                # An incompatible subscriber reports it on its own side.
-                event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
-                qos_overriding_options=overrides,
-            )
 
     def _say_hello(self) -> None:
         log, values = self.get_logger(), self._settings.values

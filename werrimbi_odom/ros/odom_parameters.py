@@ -19,8 +19,8 @@ from rclpy.parameter import Parameter
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as table
 from werrimbi_odom.files.effect_parameters import EFFECTS, Named, named_effects, parameters_of
+from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.files.other_drivers_parameters import is_of_diff_drive
-from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -47,7 +47,7 @@ CHANGEABLE = frozenset(
 
 _QOS = "qos_overrides."
 
-Changeable = Mapping[str, table.NodeParameter]
+Changeable = Mapping[str, NodeParameter]
 """Parameters that may change at run time, by name."""
 
 
@@ -282,7 +282,7 @@ def _plain(value: object) -> object:
     return "nothing" if value is None else value
 
 
-def _descriptor(item: table.NodeParameter, may_change: bool) -> ParameterDescriptor:
+def _descriptor(item: NodeParameter, may_change: bool) -> ParameterDescriptor:
     unit = f" [{item.unit}]" if item.unit else ""
     description = ParameterDescriptor(description=item.says + unit, read_only=not may_change)
     lowest = item.minimum if item.above is None else item.above

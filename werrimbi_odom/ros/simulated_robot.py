@@ -20,20 +20,18 @@ from builtin_interfaces.msg import Time as Stamp
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped, Twist, TwistStamped
 from rclpy.clock import Clock, ClockType
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock as ClockMessage
 from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_srvs.srv import Trigger
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.ros import counter_inputs, simulated_parameters
+from werrimbi_odom.ros import simulated_parameters
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.topics import publisher, subscribe
 from werrimbi_odom.ros.transforms import transform_sender
 
 if TYPE_CHECKING:
@@ -84,24 +82,19 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         if values["room"] != "none":
             turn = 1.0 / self._robot.lidar.rate_hz
             self._dues.append(_Due(self._robot.lidar.rate_hz, turn, self._publish_scan))
-            self._scan = self._publisher(LaserScan, "scan")
+            self._scan = publisher(self, LaserScan, "scan")
         if self._publishes_clock:
             self._dues.insert(0, _Due(CLOCK_RATE, 0.0, self._publish_clock))
-        self._joints = self._publisher(JointState, "joint_states")
-        self._imu = self._publisher(Imu, "imu")
-        self._reference = self._publisher(PoseStamped, "reference")
+        self._joints = publisher(self, JointState, "joint_states")
+        self._imu = publisher(self, Imu, "imu")
+        self._reference = publisher(self, PoseStamped, "reference")
         if self._publishes_clock:
-            self._clock_out = self._publisher(ClockMessage, "/clock")
-        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
+            self._clock_out = publisher(self, ClockMessage, "/clock")
+        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics")
         self._send = transform_sender(self, "enable_tf") if values["enable_tf"] else None
         stamped = bool(values["use_stamped_vel"])
-        self.create_subscription(
-            TwistStamped if stamped else Twist,
-            "cmd_vel",
-            (lambda message: self._command(message.twist)) if stamped else self._command,
-            counter_inputs.sensor_qos(),
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-        )
+        take = (lambda message: self._command(message.twist)) if stamped else self._command
+        subscribe(self, TwistStamped if stamped else Twist, "cmd_vel", take)
         self.create_service(Trigger, "~/truth", self._tell)
         self._commanded = -math.inf
         self._asked = (0.0, 0.0)
@@ -250,10 +243,6 @@ class SimulatedRobot(Node):  # type: ignore[misc]
     def _stamp(self, time: float) -> Stamp:
         seconds, nanoseconds = divmod(round(1e9 * (self._epoch + time)), 10**9)
         return Stamp(sec=seconds, nanosec=nanoseconds)
-
-    def _publisher(self, kind: type, topic: str) -> Publisher:
-        callbacks = PublisherEventCallbacks(use_default_callbacks=False)
-        return self.create_publisher(kind, topic, QoSProfile(depth=100), event_callbacks=callbacks)
 
 
 class _Due:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import Imu
 
 from werrimbi_odom.model.robot import Robot
@@ -18,6 +17,7 @@ from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import counter_inputs
 from werrimbi_odom.ros.learning import FASTEST
 from werrimbi_odom.ros.live_odometer import LiveOdometer
+from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 
@@ -53,13 +53,7 @@ class Slip(NoSlip):
         self._gyro = UprightGyro(topic, wiring.node.get_logger())
         self._heard = 0
         self._tracker: LiveOdometer | None = None
-        wiring.node.create_subscription(
-            Imu,
-            topic,
-            self._see,
-            counter_inputs.sensor_qos(),
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-        )
+        subscribe(wiring.node, Imu, topic, self._see)
 
     def missed(self, tracker: LiveOdometer) -> Missed:
         """Variance added by the last reading of the odometer."""
