@@ -20,18 +20,11 @@ SIXTH = math.pi / 3.0
 """Of a turn [rad]: for that the library tells how high a bump is. Drives hold height by width."""
 
 _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
-    "track_width": lambda it: {"multiplier": it["multiplier"]},
-    "unequal_wheel_radii": lambda it: {"ratio": it["ratio"]},
-    "wheel_radius_scale": lambda it: {"multiplier": it["multiplier"]},
     "eccentric_left_wheel": lambda it: {"amplitude": it["amplitude"]},
     "eccentric_right_wheel": lambda it: {"amplitude": it["amplitude"]},
-    "longitudinal_slip": lambda it: {"coefficient": it["coefficient"]},
-    "coulomb_slip": lambda it: {"coefficient": it["coefficient"], "above": it["above"]},
-    "lateral_slip": lambda it: {"creep": it["creep"]},
     "turn_dependent_track": lambda it: {
         name: it["coefficient"] * (it["on"] == name) for name in ("sharpness", "sense")
     },
-    "sideways_drift": lambda it: {"angle": it["angle"]},
     "floor_slope": lambda it: {
         "x": it["creep"] * math.cos(it["downhill"]),
         "y": it["creep"] * math.sin(it["downhill"]),
@@ -41,19 +34,12 @@ _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
         "alternating": it["angle"] * it["alternating"],
         "length": it["trail"],
     },
-    "left_backlash": lambda it: {"travel": it["travel"]},
-    "right_backlash": lambda it: {"travel": it["travel"]},
-    "left_missed_ticks": lambda it: {"fraction": it["fraction"], "above": it["above"]},
-    "right_missed_ticks": lambda it: {"fraction": it["fraction"], "above": it["above"]},
     "radius_drift": lambda it: {
         name: it["rate"] * (it["per"] == per)
         for name, per in (("per_metre", "metre"), ("per_second", "second"))
     },
-    "reference_lever_arm": lambda it: {"x": it["x"], "y": it["y"]},
     "reference_yaw_offset": lambda it: {"angle": it["yaw"]},
-    "reference_delay": lambda it: {"delay": it["delay"]},
     "reference_heading_delay": lambda it: {"delay": it["heading_delay"]},
-    "encoder_skew": lambda it: {"delay": it["delay"]},
     "oval_left_wheel": lambda it: {"amplitude": it["amplitude"]},
     "oval_right_wheel": lambda it: {"amplitude": it["amplitude"]},
     "left_tread_bump": lambda it: {"height": it["thickness"] * it["around"] / SIXTH},

@@ -192,7 +192,7 @@ def has_virtual_ticks(values: Mapping[str, Value]) -> bool:
 
 
 def leftover_qos_overrides(node: Node) -> list[str]:
-    """QoS overrides that no topic of the node uses: misspelt ones."""
+    """Overrides of a QoS that no topic of the node uses: misspelt ones."""
     with node.handle:
         given = node.handle.get_parameters(Parameter)
     return [name for name in given if name.startswith(_QOS) and not node.has_parameter(name)]

@@ -62,9 +62,6 @@ class ValueAndStd:
 class Umbmark:
     """Result of UMBmark; angles in rad, lengths in m."""
 
-    centre_cw: tuple[float, float]
-    """Centre of gravity of the clockwise offsets (equation 5)."""
-    centre_ccw: tuple[float, float]
     e_max: float
     """E_max,syst (equation 12)."""
     angles: Angles
@@ -132,8 +129,6 @@ def umbmark(squares: Squares, robot: Robot) -> Umbmark:
         return _estimate(value, np.array([per_base, per_imbalance]) @ inverse, squares)
 
     return Umbmark(
-        centre_cw=(float(measured[0]), float(measured[1])),
-        centre_ccw=(float(measured[2]), float(measured[3])),
         e_max=e_max_syst(squares),
         angles=angles,
         paper=paper,

@@ -211,7 +211,7 @@ def _alone(drives: DriveNumbers, given: Floats, limits: Floats) -> Values:
 def _silenced(
     shown: Sequence[tuple[Floats, Floats]], limits: Sequence[float]
 ) -> list[tuple[Floats, Floats]]:
-    """NaN where a drive tells less than the prior."""
+    """Values that are NaN where a drive tells less than the prior."""
     heard = [std < 0.5 * limit for (_, std), limit in zip(shown, limits, strict=True)]
     return [
         (np.where(told, value, np.nan), np.where(told, std, np.nan))

@@ -19,7 +19,6 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import (
     Sides,
     Unit,
     error_of,
-    median_of,
     sides_of,
 )
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
@@ -39,7 +38,6 @@ class Errors:
 
     train: float
     holdout: float
-    holdout_median: float
     yaw: tuple[float, float]
     """Root mean square heading errors of train and holdout [rad]."""
     quiet: tuple[float, float]
@@ -84,7 +82,6 @@ class Judge:
         return Errors(
             error_of(train, unit),
             error_of(holdout, unit),
-            median_of(holdout, unit),
             (error_of(train, "rad"), error_of(holdout, "rad")),
             (error_of(train.quiet, unit), error_of(holdout.quiet, unit)),
             unit,

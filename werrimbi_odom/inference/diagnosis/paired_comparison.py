@@ -78,15 +78,6 @@ def error_of(legs: Legs, unit: Unit) -> float:
     return figures.rmse_position_m if unit == "m" else figures.rmse_yaw_rad
 
 
-def median_of(legs: Legs, unit: Unit) -> float:
-    """Median size of the errors of all legs, jumps of the reference included."""
-    if unit == "m":
-        return statistics_of(legs).median_position_m
-    turned = np.abs(legs.errors.error[:, 2])
-    known = turned[np.isfinite(turned)]
-    return float(np.median(known)) if known.size else float("nan")
-
-
 def _chance(before: Legs, after: Legs, unit: Unit) -> float:
     """P-value of the second model's larger error, if both models are equally good."""
     own = slice(0, 2) if unit == "m" else slice(2, 3)

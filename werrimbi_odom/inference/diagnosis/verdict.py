@@ -90,8 +90,6 @@ class Diagnosis:
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
     holdout: Sides
-    medians: Sides
-    """Median position error on the held-out runs, outliers included [m]."""
     headings: tuple[Sides, Sides]
     """Heading errors of `train` and `holdout` [rad]: headings alone are judged by them."""
     quiet: tuple[Sides, Sides]
@@ -212,7 +210,6 @@ def told(
         laid,
         Sides(start.train, last.train, start.unit),
         start.to(last),
-        Sides(start.holdout_median, last.holdout_median, start.unit),
         (Sides(start.yaw[0], last.yaw[0], "rad"), Sides(start.yaw[1], last.yaw[1], "rad")),
         (
             Sides(start.quiet[0], last.quiet[0], start.unit),

@@ -84,8 +84,6 @@ class Form:
     expression: Callable[[str], str]
     """Python code for the share on a side."""
     formula: str
-    uses: tuple[str, ...]
-    """Names to import from effects.shapes."""
     numbers: int
     """Number of free parameters."""
     constants: tuple[str, ...] = ()
@@ -163,7 +161,6 @@ def _line(seen: Seen, amount: Amount, size: float) -> Form:
         (Declared("slope", unit, 0.0, slope, wide(slope), says),),
         lambda side: f"slope * {away.format(seen.span(side))}",
         f"share = slope * {f'({seen.name} - USUAL)' if constants else seen.name}",
-        (),
         1,
         constants,
         needs_span=True,
@@ -180,7 +177,6 @@ def _square(seen: Seen, amount: Amount, size: float) -> Form:
         (Declared("growth", unit, 0.0, growth, wide(growth), says),),
         lambda side: f"growth * mean_square({seen.span(side)})",
         f"share = growth * {seen.name}^2",
-        ("mean_square",),
         1,
         needs_span=True,
     )
@@ -213,7 +209,6 @@ def _step(seen: Seen, amount: Amount, size: float) -> Form:
         ),
         lambda side: f"height * mean_step({seen.span(side)}, edge, WIDTH)",
         f"share = height, where {seen.name} > edge",
-        ("mean_step",),
         2,
         (f"WIDTH = {width:.2g}  # of {seen.name}, over which it sets in",),
         needs_span=True,
@@ -242,7 +237,6 @@ def _curve(seen: Seen, amount: Amount, size: float) -> Form:
         ),
         lambda side: f"mean_curve({seen.span(side)}, KNOTS, ({heights}))",
         f"share = curve through ({heights}) at KNOTS of {seen.name}",
-        ("mean_curve",),
         len(free),
         (f"KNOTS = ({listed})",),
         needs_span=True,
@@ -264,7 +258,6 @@ def _wave(seen: Seen, amount: Amount, size: float) -> Form:
                 f"cosine * mean_cos({seen.span(side)}) + sine * mean_sin({seen.span(side)})"
             ),
             f"share = cosine * cos({seen.name}) + sine * sin({seen.name})",
-            ("mean_cos", "mean_sin"),
             2,
             needs_span=True,
         )
@@ -286,7 +279,6 @@ def _wave(seen: Seen, amount: Amount, size: float) -> Form:
         ),
         lambda side: f"amplitude * mean_cos(turned({seen.span(side)}, phase))",
         f"share = amplitude * cos({times}{seen.name} + phase)",
-        ("mean_cos",),
         2,
         quadrature=("amplitude", "phase"),
         needs_span=True,
@@ -316,7 +308,6 @@ def spot_form(
             f"{'HALF' if side == 'left' else '-HALF'}), x, y, radius)"
         ),
         "travel *= 1 + share, where the wheel stands inside the circle",
-        ("share_inside", "standing"),
         4,
         (f"HALF = {half:.4g}  # m, from the axle's midpoint to a wheel",),
     )

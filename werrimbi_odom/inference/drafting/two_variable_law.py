@@ -101,7 +101,6 @@ class LawOfTwo(NamedTuple):
             tuple(declared),
             expression,
             f"share = {' + '.join(sums)}{f'  ({symbols})' if symbols else ''}",
-            (),
             len(self.terms),
         )
 
