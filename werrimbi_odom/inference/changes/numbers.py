@@ -40,11 +40,6 @@ class NumberGroup:
     directions: Floats
     """Changes of all parameters for a unit of each free direction, (s, d)."""
 
-    @property
-    def degrees(self) -> int:
-        """Number of free directions."""
-        return int(self.directions.shape[1])
-
 
 def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[FreeParameter, ...]:
     """All parameters of a robot that may change: calibration, mount, sizes of the effects it holds.

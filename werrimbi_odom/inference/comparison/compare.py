@@ -107,8 +107,6 @@ class Comparison:
     cells: tuple[Cell, ...]
     legs: Legs
     """Legs of the requested length."""
-    left: Floats
-    """Their errors without the systematic part, shape (m, 3)."""
     paths: tuple[Residual, ...]
     left_out: tuple[LeftOut, ...]
     """Stretches of the runs that are excluded."""
@@ -200,7 +198,6 @@ def judged(
             prepared.options.leg,
         ),
         legs=legs,
-        left=spread,
         paths=path,
         left_out=prepared.left_out,
         remarks=remarks_on(prepared),

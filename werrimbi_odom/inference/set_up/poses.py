@@ -69,14 +69,6 @@ class Regressed:
         square += np.abs(turn / self.turning.scatter) ** 2
         return float(np.exp(0.5 * np.mean(np.log1p(square[known]))))
 
-    def share(self) -> float:
-        """Relative residual dispersion: small where both fits are good."""
-        moved = float(np.nanmedian(np.abs(self.cuts.move)))
-        turned = float(np.nanmedian(np.abs(self.cuts.turn)))
-        return math.hypot(
-            self.moving.scatter / (moved + 1e-12), self.turning.scatter / (turned + 1e-12)
-        )
-
 
 def regressed(records: Sequence[SetUpRecord], robot: Robot) -> Regressed | None:
     """Both regressions; None where the drives do not determine them."""

@@ -3,19 +3,11 @@
 """Effects hidden in a simulated robot, as test data for the diagnosis.
 
 `peculiarity` defines where in a simulated drive an effect can act, `catalogue` lists all effects
-with units and realistic strengths; each other file has one family of them.
+with units and realistic strengths, and `hiding` draws from them; each other file has one family.
 """
 
-from .catalogue import (
-    CATALOGUE,
-    Entry,
-    Hidden,
-    StrengthError,
-    UnknownEffectError,
-    find,
-    hide,
-    wished,
-)
+from .catalogue import CATALOGUE, Entry
+from .hiding import Hidden, StrengthError, UnknownEffectError, find, hide, wished
 from .peculiarity import Peculiarity
 
 __all__ = [
