@@ -47,7 +47,7 @@ def test_its_test_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(tmp_path))
     names: dict[str, object] = {}
     exec(examples()[1], names)
-    names["test_my_effect_keeps_the_laws"]()  # type: ignore[operator]
+    names["test_my_effect_has_the_properties"]()  # type: ignore[operator]
 
 
 def test_the_example_with_a_twin_keeps_them_too(tmp_path: Path) -> None:

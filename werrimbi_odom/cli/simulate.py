@@ -8,21 +8,18 @@ import argparse
 import json
 import os
 import shutil
-import sys
 import tempfile
 import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, Peculiarity, Recording, TrueRobot
-
-Item = TypeVar("Item")
 
 HELP = "runs made by a physics engine, with a hidden effect"
 
@@ -71,6 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the session; return 0."""
     from werrimbi_odom import simulation
+    from werrimbi_odom.cli.progress import share_done
 
     if arguments.list:
         for entry in simulation.CATALOGUE:
@@ -89,14 +87,16 @@ def run(arguments: argparse.Namespace) -> int:
     odd = [each.peculiarity for each in hidden]
     seen: dict[str, dict[str, object]] = {}
     events: dict[str, list[dict[str, object]]] = {}
-    with _new_folder(arguments.out) as folder:
+    with _new_folder(arguments.out) as folder, share_done("driving") as show:
         written = robot
         for each in odd:
             written = each.written(written)
         simulation.write_robot_file(written, folder / "robot.yaml")
+        count = len(simulation.drives(arguments.seed))
         runs = simulation.session(robot, arguments.seed, hidden=odd)
         try:
-            for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
+            for number, (name, recording) in enumerate(runs, start=1):
+                show(number / count, name)
                 if recording.happened:
                     events[name] = [asdict(each) for each in recording.happened]
                 if arguments.like == "field":
@@ -189,15 +189,3 @@ def _new_folder(out: Path) -> Iterator[Path]:
         raise InputError(f"{out} cannot be written: {error.strerror}") from error
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-
-
-def _with_progress(items: Iterator[Item], total: int) -> Iterator[Item]:
-    """Show a progress bar on a terminal."""
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    from rich.console import Console
-    from rich.progress import track
-
-    console = Console(stderr=True)
-    yield from track(items, "driving", total=total, console=console, transient=True)

@@ -7,7 +7,7 @@ Physics acts at three places, so an effect has a stage: `wheels` (WheelTravel ->
 robot; it changes what is compared, never what the node publishes). Set-up mistakes change how the
 counters are read (Wiring -> Wiring).
 
-Every effect, also a user's own, must satisfy these laws (tested by `check_effect`): at its null
+Every effect, also a user's own, must have these properties (see `check_effect`): at its null
 values it is exactly the identity; a step's result depends on that step's row alone; it does not
 modify its arguments; it is finite at the bounds; splitting a step changes nothing; a turn that
 depends on the heading does so smoothly and weakly; live, recorded and predicted drives give equal

@@ -15,7 +15,7 @@ from collections import Counter, deque
 from functools import partial
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
@@ -36,7 +36,7 @@ from werrimbi_odom.ros.compare_motion import Motion
 from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
 from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
-from werrimbi_odom.ros.diagnostics import diagnostic, tell
+from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.live_diagnosis import watching_of
 from werrimbi_odom.ros.running import run
@@ -89,7 +89,7 @@ class CompareNode(Node):  # type: ignore[misc]
             publisher(self, Float64, f"~/{name}")
             for name in ("leg_nees", "nees", "nees_low", "nees_high", "coverage")
         )
-        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics")
+        self._diagnose = diagnostics_publisher(self)
         listen = partial(subscribe, self, overridable=True)
         listen(Odometry, "odom", self._on_odometry)
         listen(REFERENCE_TYPES[kind], "reference", self._on_reference)
@@ -218,9 +218,7 @@ class CompareNode(Node):  # type: ignore[misc]
         }
         name = f"{full_name(self)}: honesty of the covariance"
         status = diagnostic(level, name, words, told)
-        array = DiagnosticArray(status=[status, self._motion_status(), *self._watching.look()])
-        array.header.stamp = self.get_clock().now().to_msg()
-        self._diagnostics.publish(array)
+        self._diagnose(status, self._motion_status(), *self._watching.look())
 
     def _motion_status(self) -> DiagnosticStatus:
         fine, words = self._motion.told()

@@ -4,10 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
+
+from werrimbi_odom.ros.topics import publisher
 
 
 def diagnostic(
@@ -21,6 +24,18 @@ def diagnostic(
         hardware_id=of,
         values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
     )
+
+
+def diagnostics_publisher(node: Node) -> Callable[..., None]:
+    """Create a publisher of /diagnostics: a function of statuses, which it stamps by the clock."""
+    out = publisher(node, DiagnosticArray, "/diagnostics")
+
+    def publish(*statuses: DiagnosticStatus) -> None:
+        array = DiagnosticArray(status=list(statuses))
+        array.header.stamp = node.get_clock().now().to_msg()
+        out.publish(array)
+
+    return publish
 
 
 def tell(log: Any, words: str, *, fine: bool) -> None:

@@ -16,7 +16,7 @@ import time
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
@@ -33,7 +33,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros import drive_parameters, planar
 from werrimbi_odom.ros.declaring import declared
-from werrimbi_odom.ros.diagnostics import diagnostic, tell
+from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
@@ -81,7 +81,7 @@ class DriveNode(Node):  # type: ignore[misc]
         self._commands = publisher(self, TwistStamped if self._stamped else Twist, "cmd_vel", 10)
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._path = publisher(self, Marker, "~/path", latched)
-        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics", 10)
+        self._diagnose = diagnostics_publisher(self)
         subscribe(self, Odometry, "odom", self._on_odometry)
         if values["scan_topic"]:
             subscribe(self, LaserScan, str(values["scan_topic"]), self._on_scan)
@@ -268,9 +268,7 @@ class DriveNode(Node):  # type: ignore[misc]
             "yaw rate": f"{driver.command.yaw_rate:.3f} rad/s",
         }
         status = diagnostic(LEVELS[driver.state], name, words, told, of="base")
-        array = DiagnosticArray(status=[status])
-        array.header.stamp = self.get_clock().now().to_msg()
-        self._diagnostics.publish(array)
+        self._diagnose(status)
 
     # ------------------------------------------------------------------------- set-up
 

@@ -14,7 +14,7 @@ from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
@@ -26,7 +26,7 @@ from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import counter_inputs, odom_parameters
-from werrimbi_odom.ros.diagnostics import tell
+from werrimbi_odom.ros.diagnostics import diagnostics_publisher, tell
 from werrimbi_odom.ros.estimate_status import status_of
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.health import Health
@@ -75,7 +75,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._odometry = publisher(self, Odometry, "odom", 100, overridable=True)
         self._pieces = publisher(self, MarkerArray, "~/pieces", 100)
         self._status = publisher(self, DiagnosticStatus, "~/status", 10)
-        self._diagnostics = publisher(self, DiagnosticArray, "/diagnostics", 10)
+        self._diagnose = diagnostics_publisher(self)
         self._send_transform = (
             transform_sender(self, "enable_odom_tf") if values["enable_odom_tf"] else None
         )
@@ -217,9 +217,7 @@ class OdomNode(Node):  # type: ignore[misc]
         if status.level != self._level:
             self._level = status.level
             tell(self.get_logger(), status.message, fine=status.level == DiagnosticStatus.OK)
-        array = DiagnosticArray(status=[status])
-        array.header.stamp = self.get_clock().now().to_msg()
-        self._diagnostics.publish(array)
+        self._diagnose(status)
 
     # ------------------------------------------------------------------------- set-up
 

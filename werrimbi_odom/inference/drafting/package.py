@@ -51,5 +51,5 @@ That is what the data show; why it is so they cannot know.
    stands in the file, in `pyproject.toml` and in your robot file.
 4. `pip install .` here; then robot files may name it, and the node runs it.
 
-`werrimbi_odom.effects.contract.check_effect` holds the laws of effects against it.
+`werrimbi_odom.effects.contract.check_effect` tests it for the properties that effects must have.
 """
