@@ -44,13 +44,13 @@ def save_page(figure: Figure, path: Path) -> None:
         file.write(page.replace("<head>", f"<head><script>{program}</script>", 1))
 
 
-def save_png(figure: Figure, path: Path, *, scale: float = 1.5) -> bool:
+def save_png(figure: Figure, path: Path) -> bool:
     """Save a PNG; False without a browser, which kaleido needs, and then nothing is written."""
     if find_browser() is None:
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.stem + ".part.png")
-    _draw([(figure, temporary, {"scale": scale})])
+    _draw([(figure, temporary, {"scale": 1.5})])
     temporary.replace(path)
     return True
 
@@ -115,7 +115,7 @@ def save_report(document: Document, path: Path) -> list[Path]:
     return files
 
 
-def save_pictures(pictures: Sequence[tuple[Figure, Path]], *, scale: float = 2.0) -> None:
+def save_pictures(pictures: Sequence[tuple[Figure, Path]]) -> None:
     """Save figures in their light colours, drawn by one browser; .pdf has vector graphics.
 
     Raises
@@ -127,7 +127,7 @@ def save_pictures(pictures: Sequence[tuple[Figure, Path]], *, scale: float = 2.0
         drawn = [
             Path(folder) / f"{number}{file.suffix}" for number, (_, file) in enumerate(pictures)
         ]
-        size = {"scale": scale, "width": 1000}
+        size = {"scale": 2.0, "width": 1000}
         _draw(
             (figure, part, {**size, "height": int(figure.layout.height or 600)})
             for (figure, _), part in zip(pictures, drawn, strict=True)

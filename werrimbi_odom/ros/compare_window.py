@@ -65,9 +65,9 @@ class Window:
         inside = float(CHI2_95[FREEDOM])
         return sum(each <= inside for each in self._deviations) / self.count
 
-    def bounds(self, share: float = 0.95) -> tuple[float, float]:
-        """Interval that contains the NEES of a consistent covariance with this probability."""
-        return chance_bounds(FREEDOM * max(self.count, 1), share)
+    def bounds(self) -> tuple[float, float]:
+        """Interval that contains the NEES of a consistent covariance in 95 % of cases."""
+        return chance_bounds(FREEDOM * max(self.count, 1), 0.95)
 
     def verdict(self) -> tuple[bool, str]:
         """Whether all is well, and the message."""

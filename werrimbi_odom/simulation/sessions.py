@@ -14,7 +14,6 @@ from .manoeuvres import start_stop as hops
 from .recorder import record
 from .recording import Recording
 from .robot import TrueRobot
-from .sensors import ReferenceSensor
 
 SLOW = MoveLimits(speed=0.2, acceleration=0.3, yaw_rate=0.6, yaw_acceleration=1.0)
 FAST = MoveLimits(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
@@ -71,8 +70,6 @@ def session(
     seed: int,
     *,
     hidden: Sequence[Peculiarity] = (),
-    reference: ReferenceSensor | None = None,
-    ticks_rate_hz: float = 50.0,
 ) -> Iterator[tuple[str, Recording]]:
     """Record the drives of the session, one after the other.
 
@@ -83,8 +80,6 @@ def session(
         Seed of the session; the seeds of the runs follow from it.
     hidden : sequence of Peculiarity
         Peculiarities, the same in all runs.
-    reference : ReferenceSensor, optional
-    ticks_rate_hz : float
 
     Yields
     ------
@@ -92,14 +87,4 @@ def session(
         Name of the run folder, as in `drives`.
     """
     for number, (name, manoeuvre) in enumerate(drives(seed).items()):
-        yield (
-            name,
-            record(
-                robot,
-                manoeuvre,
-                seed=1000 * seed + number,
-                reference=reference,
-                ticks_rate_hz=ticks_rate_hz,
-                hidden=hidden,
-            ),
-        )
+        yield name, record(robot, manoeuvre, seed=1000 * seed + number, hidden=hidden)

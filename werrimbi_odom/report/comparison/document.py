@@ -152,8 +152,8 @@ def _runs(comparison: Comparison) -> Table:
     )
 
 
-def _short(name: str, most: int = 26) -> str:
-    return name if len(name) <= most else f"{name[: most - 3]}..."
+def _short(name: str) -> str:
+    return name if len(name) <= 26 else f"{name[:23]}..."
 
 
 def _variable(item: ByVariable) -> Table:

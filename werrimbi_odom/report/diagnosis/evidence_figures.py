@@ -42,9 +42,7 @@ def ordered_cells(cells: Sequence[Dependence]) -> list[Dependence]:
     return sorted(best_cells(cells).values(), key=lambda cell: -_worth(cell))
 
 
-def evidence_map_figure(
-    cells: Sequence[Dependence], *, opens: str = "", height: int = 430
-) -> Figure:
+def evidence_map_figure(cells: Sequence[Dependence], *, opens: str = "") -> Figure:
     """Heat map of error channels and variables: darker for a larger explained part of the misfit.
 
     The custom data of a field are channel, variable, `opens`, and the index of the field in
@@ -109,7 +107,7 @@ def evidence_map_figure(
         ticktext=[_CHANNELS.get(channel, channel) for channel in CHANNELS],
     )
     figure.update_xaxes(tickangle=-40, title="goes with", showgrid=False)
-    style.plain(figure, height=height, legend=False)
+    style.plain(figure, height=430, legend=False)
     figure.update_layout(dragmode=False, margin={"t": 40})
     return figure
 

@@ -89,9 +89,9 @@ def _more(value: float) -> str:
     return "more" if value > 0.0 else "less"
 
 
-def _aside(angle: float, distance: float) -> str:
+def _aside(angle: float) -> str:
     side = "left" if angle > 0.0 else "right"
-    return f"{_angle(angle)}, {_length(angle * distance)} to the {side} on {distance:g} m"
+    return f"{_angle(angle)}, {_length(5.0 * angle)} to the {side} on 5 m"
 
 
 def _slope(values: Values, robot: Robot) -> str:
@@ -204,7 +204,7 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "lateral_slip": lambda values, robot: (
         f"{_length(2.0 * values['creep'] * (FAST - SLOW))} between {SLOW} and {FAST} m/s"
     ),
-    "sideways_drift": lambda values, robot: _aside(values["angle"], 5.0),
+    "sideways_drift": lambda values, robot: _aside(values["angle"]),
     "reference_yaw_offset": lambda values, robot: _angle(values["angle"]),
     "reference_scale": lambda values, robot: f"{3600.0 * values['multiplier']:.0f}° of 3600°",
     "reference_heading_delay": lambda values, robot: f"{_angle(2.0 * values['delay'])} at 1 rad/s",

@@ -89,7 +89,6 @@ def arc(
     colour: str = INK,
     dash: str = "",
     head: bool = False,
-    width: float = 2.0,
 ) -> str:
     """Part of a circle between two angles [degrees, anticlockwise from the right]."""
     count = max(6, int(abs(end - begin) / 6))
@@ -97,7 +96,7 @@ def arc(
         (x + r * math.cos(math.radians(at)), y - r * math.sin(math.radians(at)))
         for at in (begin + (end - begin) * step / count for step in range(count + 1))
     ]
-    found = line(*points, colour=colour, dash=dash, width=width)
+    found = line(*points, colour=colour, dash=dash)
     return found + (_head(points[-2], points[-1], colour) if head else "")
 
 
