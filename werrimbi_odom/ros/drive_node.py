@@ -35,7 +35,7 @@ from werrimbi_odom.ros import drive_parameters, planar
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
-from werrimbi_odom.ros.graph import full_name
+from werrimbi_odom.ros.graph import full_name, others_on
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.topics import publisher, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
@@ -44,8 +44,6 @@ TICK = 0.02
 """Period of the timer [s]."""
 HOLD = 1.0
 """Time for which zeros are repeated after a drive [s]; then `cmd_vel` is free for others."""
-UNNAMED = "_NODE_NAME_UNKNOWN_"
-"""Name that rmw gives to a node while only its publisher has been discovered."""
 LEVELS = {
     "waiting": DiagnosticStatus.OK,
     "driving": DiagnosticStatus.OK,
@@ -132,7 +130,7 @@ class DriveNode(Node):  # type: ignore[misc]
         """Check time and other publishers; repeat zeros after a drive."""
         driver, now = self._driver, time.monotonic()
         if driver.state == "driving":
-            others = self._others()
+            others = others_on(self, self._commands.topic_name)
             if others:
                 driver.stop(others)
                 self._send(STILL)
@@ -148,7 +146,7 @@ class DriveNode(Node):  # type: ignore[misc]
 
     def _on_start(self, _: Any, response: Any) -> Any:
         asked = time.monotonic()
-        wrong = self._others() or self._driver.refusal(asked)
+        wrong = others_on(self, self._commands.topic_name) or self._driver.refusal(asked)
         if wrong:
             response.success, response.message = False, f"it does not start: {wrong}"
             self.get_logger().warning(response.message)
@@ -180,7 +178,7 @@ class DriveNode(Node):  # type: ignore[misc]
         return response
 
     def _on_check(self, _: Any, response: Any) -> Any:
-        wrong = self._others() or self._driver.refusal(time.monotonic())
+        wrong = others_on(self, self._commands.topic_name) or self._driver.refusal(time.monotonic())
         self._show(again=True)
         response.success = not wrong
         response.message = wrong or f"it could start. {self._words()}"
@@ -269,27 +267,6 @@ class DriveNode(Node):  # type: ignore[misc]
         }
         status = diagnostic(LEVELS[driver.state], name, words, told, of="base")
         self._diagnose(status)
-
-    # ------------------------------------------------------------------------- set-up
-
-    def _others(self) -> str:
-        """Other publishers on the command topic, in words; "" if there are none."""
-        topic = self._commands.topic_name
-        if self.count_publishers(topic) <= 1:
-            return ""
-        own = f"/{full_name(self)}"
-        names = [
-            f"{str(each.node_namespace).rstrip('/')}/{each.node_name}"
-            if each.node_name != UNNAMED
-            else "a node whose name is not known yet"
-            for each in self.get_publishers_info_by_topic(topic)
-        ]
-        if own in names:
-            names.remove(own)
-        return (
-            f"another publishes {topic} too ({', '.join(sorted(names))}); a node that was killed "
-            "is listed for 20 s"
-        )
 
 
 def _seconds(stamp: Stamp) -> float:

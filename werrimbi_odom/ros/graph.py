@@ -10,11 +10,26 @@ from rclpy.node import Node
 
 KILLED = 21.0
 """Delay before others are reported [s]: DDS lists a killed node for 20 s."""
+UNNAMED = "_NODE_NAME_UNKNOWN_"
+"""Name that rmw gives to a node while only its publisher has been discovered."""
 
 
 def full_name(node: Node) -> str:
     """Name with namespace; it distinguishes the diagnostics of several robots."""
     return str(node.get_fully_qualified_name().lstrip("/"))
+
+
+def others_on(node: Node, topic: str) -> str:
+    """Other publishers on a topic of the node, in words; "" if there are none."""
+    if node.count_publishers(topic) <= 1:
+        return ""
+    names = [_name(each) for each in node.get_publishers_info_by_topic(topic)]
+    if (own := f"/{full_name(node)}") in names:
+        names.remove(own)
+    return (
+        f"another publishes {topic} too ({', '.join(sorted(names))}); a node that was killed is "
+        "listed for 20 s"
+    )
 
 
 class Company:
@@ -60,4 +75,6 @@ class Company:
 
 def _name(endpoint: object) -> str:
     namespace, name = (getattr(endpoint, f"node_{part}") for part in ("namespace", "name"))
+    if name == UNNAMED:
+        return "a node whose name is not known yet"
     return f"{str(namespace).rstrip('/')}/{name}"

@@ -288,7 +288,9 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     findings = diagnosis.set_up.findings
     wrong = diagnosis.set_up.wrong
     lines = ["Something is set up wrongly:"] if wrong else []
-    lines += [f"- {_sentence(finding.words)[:-1]}: {finding.effect}." for finding in wrong]
+    for finding in wrong:
+        words = finding.words.rstrip(".")
+        lines.append(f"- {words[0].upper()}{words[1:]}: {finding.effect}.")
     skids = [finding for finding in findings if finding not in wrong]
     return [
         *lines,
@@ -307,7 +309,3 @@ def _next_add(told: Told, steps: NextSteps) -> list[str]:
 
 def _count(number: int) -> str:
     return {2: "Two", 3: "Three", 4: "Four", 5: "Five"}.get(number, str(number))
-
-
-def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:].rstrip('.')}."
