@@ -21,7 +21,7 @@ import inspect
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect_declarations import Parameter, Sketch, Twin
@@ -36,8 +36,7 @@ __all__ = [
     "Sketch",
     "Stage",
     "Twin",
-    "after_body_effects",
-    "after_wheel_effects",
+    "after_stage",
     "always_twins",
     "body_effect",
     "reference_effect",
@@ -52,6 +51,7 @@ Stage = Literal["wiring", "wheels", "body", "reference"]
 
 
 Apply = Callable[..., Any]
+Motion = TypeVar("Motion", WheelTravel[Any], BodyMotion[Any])
 
 
 @dataclass(frozen=True)
@@ -304,22 +304,15 @@ def always_twins(one: Effect, other: Effect) -> bool:
     return other.name in one.twins or one.name in other.twins
 
 
-def after_wheel_effects(
-    effects: tuple[AppliedEffect, ...], travel: WheelTravel[Any], drive: Drive[Any]
-) -> WheelTravel[Any]:
-    """Apply the effects on the wheels, in order."""
+def after_stage(
+    stage: Literal["wheels", "body"],
+    effects: tuple[AppliedEffect, ...],
+    motion: Motion,
+    drive: Drive[Any],
+) -> Motion:
+    """Apply the effects on the travel of the wheels, or on the motion of the body, in order."""
     for applied in effects:
-        if applied.effect.stage == "wheels" and applied.ready:
-            travel = applied.effect.apply(travel, drive, **applied.values)
-    return travel
-
-
-def after_body_effects(
-    effects: tuple[AppliedEffect, ...], motion: BodyMotion[Any], drive: Drive[Any]
-) -> BodyMotion[Any]:
-    """Apply the effects on the body, in order."""
-    for applied in effects:
-        if applied.effect.stage == "body" and applied.ready:
+        if applied.effect.stage == stage and applied.ready:
             motion = applied.effect.apply(motion, drive, **applied.values)
     return motion
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, Some
-from werrimbi_odom.model.effect import after_body_effects, after_wheel_effects
+from werrimbi_odom.model.effect import after_stage
 from werrimbi_odom.model.motion import (
     BodyMotion,
     Number,
@@ -100,9 +100,9 @@ def after_effects(
     robot: Robot, raw: WheelTravel[Number], drive: Drive[Number]
 ) -> tuple[WheelTravel[Number], BodyMotion[Number]]:
     """Travel and motion after all effects, in their order."""
-    travel = after_wheel_effects(robot.effects, raw, drive)
+    travel = after_stage("wheels", robot.effects, raw, drive)
     motion = wheels_to_body(travel, robot.track)
-    return travel, after_body_effects(robot.effects, motion, drive)
+    return travel, after_stage("body", robot.effects, motion, drive)
 
 
 def driven(

@@ -27,7 +27,7 @@ from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import features
-from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
+from werrimbi_odom.model.effect import after_stage, view_of, wiring_of
 from werrimbi_odom.model.effects_over_run import PLACE, watched
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.motion import WheelTravel
@@ -130,7 +130,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpReco
         drive = features(robot, np.diff(time), raw, wheels(*first), channels)
         for applied in of_wheels:
             seen = watched(drive)
-            after = after_wheel_effects((applied,), raw, seen)
+            after = after_stage("wheels", (applied,), raw, seen)
             # An effect that depends on position cannot be undone while the position is unknown.
             raw = raw if seen.asked & PLACE else after
     view = view_of(robot.effects)
