@@ -86,6 +86,9 @@ def _look(
         try:
             source = read_robot_file(robot)
         except InputError:
+            with suppress(OSError, UnicodeDecodeError):
+                if "ticks_per_revolution" in robot.read_text():
+                    raise  # a robot file with a mistake, not a controller's
             first = of_controller(robot)
         if source is not None and "ticks_per_revolution" not in source.text:
             with suppress(InputError):  # a controller's file, from which a robot file is made
@@ -96,7 +99,8 @@ def _look(
         held.append(one)
     title = f"A first robot file, from {paths[0].name}: check base and radius with a ruler"
     sizes = source is not None or first.has_sizes
-    return Info(tuple(held), first, None if source is None else robot, None, title, sizes)
+    given, parameters = (None, robot) if source is None else (robot, None)
+    return Info(tuple(held), first, given, None, title, sizes, parameters)
 
 
 def _held(
