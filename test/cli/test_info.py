@@ -240,6 +240,23 @@ def test_clocks_apart_are_told_with_both_spans_and_put_on_the_recorders(
     assert "cannot be used" not in printed
 
 
+def test_poses_that_repeat_are_left_out_as_where_drives_are_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A tracker's last pose, sent on for 2 s at a time, is not a robot that somebody holds."""
+    entries = one_drive("")
+    poses = [each for each in entries if each[0] == "/pose"]
+    ros = Messages()
+    for number, (topic, at, _) in enumerate(poses):
+        seen = 20 * (number // 20) if 100 <= number < 200 else number
+        entries[entries.index(poses[number])] = (topic, at, ros.pose(at, 0.005 * seen, 0.0, 0.0))
+    bag = ros.write(tmp_path / "sticks", entries)
+    assert main(["info", str(bag)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "reference poses repeat the one before to the last digit" in printed
+    assert "held, or against a wall" not in printed
+
+
 def test_an_array_of_floats_is_told_with_how_it_is_read(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -66,7 +66,8 @@ def test_poses_without_a_stamp_are_of_when_they_came(tmp_path: Path, ros: Any, r
     for n in (2, 3):
         entries.append(("/mocap/ground_pose", n * 10**9, ros.plane_pose(1.0 * n, 2.0, 0.5)))
         entries.append(("/error", n * 10**9, ros.plane_pose(0.1 * n, 0.0, 0.0)))
-    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    bag = written(ros, tmp_path, entries)
+    reference = read_run(bag, robot()).reference
     assert reference is not None
     assert reference.time.tolist() == [2.0, 3.0]
     assert reference.x.tolist() == [2.0, 3.0]

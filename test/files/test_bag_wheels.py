@@ -183,6 +183,13 @@ def test_odometry_that_goes_sideways_is_of_no_two_wheels(
     bag = ros.write(tmp_path / "mecanum", sideways(ros, 6.0, 4.0))
     with pytest.raises(InputError, match=r"sideways to its heading for \d+ % of the time. Mecanum"):
         read_run(bag, robot())
+    mixed = sideways(ros, 9.9, 0.0)
+    for n in np.random.default_rng(1).choice(98, 49, replace=False):  # origin, clock: another
+        kind, message = ros.odometry(int(n) * 100 * MS + 140 * MS, 0.03 * n + 0.1, -0.2, 0.0)
+        mixed.append(("/odom", int(n) * 100 * MS + 1, (kind, message)))
+    mixed.sort(key=lambda entry: entry[1])
+    with pytest.raises(InputError, match=r"two nodes publish .* stamps go back \d+ times"):
+        read_run(ros.write(tmp_path / "two", mixed), robot())
     run = read_run(ros.write(tmp_path / "reset", sideways(ros, 9.8, 0.2)), robot())
     assert run.ticks.right[-1] > 0.0, "once set elsewhere, it is no mecanum robot"
 
@@ -207,6 +214,15 @@ def test_wheels_of_a_side_that_do_not_turn_alike(
         file = robot("left_wheel_names: [fl]", "right_wheel_names: [fr]")
     run = read_run(bag, file)
     assert run.ticks.left[-1] == pytest.approx(0.5 * (2.0 if refused else 1.9) * 59e3 / 2 / math.pi)
+
+
+def test_angles_are_not_read_as_counts(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [
+        ("/joint_states", n * MS, ros.joints(n * MS, WHEELS, [0.31 * n, 0.3 * n]))
+        for n in range(1, 30)
+    ]
+    with pytest.raises(InputError, match="no whole numbers, and so no counts; angles are read wit"):
+        read_run(ros.write(tmp_path / "bag", entries), robot("position_unit: ticks"))
 
 
 def test_odometry_whose_poses_stay_at_zero(tmp_path: Path, ros: Any, robot: Any) -> None:

@@ -96,10 +96,20 @@ class JointsCollector:
         values = self._file.values
         per_turn = float(values[f"{side}_ticks_per_revolution"])  # type: ignore[arg-type]
         in_radians = values["position_unit"] == "radians"
+        self._refuse_fractions(in_radians, positions)
         counts = positions * (per_turn / (2.0 * math.pi)) if in_radians else positions
         bits = int(values["encoder_bits"])  # type: ignore[arg-type]
         self._refuse_unlike(side, time, counts, per_turn, bits)
         return counts_of(side_counts(counts, per_turn, bits))
+
+    def _refuse_fractions(self, in_radians: bool, positions: Floats) -> None:
+        """Raise if angles are to be read as counts."""
+        known = positions[np.isfinite(positions)]
+        if not in_radians and known.size and np.mean(known != np.rint(known)) > 0.5:
+            raise InputError(
+                f"{self._place}: its positions are no whole numbers, and so no counts; angles are "
+                "read with position_unit: radians"
+            )
 
     def _refuse_unlike(
         self, side: str, time: Floats, counts: Floats, per_turn: float, bits: int

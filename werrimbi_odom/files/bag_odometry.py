@@ -67,7 +67,9 @@ class OdometryTurnedBack:
 
     def _refuse_sideways(self, time: Floats, x: Floats, y: Floats, yaw: Floats) -> None:
         """Raise if the robot goes sideways, which two wheels on an axle cannot."""
-        steps, turns = _chords(x, y, yaw)
+        back = int(np.count_nonzero(np.diff(time) < 0.0))
+        order = np.argsort(time, kind="stable")
+        time, (steps, turns) = time[order], _chords(x[order], y[order], yaw[order])
         place = np.append(0.0, np.cumsum(steps))
         way, turned = (
             np.diff(each[np.unique(np.searchsorted(time, np.arange(time[0], time[-1], _WINDOW)))])
@@ -86,7 +88,8 @@ class OdometryTurnedBack:
                 f"{self._place}: by its odometry the robot goes sideways to its heading for "
                 f"{100 * share:.0f} % of the time. Mecanum and omni wheels do so, and no model "
                 "here is for them. On any other robot the odometry is given of a frame whose x "
-                "axis does not point ahead"
+                "axis does not point ahead, or two nodes publish poses of their own on one topic "
+                f"(its stamps go back {back} times)"
             )
 
     def _transforms(self, content: Any) -> Iterator[Any]:

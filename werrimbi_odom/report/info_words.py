@@ -11,6 +11,7 @@ from typing import Any
 from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_contents import FLOATS, SCAN
 from werrimbi_odom.files.reference_choice import other_scans
+from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.spans import DrivenAmount
@@ -64,6 +65,9 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     if held.run is None:
         return
     yield from (f"{each[:1].upper()}{each[1:]}." for each in held.run.damage)
+    repeated = words_about_held([held.run])
+    if repeated:
+        yield f"{repeated}."
     can, cannot = can_tell(held, found.sizes)
     if can:
         yield f"It can show {listed(can)}."
