@@ -71,9 +71,10 @@ class OdometryTurnedBack:
         order = np.argsort(time, kind="stable")
         time, (steps, turns) = time[order], _chords(x[order], y[order], yaw[order])
         place = np.append(0.0, np.cumsum(steps))
+        later = np.searchsorted(time, time + _WINDOW)
+        begin = np.flatnonzero(later < time.size)
         way, turned = (
-            np.diff(each[np.unique(np.searchsorted(time, np.arange(time[0], time[-1], _WINDOW)))])
-            for each in (place, np.append(0.0, np.cumsum(turns)))
+            each[later[begin]] - each[begin] for each in (place, np.append(0.0, np.cumsum(turns)))
         )
         if way.size < _FEWEST:
             return
