@@ -166,6 +166,10 @@ def test_without_sizes_it_says_what_to_measure(
         f"    wheel_separation: {ROBOT.wheel_separation}\n    wheel_radius: {ROBOT.wheel_radius}\n"
         "    left_wheel_radius_multiplier: 1.01\n    linear.x.max_velocity: 1.0\n"
     )
+    capsys.readouterr()
+    assert main(["info", str(bag), "--robot", str(parameters)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert f"--robot {parameters} --out robot.yaml" in printed, "else it has no sizes to write"
     out = tmp_path / "new.yaml"
     words = ["info", str(bag), "--robot", str(parameters), "--out", str(out)]
     assert main(words) == 0
@@ -175,11 +179,24 @@ def test_without_sizes_it_says_what_to_measure(
     assert main(words) == 2  # it is not overwritten
 
 
+def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag, _ = bag_of(tmp_path)
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text(
+        "odom_node:\n  ros__parameters:\n    wheel_separation: 0.4\n    wheel_radius: 0.1\n"
+        "    ticks_per_revolution: 1000.0\n"
+    )
+    assert main(["info", str(bag), "--robot", str(wrong)]) == 2
+    assert "unknown parameter ticks_per_revolution" in capsys.readouterr().err
+
+
 def test_without_a_reference_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bag, _ = bag_of(tmp_path, measured=False)
     assert main(["info", str(bag)]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "Nothing in the bag measures the robot but its own wheels" in printed
+    assert "Nothing that is read in the bag measures the robot but its own wheels" in printed
     assert "Record again with something that measures the robot" in printed
 
 
@@ -210,15 +227,34 @@ def test_of_two_robots_each_is_judged_by_its_own_reference(
         assert printed.index(f"/{mine}/pose: poses") < printed.index("It is taken")
 
 
-def test_clocks_apart_are_told_with_both_spans(
+def test_clocks_apart_are_told_with_both_spans_and_put_on_the_recorders(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """The robot's computer began at another date; one recorder received it all by one clock."""
     bag = Messages().write(tmp_path / "apart", one_drive("", wheels_late=5 - DAY))
     assert main(["info", str(bag)]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "the reference's stamps are 1.7e+09 s later than those of the wheels" in printed
-    assert f"the reference (t_s {DAY} to {DAY + 29.9:.14g}) lies wholly after the ticks" in printed
-    assert "nothing measured the robot" not in printed
+    assert f"and reference ({DAY} to {DAY + 29.9:.14g}) are of two clocks" in printed
+    assert "In 29.9 s the robot drove for 29.9 s" in printed
+    assert "cannot be used" not in printed
+
+
+def test_poses_that_repeat_are_left_out_as_where_drives_are_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A tracker's last pose, sent on for 2 s at a time, is not a robot that somebody holds."""
+    entries = one_drive("")
+    poses = [each for each in entries if each[0] == "/pose"]
+    ros = Messages()
+    for number, (topic, at, _) in enumerate(poses):
+        seen = 20 * (number // 20) if 100 <= number < 200 else number
+        entries[entries.index(poses[number])] = (topic, at, ros.pose(at, 0.005 * seen, 0.0, 0.0))
+    bag = ros.write(tmp_path / "sticks", entries)
+    assert main(["info", str(bag)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "reference poses repeat the one before to the last digit" in printed
+    assert "held, or against a wall" not in printed
 
 
 def test_an_array_of_floats_is_told_with_how_it_is_read(

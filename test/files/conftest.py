@@ -100,6 +100,10 @@ class Messages:
         kind = "geometry_msgs/msg/PoseStamped"
         return kind, self.make(kind, self.header(nanoseconds, "map"), self._pose(x, y, yaw))
 
+    def plane_pose(self, x: float, y: float, yaw: float) -> tuple[str, Any]:
+        kind = "geometry_msgs/msg/Pose2D"
+        return kind, self.make(kind, x, y, yaw)
+
     def pose_with_covariance(
         self, nanoseconds: int, x: float, y: float, yaw: float, variances: Sequence[float]
     ) -> tuple[str, Any]:

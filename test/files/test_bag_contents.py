@@ -224,3 +224,14 @@ def test_what_moves_within_the_robot_is_no_measurement(tmp_path: Path, ros: Any)
         ]
         entries.append(("/tf", n, ros.transforms(*sent)))
     assert contents(ros.write(tmp_path / "bag", entries)).independent == ()
+
+
+def test_of_several_poses_one_may_have_no_stamps(tmp_path: Path, ros: Any) -> None:
+    """A scan matcher's Pose2D beside poses of a tracker and odometry."""
+    entries: list[Any] = [("/joint_states", 1, ros.joints(1 * MS, WHEELS, [0.0, 0.0]))]
+    for n in range(2, 40):
+        entries.append(("/odom", n * MS, ros.odometry(n * MS, 0.1 * n, 0.0, 0.0)))
+        entries.append(("/vicon/pose", n * MS + 1, ros.pose(n * MS + 7, 0.09 * n, 0.0, 0.0)))
+        entries.append(("/pose2D", n * MS + 2, ros.plane_pose(0.095 * n, 0.0, 0.0)))
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert {each.name for each in held.independent} == {"/vicon/pose", "/pose2D"}

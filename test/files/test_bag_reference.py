@@ -60,6 +60,20 @@ def test_a_covariance_of_each_pose_is_kept(tmp_path: Path, ros: Any, robot: Any)
     assert reference.kind == "local_map", "on a map: AMCL, SLAM"
 
 
+def test_poses_without_a_stamp_are_of_when_they_came(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Motion capture gives Pose2D; how far a controller is from its goal is no pose."""
+    entries = []
+    for n in (2, 3):
+        entries.append(("/mocap/ground_pose", n * 10**9, ros.plane_pose(1.0 * n, 2.0, 0.5)))
+        entries.append(("/error", n * 10**9, ros.plane_pose(0.1 * n, 0.0, 0.0)))
+    bag = written(ros, tmp_path, entries)
+    reference = read_run(bag, robot()).reference
+    assert reference is not None
+    assert reference.time.tolist() == [2.0, 3.0]
+    assert reference.x.tolist() == [2.0, 3.0]
+    assert reference.yaw.tolist() == [0.5, 0.5]
+
+
 def test_what_is_no_pose_is_not_measured(tmp_path: Path, ros: Any, robot: Any) -> None:
     entries = [
         ("/pose", 2, ros.pose(1 * MS, 1.0, 2.0, math.nan)),

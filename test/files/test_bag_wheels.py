@@ -148,6 +148,83 @@ def test_odometry_alone_is_turned_back(tmp_path: Path, ros: Any, robot: Any) -> 
     np.testing.assert_allclose(calibrated.ticks.left, run.ticks.left)
 
 
+def test_odometry_on_tf_alone_is_turned_back(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """As in bags for a SLAM: scans and transforms. Other transforms come on the same topic."""
+    file = robot()
+    turns = np.cumsum(np.random.default_rng(3).normal(0.0, 30.0, (60, 2)), axis=0)
+    path = trajectory(file.robot, 0.1 * np.arange(60), turns[:, 0], turns[:, 1])
+    entries = []
+    for n, (x, y, yaw) in enumerate(zip(path.x, path.y, path.yaw, strict=True), start=1):
+        at = n * 100 * MS
+        moved = ros.transform(at, ("odom", "base_footprint"), 3 + x, y - 2, yaw)
+        corrected = ros.transform(at, ("map", "odom"), 1e-3 * n, 0.0, 0.0)
+        entries.append(("/tf", at, ros.transforms(corrected, moved)))
+    bag = ros.write(tmp_path / "bag", entries)
+    run = read_run(bag, file)
+    np.testing.assert_allclose(run.ticks.left, turns[:, 0] - turns[0, 0], atol=1e-6)
+    np.testing.assert_allclose(run.ticks.right, turns[:, 1] - turns[0, 1], atol=1e-6)
+    assert run.reference is not None, "map -> odom measures"
+    wished = read_run(bag, file, ticks_topic="/tf:odom:base_footprint", reference_topic="none")
+    np.testing.assert_array_equal(wished.ticks.left, run.ticks.left)
+
+
+def sideways(ros: Any, ahead: float, aside: float) -> list[Any]:
+    """Odometry of 10 s, 0.3 m/s ahead and then as fast to the left, for so many seconds each."""
+    entries = []
+    for n in range(100):
+        x, y = 0.03 * min(n, 10 * ahead), 0.03 * min(max(n - 10 * ahead, 0.0), 10 * aside)
+        entries.append(("/odom", n * 100 * MS, ros.odometry(n * 100 * MS, x, y, 0.0)))
+    return entries
+
+
+def test_odometry_that_goes_sideways_is_of_no_two_wheels(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    bag = ros.write(tmp_path / "mecanum", sideways(ros, 6.0, 4.0))
+    with pytest.raises(InputError, match=r"sideways to its heading for \d+ % of the time. Mecanum"):
+        read_run(bag, robot())
+    mixed = sideways(ros, 9.9, 0.0)
+    for n in np.random.default_rng(1).choice(98, 49, replace=False):  # origin, clock: another
+        kind, message = ros.odometry(int(n) * 100 * MS + 140 * MS, 0.03 * n + 0.1, -0.2, 0.0)
+        mixed.append(("/odom", int(n) * 100 * MS + 1, (kind, message)))
+    mixed.sort(key=lambda entry: entry[1])
+    with pytest.raises(InputError, match=r"two nodes publish .* stamps go back \d+ times"):
+        read_run(ros.write(tmp_path / "two", mixed), robot())
+    run = read_run(ros.write(tmp_path / "reset", sideways(ros, 9.8, 0.2)), robot())
+    assert run.ticks.right[-1] > 0.0, "once set elsewhere, it is no mecanum robot"
+
+
+@pytest.mark.parametrize(("rear", "refused"), [(-1.0, True), (0.0, True), (0.9, False)])
+def test_wheels_of_a_side_that_do_not_turn_alike(
+    tmp_path: Path, ros: Any, robot: Any, rear: float, refused: bool
+) -> None:
+    """Mecanum wheels on the way sideways, or one that is stuck; skidding ones differ by little."""
+    names = ["fl", "rl", "fr", "rr"]
+    entries = [
+        ("/joint_states", n * 100 * MS, ros.joints(n * 100 * MS, names, [n, rear * n, n, n]))
+        for n in range(1, 60)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    file = robot("left_wheel_names: [fl, rl]", "right_wheel_names: [fr, rr]")
+    if refused:
+        with pytest.raises(
+            InputError, match="fl and rl, wheels of the left side, do not turn alik"
+        ):
+            read_run(bag, file)
+        file = robot("left_wheel_names: [fl]", "right_wheel_names: [fr]")
+    run = read_run(bag, file)
+    assert run.ticks.left[-1] == pytest.approx(0.5 * (2.0 if refused else 1.9) * 59e3 / 2 / math.pi)
+
+
+def test_angles_are_not_read_as_counts(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [
+        ("/joint_states", n * MS, ros.joints(n * MS, WHEELS, [0.31 * n, 0.3 * n]))
+        for n in range(1, 30)
+    ]
+    with pytest.raises(InputError, match="no whole numbers, and so no counts; angles are read wit"):
+        read_run(ros.write(tmp_path / "bag", entries), robot("position_unit: ticks"))
+
+
 def test_odometry_whose_poses_stay_at_zero(tmp_path: Path, ros: Any, robot: Any) -> None:
     entries = []
     for n in range(11):

@@ -22,7 +22,7 @@ from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_poses
 from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.files.urdf_wheels import of_urdf
@@ -86,6 +86,9 @@ def _look(
         try:
             source = read_robot_file(robot)
         except InputError:
+            with suppress(OSError, UnicodeDecodeError):
+                if "ticks_per_revolution" in robot.read_text():
+                    raise  # a robot file with a mistake, not a controller's
             first = of_controller(robot)
         if source is not None and "ticks_per_revolution" not in source.text:
             with suppress(InputError):  # a controller's file, from which a robot file is made
@@ -96,7 +99,8 @@ def _look(
         held.append(one)
     title = f"A first robot file, from {paths[0].name}: check base and radius with a ruler"
     sizes = source is not None or first.has_sizes
-    return Info(tuple(held), first, None if source is None else robot, None, title, sizes)
+    given, parameters = (None, robot) if source is None else (robot, None)
+    return Info(tuple(held), first, given, None, title, sizes, parameters)
 
 
 def _held(
@@ -207,6 +211,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     try:
         if recorded.reference is not None:
             refuse_unjudgeable(recorded, robot)
+            if recorded.reference.kind != "incremental":  # as where drives are judged
+                recorded = without_held_poses(recorded, robot)
         run = looked_at(recorded, robot, limits)
         counters = counters_of(run, robot, limits)
         found = driven(counters, robot, run.no_driving or ())

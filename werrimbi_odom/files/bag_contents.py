@@ -11,6 +11,7 @@ where they are compared.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -23,6 +24,7 @@ from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_bas
 from werrimbi_odom.files.own_odometry import (
     ODOMETRY,
     is_asked_for,
+    is_odometry_frame,
     is_unfiltered,
     why_from_wheels,
 )
@@ -53,6 +55,7 @@ POSES = {
     "geometry_msgs/msg/PoseStamped": "poses",
     "geometry_msgs/msg/PoseWithCovarianceStamped": "poses",
     "geometry_msgs/msg/TransformStamped": "poses",
+    "geometry_msgs/msg/Pose2D": "poses",
     "geometry_msgs/msg/PointStamped": "positions",
     FIX: "positions",
     IMU: "yaw",
@@ -66,13 +69,18 @@ class Wheels:
     """A topic, or two, with wheel data."""
 
     name: str
-    """Value for --ticks-topic: TOPIC, or LEFT,RIGHT."""
+    """Value for --ticks-topic: TOPIC, LEFT,RIGHT, or /tf:PARENT:CHILD."""
     kind: str
     """Message type, as in `sensor_msgs/msg/JointState`."""
     messages: int
     gives: Gives
     joints: tuple[str, ...] = ()
     """Names of the joints in a JointState."""
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Topics of its messages."""
+        return tuple(each.partition(":")[0] for each in self.name.split(","))
 
 
 @dataclass(frozen=True)
@@ -159,7 +167,9 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     references.sort(
         key=lambda each: (not each.independent, each.kind == SCAN, each.name in made_of)
     )
-    return Contents(bag.path, bag.topics, tuple(_wheels(bag, firsts)), tuple(references), found)
+    return Contents(
+        bag.path, bag.topics, tuple(_wheels(bag, firsts, found)), tuple(references), found
+    )
 
 
 def _measured(topic: Topic, first: Any) -> Measured:
@@ -200,7 +210,7 @@ def _chains(edges: tuple[Edge, ...], base: str) -> list[Measured]:
     return found
 
 
-def _wheels(bag: Bag, firsts: dict[str, Any]) -> list[Wheels]:
+def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Wheels]:
     found: list[Wheels] = []
     for topic in bag.topics:
         if topic.kind == JOINT_STATE:
@@ -230,4 +240,13 @@ def _wheels(bag: Bag, firsts: dict[str, Any]) -> list[Wheels]:
             )
             if reason and "filter" not in reason:
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "odometry"))
+    if not any(each.gives == "odometry" for each in found):
+        # Bags for a SLAM hold scans and transforms alone.
+        found += [
+            Wheels(
+                f"{edge.topic}:{edge.parent}:{edge.child}", TRANSFORMS[0], edge.messages, "odometry"
+            )
+            for edge in edges
+            if edge.changes and is_odometry_frame(edge.parent) and edge.made_from_wheels
+        ]
     return found

@@ -25,6 +25,13 @@ INTEGRATED = (
     "there are no wheel angles, only speeds: they are integrated (trapezia), which loses what the "
     "wheels did between two messages"
 )
+_WINDOW = 0.5
+"""Time over which wheels of a side are compared [s]: long against play and late messages, short
+against a manoeuvre."""
+_UNLIKE = 0.25
+"""Share of the way of a side's wheels that may be unlike. Steered and driven wheels of one side
+differ by up to an eighth in the tightest turns, skidding ones by less; mecanum wheels on a drive
+that is sideways in part by more than a third."""
 UNTURNED = "the angles begin anew at each turn; they are unwrapped"
 
 
@@ -73,8 +80,8 @@ class JointsCollector:
             raise InputError(f"{self._place}: {self._why_none()}")
         elif self._file.values["position_unit"] == "radians" and _begin_anew(positions):
             positions, words = np.unwrap(positions, axis=0), [*words, UNTURNED]
-        left = self._side(positions[:, : len(self._sides[0])], "left")
-        right = self._side(positions[:, len(self._sides[0]) :], "right")
+        left = self._side(time, positions[:, : len(self._sides[0])], "left")
+        right = self._side(time, positions[:, len(self._sides[0]) :], "right")
         return Ticks(time, left, right), words
 
     def _speeds_tell(self, positions: Floats) -> bool:
@@ -85,12 +92,50 @@ class JointsCollector:
         still = positions.shape[0] == 0 or not np.ptp(positions, axis=0).any()
         return bool(still and (positions.shape[0] == 0 or np.any(speeds != 0.0)))
 
-    def _side(self, positions: NDArray[np.float64], side: str) -> Counts:
+    def _side(self, time: Floats, positions: Floats, side: str) -> Counts:
         values = self._file.values
         per_turn = float(values[f"{side}_ticks_per_revolution"])  # type: ignore[arg-type]
         in_radians = values["position_unit"] == "radians"
+        self._refuse_fractions(in_radians, positions)
         counts = positions * (per_turn / (2.0 * math.pi)) if in_radians else positions
-        return counts_of(side_counts(counts, per_turn, int(values["encoder_bits"])))  # type: ignore[arg-type]
+        bits = int(values["encoder_bits"])  # type: ignore[arg-type]
+        self._refuse_unlike(side, time, counts, per_turn, bits)
+        return counts_of(side_counts(counts, per_turn, bits))
+
+    def _refuse_fractions(self, in_radians: bool, positions: Floats) -> None:
+        """Raise if angles are to be read as counts."""
+        known = positions[np.isfinite(positions)]
+        if not in_radians and known.size and np.mean(known != np.rint(known)) > 0.5:
+            raise InputError(
+                f"{self._place}: its positions are no whole numbers, and so no counts; angles are "
+                "read with position_unit: radians"
+            )
+
+    def _refuse_unlike(
+        self, side: str, time: Floats, counts: Floats, per_turn: float, bits: int
+    ) -> None:
+        """Raise if the wheels of a side turn by different amounts, so that their mean says nothing.
+
+        Mecanum and omni wheels do when the robot goes sideways; a counter does that stands still or
+        counts backwards.
+        """
+        known = np.isfinite(counts).all(axis=1) & np.isfinite(time)
+        if counts.shape[1] == 1 or not known.any():
+            return
+        rolled = _counted_on(counts[known], per_turn, bits)
+        edges = np.arange(time[known][0], time[known][-1], _WINDOW)
+        steps = np.diff(rolled[np.searchsorted(time[known], edges)], axis=0)
+        apart = float(np.abs(steps - steps.mean(axis=1, keepdims=True)).sum())
+        whole = float(np.abs(steps).sum())
+        if apart > max(_UNLIKE * whole, per_turn):
+            names = self._sides[side == "right"]
+            raise InputError(
+                f"{self._place}: {' and '.join(names)}, wheels of the {side} side, do not turn "
+                f"alike: {100 * apart / whole:.0f} % of their way is against each other. Mecanum "
+                "and omni wheels turn so when the robot goes sideways, and no model here is for "
+                "them. On any other robot one of them stands still, spins freely, or counts "
+                f"backwards: leave it out of {side}_wheel_names in the robot file"
+            )
 
     def _why_none(self) -> str:
         absent = [name for name in self._wheels if name not in self._names]

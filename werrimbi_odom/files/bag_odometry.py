@@ -5,14 +5,19 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
+from werrimbi_odom.files.bag_contents import Wheels
 from werrimbi_odom.files.bag_reference import planar
+from werrimbi_odom.files.frames import frame
+from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks, integrated
 from werrimbi_odom.model.pose import Floats
@@ -22,26 +27,76 @@ TOLD = (
     "and wheel_separation of the robot file without their multipliers: these must be what the "
     "driver itself works with; where it takes its heading from a gyro, so does this"
 )
+_WINDOW = 0.5
+"""Time of a step of the path that is asked whether it goes sideways [s]: far above rounding."""
+_FEWEST = 10
+"""Fewest such steps."""
+_SLOW = 0.1
+"""Share of the usual speed below which the robot does not go anywhere."""
+_ASIDE = 0.3
+"""Sideways part of a step that goes sideways: 17 degrees. Made of two wheels it is zero."""
+_OFTEN = 0.1
+"""Share of such steps; where the poses are set back to an origin there is one."""
 FROM_TWIST = "its poses never change, so its twist was integrated"
 
 
 class OdometryTurnedBack:
     """Collects odometry, and computes the wheel counts that would produce it."""
 
-    def __init__(self, path: Path, topic: str, robot_file: RobotFile) -> None:
-        self._place = f"{path}: {topic}"
+    def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
+        self._place = f"{path}: {source.name}"
         self._robot = robot_file.robot
+        self._frames = () if source.kind == ODOMETRY else tuple(source.name.split(":")[1:])
         self._time = array("d")
         self._poses = array("d")
         self._twists = array("d")
 
     def take(self, message: BagMessage) -> None:
         """Add a message."""
+        if self._frames:
+            for each in self._transforms(message.content):
+                self._time.append(stamp_of(message, each))
+                self._poses.extend(planar(each.transform.translation, each.transform.rotation))
+                self._twists.extend((0.0, 0.0))
+            return
         content = message.content
         self._time.append(stamp_of(message))
         self._poses.extend(planar(content.pose.pose.position, content.pose.pose.orientation))
         twist = content.twist.twist
         self._twists.extend((float(twist.linear.x), float(twist.angular.z)))
+
+    def _refuse_sideways(self, time: Floats, x: Floats, y: Floats, yaw: Floats) -> None:
+        """Raise if the robot goes sideways, which two wheels on an axle cannot."""
+        back = int(np.count_nonzero(np.diff(time) < 0.0))
+        order = np.argsort(time, kind="stable")
+        time, (steps, turns) = time[order], _chords(x[order], y[order], yaw[order])
+        place = np.append(0.0, np.cumsum(steps))
+        later = np.searchsorted(time, time + _WINDOW)
+        begin = np.flatnonzero(later < time.size)
+        way, turned = (
+            each[later[begin]] - each[begin] for each in (place, np.append(0.0, np.cumsum(turns)))
+        )
+        if way.size < _FEWEST:
+            return
+        # A frame ahead of the axle goes sideways as the robot turns: by as much for each radian.
+        lever = float(way.imag @ turned) / float(turned @ turned) if turned.any() else 0.0
+        aside = np.abs(way.imag - lever * turned)
+        length = np.abs(way)
+        moves = length > _SLOW * np.quantile(length, 0.9)
+        share = float(np.mean(aside[moves] > _ASIDE * length[moves])) if moves.any() else 0.0
+        if share > _OFTEN:
+            raise InputError(
+                f"{self._place}: by its odometry the robot goes sideways to its heading for "
+                f"{100 * share:.0f} % of the time. Mecanum and omni wheels do so, and no model "
+                "here is for them. On any other robot the odometry is given of a frame whose x "
+                "axis does not point ahead, or two nodes publish poses of their own on one topic "
+                f"(its stamps go back {back} times)"
+            )
+
+    def _transforms(self, content: Any) -> Iterator[Any]:
+        for each in content.transforms:
+            if (frame(each.header.frame_id), frame(each.child_frame_id)) == self._frames:
+                yield each
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """Counts of both wheels, from zero, and the method in words."""
@@ -57,6 +112,7 @@ class OdometryTurnedBack:
         else:
             whole = np.isfinite(x + y + yaw)
             time = time[whole]
+            self._refuse_sideways(time, x[whole], y[whole], yaw[whole])
             along, turned = _driven(x[whole], y[whole], yaw[whole])
         robot = self._robot
         half = 0.5 * robot.wheel_separation * turned
@@ -70,14 +126,19 @@ class OdometryTurnedBack:
         return Ticks(time, left, right), words
 
 
+def _chords(x: Floats, y: Floats, yaw: Floats) -> tuple[NDArray[np.complex128], Floats]:
+    """Step from each pose to the next, ahead and to the left of the mean heading, and turn."""
+    turns: NDArray[np.float64] = np.angle(np.exp(1j * np.diff(yaw)))
+    steps = (np.diff(x) + 1j * np.diff(y)) * np.exp(-1j * (yaw[:-1] + 0.5 * turns))
+    return steps, turns
+
+
 def _driven(x: Floats, y: Floats, yaw: Floats) -> tuple[Floats, Floats]:
     """Cumulative path of the axle's midpoint, backwards negative, and turn at each pose.
 
     Between two poses the robot drove an arc; its length follows from chord and turn.
     """
-    steps = np.diff(x) + 1j * np.diff(y)
-    turns: NDArray[np.float64] = np.angle(np.exp(1j * np.diff(yaw)))
-    heading = np.exp(1j * (yaw[:-1] + 0.5 * turns))
-    chord = np.abs(steps) * np.where((steps * heading.conj()).real < 0.0, -1.0, 1.0)
+    steps, turns = _chords(x, y, yaw)
+    chord = np.abs(steps) * np.where(steps.real < 0.0, -1.0, 1.0)
     arc = chord / np.sinc(0.5 * turns / np.pi)
     return tuple(np.concatenate([[0.0], np.cumsum(part)]) for part in (arc, turns))  # type: ignore[return-value]

@@ -85,7 +85,9 @@ class ReferenceCollector:
         if not (np.isfinite(yaw) | np.isfinite(x + y)).any():
             raise InputError(f"{self._place}: no message holds a finite pose")
         sigmas = (each if np.isfinite(each).any() else None for each in (sigma_xy, sigma_yaw))
-        told = f"{parent} -> {child}" if parent and child else f"frame {parent or child}"
+        told = (
+            f"{parent} -> {child}" if parent and child else f"frame {parent or child or 'unnamed'}"
+        )
         told = f"{told}, {mounted}" if mounted else told
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
         if self._source.kind == LOCALISED and parent == "map":
@@ -128,6 +130,15 @@ def _of_pose(message: BagMessage) -> Iterator[_Row]:
     pose, name = message.content.pose, message.content.header.frame_id
     measured = planar(pose.position, pose.orientation)
     yield _Row((frame(name), ""), (stamp_of(message), *measured, NAN, NAN))
+
+
+def _of_plane_pose(message: BagMessage) -> Iterator[_Row]:
+    """Motion capture and scan matchers publish it; it has no stamp and no frame."""
+    pose = message.content
+    x, y, yaw = (float(each) for each in (pose.x, pose.y, pose.theta))
+    if not (math.isfinite(x) and math.isfinite(y)):
+        x = y = NAN
+    yield _Row(("", ""), (message.received / 1e9, x, y, yaw, NAN, NAN))
 
 
 def _of_odometry(message: BagMessage) -> Iterator[_Row]:
@@ -196,6 +207,7 @@ def _of_fix(message: BagMessage) -> Iterator[_Row]:
 _ROWS: dict[str, Callable[[BagMessage], Iterator[_Row]]] = {
     "nav_msgs/msg/Odometry": _of_odometry,
     "geometry_msgs/msg/PoseStamped": _of_pose,
+    "geometry_msgs/msg/Pose2D": _of_plane_pose,
     LOCALISED: _of_pose_with_covariance,
     "geometry_msgs/msg/TransformStamped": _of_transform,
     "geometry_msgs/msg/PointStamped": _of_point,

@@ -130,8 +130,8 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     """Create the collector for a kind of source."""
     if source.kind == JOINT_STATE:
         return JointsCollector(path, source.name, robot_file)
-    if source.kind == ODOMETRY:
-        return OdometryTurnedBack(path, source.name, robot_file)
+    if source.gives == "odometry":
+        return OdometryTurnedBack(path, source, robot_file)
     robot_file.refuse_counts(f"{path}, {source.name}")
     if source.kind in (*ARRAYS, *FLOATS):
         return MultiArrays(path, source, robot_file)

@@ -47,8 +47,9 @@ def _carried_on(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
         return {}
     stamps: dict[str, set[tuple[int, int]]] = {name: set() for name in (*poses, *own)}
     for message in bag.messages([*poses, *own]):
-        stamp = message.content.header.stamp
-        stamps[message.topic].add((stamp.sec, stamp.nanosec))
+        header = getattr(message.content, "header", None)
+        if header is not None:  # Pose2D has none
+            stamps[message.topic].add((header.stamp.sec, header.stamp.nanosec))
     found = {}
     for name in poses:
         for odometry in own:

@@ -28,8 +28,10 @@ FILTERS = (
 UNFILTERED = ("unfiltered", "raw", "wheel")
 """Words in the names of odometry beside a filter's output under a plain name, as linorobot's."""
 
-NO_MEASUREMENT = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
-"""Words in topics of commanded or requested poses, from RViz or a program."""
+_COMMANDED = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
+NO_MEASUREMENT = (*_COMMANDED, "error")
+"""Words in topics of commanded or requested poses, from RViz or a program, and of how far the
+robot is from them."""
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
@@ -67,7 +69,7 @@ def names_a_sensor(topic: str) -> bool:
 
 
 def is_asked_for(topic: str) -> bool:
-    """Whether poses of a topic are requested, not measured."""
+    """Whether poses of a topic are requested, or relative to such, and not measured."""
     return any(word in topic.lower() for word in NO_MEASUREMENT)
 
 

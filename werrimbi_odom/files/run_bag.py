@@ -18,8 +18,9 @@ from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.files.run import Collected, Reference, Run
 from werrimbi_odom.files.text_files import readable
+from werrimbi_odom.files.two_clocks import Lateness, on_one_clock
 
 Progress = Callable[[float], None]
 """Callback for the share of the work done."""
@@ -68,13 +69,16 @@ def read_run_bag(
     with opened_bag(path) as bag:
         held = _contents_of(bag, robot_file, reference_topic)
         source = choose_ticks(held, ticks_topic, robot_file)
-        topics = source.name.split(",")
         chosen = _chosen(held, source, reference_topic, force)
         ticks_of = ticks_collector(path, source, robot_file)
         collectors = [_collector(path, held, each, robot_file) for each in chosen]
-        _collect(bag, [(topics, ticks_of), *((each.topics, each) for each in collectors)], progress)
+        takers = [(source.topics, Lateness(ticks_of))]
+        takers += [(each.topics, Lateness(each)) for each in collectors]
+        _collect(bag, takers, progress)
     ticks, notes = ticks_of.ticks()
-    found = _put_together(held, source, chosen, collectors)
+    collected = [each.reference() for each in collectors]
+    ticks, collected, clocks = on_one_clock(ticks, collected, [each.usual for _, each in takers])
+    found = _put_together(held, source, chosen, collectors, collected)
     lacking = ""
     if found.reference is None:
         lacking = f"({kinds_in_words()}); the bag has {', '.join(map(topic_in_words, bag.topics))}"
@@ -84,7 +88,7 @@ def read_run_bag(
         ticks,
         found.reference,
         (f"ticks from {source.name} ({source.kind})", *notes, *found.notes),
-        damage=(*bag.damage, *found.damage),
+        damage=(*bag.damage, *found.damage, *clocks),
         no_reference=lacking,
         circle=found.circle,
         taken_out=found.taken_out,
@@ -114,7 +118,8 @@ def read_reference_bag(
         chosen = _chosen(held, nothing, reference_topic, force)
         collectors = [_collector(path, held, each, robot_file) for each in chosen]
         _collect(bag, [(each.topics, each) for each in collectors], None)
-    found = _put_together(held, nothing, chosen, collectors)
+    collected = [each.reference() for each in collectors]
+    found = _put_together(held, nothing, chosen, collectors, collected)
     if found.reference is None:
         told = ", ".join(map(topic_in_words, held.topics)) or "nothing"
         raise InputError(
@@ -163,12 +168,12 @@ def _put_together(
     source: Wheels,
     chosen: Sequence[Chosen],
     collectors: Sequence[_Collector],
+    collected: Sequence[Collected],
 ) -> FoundReference:
     references, notes, circle = [], [], ""
     cuts: tuple[tuple[float, float], ...] = ()
     damage: tuple[str, ...] = ()
-    for (named, _), collector in zip(chosen, collectors, strict=True):
-        found = collector.reference()
+    for (named, _), collector, found in zip(chosen, collectors, collected, strict=True):
         references.append(found.reference)
         cuts, damage = (*cuts, *found.taken_out), (*damage, *found.damage)
         notes.append(f"reference from {collector.topics[0]} ({named.kind}), {found.told}")

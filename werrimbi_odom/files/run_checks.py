@@ -84,8 +84,8 @@ def _refuse_apart(run: Run, reference: Reference) -> None:
         return
     word, by = ("before", early) if early > late else ("after", late)
     raise InputError(
-        f"{run.path}: the reference (t_s {_told(measured)}) lies wholly {word} the ticks "
-        f"({_told(ticks)}), by {by:.6g} s; both need one clock, in seconds"
+        f"{run.path}: the reference (t_s {span_in_words(reference)}) lies wholly {word} the ticks "
+        f"({span_in_words(run.ticks)}), by {by:.6g} s; both need one clock, in seconds"
     )
 
 
@@ -93,8 +93,9 @@ def _span(of: Reference | Ticks) -> tuple[float, float]:
     return float(of.time.min()), float(of.time.max())
 
 
-def _told(span: tuple[float, float]) -> str:
-    return f"{span[0]:.14g} to {span[1]:.14g}"
+def span_in_words(of: Reference | Ticks) -> str:
+    """First and last stamp."""
+    return "{:.14g} to {:.14g}".format(*_span(of))
 
 
 QUANTA = 3.0

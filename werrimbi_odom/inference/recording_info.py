@@ -70,6 +70,8 @@ class Info:
     title: str = ""
     sizes: bool = False
     """Whether the metric scale is known."""
+    parameters: Path | None = None
+    """The controller's parameter file passed by the user, if any."""
 
     @property
     def robot_text(self) -> str:

@@ -117,7 +117,8 @@ def command_of(found: Info) -> str:
     paths = [str(each.path) for each in usable]
     robot = found.given or found.written
     if robot is None:
-        return shlex.join(["werrimbi", "info", *paths, "--out", "robot.yaml"])
+        given = [] if found.parameters is None else ["--robot", str(found.parameters)]
+        return shlex.join(["werrimbi", "info", *paths, *given, "--out", "robot.yaml"])
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]

@@ -11,6 +11,7 @@ from typing import Any
 from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_contents import FLOATS, SCAN
 from werrimbi_odom.files.reference_choice import other_scans
+from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.spans import DrivenAmount
@@ -63,7 +64,10 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     yield from left_out_words(held.left_out)
     if held.run is None:
         return
-    yield from (f"{each}." for each in held.run.damage)
+    yield from (f"{each[:1].upper()}{each[1:]}." for each in held.run.damage)
+    repeated = words_about_held([held.run])
+    if repeated:
+        yield f"{repeated}."
     can, cannot = can_tell(held, found.sizes)
     if can:
         yield f"It can show {listed(can)}."
@@ -92,7 +96,8 @@ def _references(held: Held) -> Iterator[str]:
         f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
     )
     if held.reference is None:
-        yield "Nothing in the bag measures the robot but its own wheels."
+        but = " but its own wheels" if held.wheels is not None else ""
+        yield f"Nothing that is read in the bag measures the robot{but}."
 
 
 def _stamps(held: Held) -> Iterator[str]:
