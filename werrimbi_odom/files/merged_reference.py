@@ -104,8 +104,8 @@ def merged(
         )
     covariance = poses.covariance
     if covariance is not None:
-        place = np.array([True, True, False])
-        covariance = np.where(np.outer(place, place), covariance, np.nan)
+        covariance = np.array(covariance)
+        covariance[:, 2, :] = covariance[:, :, 2] = np.nan
     return replace(poses, yaw=laid, sigma_yaw=None, covariance=covariance, gyro=gyro), words
 
 

@@ -107,7 +107,7 @@ def judged_legs(prepared: PreparedRuns, model: Model, leg: float) -> Legs:
             own = _with_drifts(own, usual)
         sigmas = group.own.sigma_xy, group.own.sigma_yaw
         if runs.shares is not None:  # relative to the largest of a drive
-            sigmas = tuple(np.full_like(sigma, sigma.max()) for sigma in sigmas)
+            sigmas = sigmas[0] * 0.0 + sigmas[0].max(), sigmas[1] * 0.0 + sigmas[1].max()
         errors = errors_of(
             own,
             runs,

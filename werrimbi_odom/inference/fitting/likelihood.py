@@ -308,7 +308,8 @@ def stated_shape(robot: Robot, runs: Concatenated) -> Floats | None:
     found = runs.shares
     if found is None or not view_of(robot.effects).mirrored:
         return found
-    return np.asarray(found * np.outer(*[[1.0, -1.0, -1.0]] * 2))
+    mirror = np.array([1.0, -1.0, -1.0])
+    return np.asarray(mirror[:, None] * found * mirror)
 
 
 def wheel_covariance(
