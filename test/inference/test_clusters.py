@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from test.inference.test_homogeneity import ROBOT, driven, late, nothing
 from werrimbi_odom.effects import LIBRARY
@@ -16,7 +17,12 @@ from werrimbi_odom.inference.diagnosis.p_values import p_value_by_parts, p_value
 from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
-from werrimbi_odom.inference.fitting.clusters import parts_of, parts_of_innovations, widening
+from werrimbi_odom.inference.fitting.clusters import (
+    effective_freedom,
+    parts_of,
+    parts_of_innovations,
+    widening,
+)
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
@@ -66,9 +72,22 @@ def test_where_parts_disagree_a_size_is_as_sure_as_they_are() -> None:
     for fit in (sound, shrinking):
         weighed = replace(fit, importance=dict.fromkeys(CALIBRATED, importance))
         for name in CALIBRATED:
-            by_noise, by_parts = chi2_survival(importance, 1), fisher_survival(importance, 1, 27)
+            assert 10.0 < fit.freedom[name] <= 27.0, "of 28 parts, each driven otherwise"
+            by_noise = chi2_survival(importance, 1)
+            by_parts = fisher_survival(importance, 1, fit.freedom[name])
             apart = fit.doubts[name] > 1.0
             assert p_value_of_size(weighed, name) == (by_parts if apart else by_noise)
+
+
+def test_a_number_that_few_parts_show_is_known_by_few() -> None:
+    runs = [driven(each, nothing, f"drive_{each}") for each in range(4)]
+    laid = concatenated(match_for_fit(runs, ROBOT, 0.25, None))
+    white = np.random.default_rng(0).normal(size=3 * laid.count)
+    parts = parts_of_innovations(laid, white)
+    assert parts is not None
+    alike = 1.0 / np.sqrt(np.bincount(parts)[parts])
+    assert effective_freedom(laid, white, alike) == pytest.approx(27.0)
+    assert effective_freedom(laid, white, np.where(parts % 7 == 0, alike, 0.0)) == pytest.approx(3)
 
 
 def test_an_effect_that_parts_disagree_on_counts_all_that_was_tried() -> None:

@@ -4,8 +4,8 @@
 
 Odometry that is judged by odometry is always right. Most such references are recognised by name and
 frame (`Run.circle`). Here all references are tested by their distance to the wheels' path length
-between two instants. Headings are not used, as those of a robot's own odometry often come from a
-gyro.
+between two instants. Headings refuse nothing, as those of a robot's own odometry often come from a
+gyro. A reference that differs from the wheels by less than any wheels' own noise is suspect.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from werrimbi_odom.inference.rules import (
     CIRCLE_FINEST,
     CIRCLE_STEPS,
     CIRCLE_WAY,
+    CIRCLE_WHEELS,
     CIRCLE_WHOLE,
 )
 from werrimbi_odom.model.encoder import Counts, EncoderLimits
@@ -45,6 +46,9 @@ class Closeness(NamedTuple):
     rounding: float
     """Standard deviation of such a path length from the quantisation of the counters [m]; 0 if they
     are not quantised."""
+    turns_apart: float
+    """Typical difference of the turn over such a path, after fitting both wheels and the delay
+    [rad]; infinite where headings are not measured."""
 
 
 def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
@@ -53,8 +57,8 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
     Returns
     -------
     str
-        A note if its name says that it is odometry while its numbers say that it is independent;
-        else empty.
+        A note if its name says that it is odometry while its numbers say that it is independent, or
+        if it differs from the wheels by less than any wheels' own noise; else empty.
 
     Raises
     ------
@@ -79,7 +83,7 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
             "the same)"
         )
     if not run.circle:
-        return ""
+        return _words_about_closeness(run, robot, found)
     if found is not None and found.apart > CIRCLE_APART:
         what = run.circle.partition(":")[0]
         return (
@@ -92,6 +96,26 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
     raise InputError(
         f"{run.path}: {run.circle}. A reference that is made from the wheels always agrees with "
         f"them{close} and shows none of their errors (--force takes it all the same)"
+    )
+
+
+def _words_about_closeness(run: Run, robot: Robot, found: Closeness | None) -> str:
+    """Suspicion about a reference that differs from the wheels by less than wheels' own noise.
+
+    It is no proof: a simulator's robot without noise agrees as well.
+    """
+    if found is None or not found.rounding:
+        return ""
+    along = CIRCLE_WHEELS * float(np.sqrt(found.way / 2.0))
+    turn = CIRCLE_WHEELS * float(np.sqrt(2.0 * found.way)) / robot.track
+    if found.apart >= along or (found.turns_apart >= turn and np.isfinite(found.turns_apart)):
+        return ""
+    turns = f" and {found.turns_apart:.2g} rad" if np.isfinite(found.turns_apart) else ""
+    return (
+        f"{run.path}: the reference agrees with the wheels to {_small(found.apart)}{turns} in "
+        f"{found.way:.2g} m, closer than any wheels follow the floor: one was made from the other, "
+        "or both from one filter (or it is a simulator's robot without noise); then it shows none "
+        "of their errors"
     )
 
 
@@ -108,17 +132,22 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     if rows.size <= CIRCLE_FEWEST:
         return None
     ways, known = _ways(reference, rows)
-    best = np.inf
+    turns = np.diff(np.unwrap(reference.yaw[rows]))
+    turning = np.isfinite(turns)
+    best = turned = np.inf
     for delay in CIRCLE_DELAYS:
         wheels = np.diff(counters.at(reference.time[rows] - delay), axis=0)
         wheels = wheels * [robot.left_tick, robot.right_tick]
         if not known:  # the sign of the motion is taken from the wheels
             ways = np.abs(ways) * np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
         best = min(best, _typical(ways, wheels))
+        if turning.sum() > CIRCLE_FEWEST:
+            turned = min(turned, _typical(turns[turning], wheels[turning]))
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
     rolled = 0.5 * float(np.abs(wheels).sum())
     scale = float(np.abs(ways).sum()) / rolled if rolled > 0.0 else 1.0
-    return Closeness(best, float(np.median(np.abs(ways))), scale * _rounding(run, robot))
+    way = float(np.median(np.abs(ways)))
+    return Closeness(best, way, scale * _rounding(run, robot), turned)
 
 
 def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:

@@ -13,7 +13,6 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.clusters import few_parts, parts_of_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.rules import LASTING_PARTS
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
@@ -48,8 +47,8 @@ def disagreeing(fit: Fitted, name: str) -> bool:
 def p_value_of_size(fit: Fitted, name: str) -> float:
     """P-value of a calibration effect's importance.
 
-    Where the parts disagree, by Fisher's F with their degrees of freedom, as few parts estimate
-    their own scatter poorly.
+    Where the parts disagree, by Fisher's F with the degrees of freedom in which they tell their
+    scatter, as few parts estimate it poorly.
     """
-    parts = LASTING_PARTS - 1 if fit.doubts[name] > 1.0 else math.inf
-    return fisher_survival(fit.importance.get(name, 0.0), 1, parts)
+    freedom = fit.freedom[name] if fit.doubts[name] > 1.0 else math.inf
+    return fisher_survival(fit.importance.get(name, 0.0), 1, freedom)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
@@ -128,9 +128,13 @@ def instead_of_calibration(
 
 
 def search_round(
-    runs: Concatenated, before: Fitted, effects: Sequence[Effect], given: Robot
+    runs: Concatenated,
+    before: Fitted,
+    effects: Sequence[Effect],
+    given: Robot,
+    shown: Collection[str] = (),
 ) -> Round:
-    """Score all candidates once more and fit the best few."""
+    """Score all candidates once more and fit the best few, and those that were `shown` before."""
     point = before.point
     held = {applied.name for applied in point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
@@ -140,7 +144,9 @@ def search_round(
     ordered = best_of_each(found)
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
     tried = []
-    for score in worth_fitting(ordered):
+    worth = worth_fitting(ordered)
+    again = [score for score in ordered if score.candidate.name in shown and score not in worth]
+    for score in (*worth, *again):
         variants = [
             other
             for other in found

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.calibration_sizes import (
     sizes_of,
     std_as_effect,
 )
-from werrimbi_odom.inference.fitting.clusters import widening
+from werrimbi_odom.inference.fitting.clusters import effective_freedom, widening
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.fit import fit_model
@@ -42,7 +42,7 @@ from werrimbi_odom.inference.fitting.identifiable import (
     every_direction,
 )
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.linear import nuisance, score_test
+from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,
     NOISE_NUMBERS,
@@ -92,6 +92,8 @@ class Fitted:
     than the noise."""
     widening: Floats
     """Factor of that on each standard deviation, (p,)."""
+    freedom: dict[str, float]
+    """Degrees of freedom in which the parts tell the scatter of each calibration effect."""
     moves: Floats
     """Step of the design's columns for a unit of each free direction; (p, q)."""
     design: Design
@@ -214,6 +216,7 @@ def fitted(
         importance,
         covariance,
         wide,
+        freedom_of_sizes(runs, design, result.robot),
         ways.matrix,
         design,
         ways.held,
@@ -231,6 +234,27 @@ class _Rise(NamedTuple):
     """Whether the others stay within the uncertainty of a tape, and can be observed at all."""
 
 
+def _sizes_in(design: Design, robot: Robot) -> tuple[Nuisance, Floats]:
+    """Span of all but the multipliers, and the derivatives (n, 3) in the calibration effects."""
+    ways = every_direction(design.columns, robot)
+    _, flat = design.flat()
+    names = [number.name for number, _ in design.columns]
+    others = nuisance(flat[:, [name not in MULTIPLIERS for name in names]])
+    return others, flat @ ways.matrix[:, [ways.names.index(name) for name in CALIBRATED]]
+
+
+def freedom_of_sizes(runs: Concatenated, design: Design, robot: Robot) -> dict[str, float]:
+    """Degrees of freedom in which the parts tell the scatter of each calibration effect."""
+    others, marks = _sizes_in(design, robot)
+    free = others.residual(marks)
+    white, _ = design.flat()
+    found = {}
+    for index, name in enumerate(CALIBRATED):
+        beside = nuisance(np.delete(free, index, axis=1))
+        found[name] = effective_freedom(runs, white, beside.residual(free[:, index]))
+    return found
+
+
 def calibration_rises(
     design: Design, robot: Robot, given: Robot, held: Sequence[str] = ()
 ) -> list[_Rise]:
@@ -240,11 +264,8 @@ def calibration_rises(
     determine beside the others, are not fitted, but may replace one that is (on a circle the base
     and the ratio of the radii are equivalent).
     """
-    ways = every_direction(design.columns, robot)
     flat = design.flat()
-    marks = flat[1] @ ways.matrix[:, [ways.names.index(name) for name in CALIBRATED]]
-    names = [number.name for number, _ in design.columns]
-    others = nuisance(flat[1][:, [name not in MULTIPLIERS for name in names]])
+    others, marks = _sizes_in(design, robot)
     free = others.residual(marks)
     with_held_as_given = others.residual(flat[0]) - free @ calibration_deviation(robot, given)
     found = []

@@ -82,6 +82,25 @@ def least_informative_share(parts: NDArray[np.intp]) -> float:
     return LASTING_HEARD * math.sqrt(LASTING_PARTS / (parts.max() + 1))
 
 
+def effective_freedom(runs: Concatenated, white: Floats, own: Floats) -> float:
+    """Degrees of freedom in which the parts tell the scatter of one number (Satterthwaite).
+
+    With the shares `w` of what they know of it, 1 / sum(w^2) - 1: that of the parts, less one,
+    where all know as much, and fewer where few drives or turns show it (Bell and McCaffrey, Surv.
+    Methodol. 28, 2002). Infinite where there are no parts.
+
+    Parameters
+    ----------
+    own : ndarray, shape (3 m,)
+        Derivative of the innovations in the number, with all others projected out.
+    """
+    parts = parts_of_innovations(runs, white)
+    if parts is None or not own.any():
+        return math.inf
+    shares = np.bincount(parts[parts >= 0], own[parts >= 0] ** 2)
+    return max(float(shares.sum() ** 2 / np.sum(shares**2)) - 1.0, 1.0)
+
+
 def widening(white: Floats, flat: Floats, moves: Floats, runs: Concatenated) -> Floats:
     """Factor on the standard deviations for disagreement between parts, (p,).
 

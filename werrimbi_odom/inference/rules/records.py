@@ -107,6 +107,11 @@ no whole counts. An independent measurement differs by more: 75 um in 0.25 m is 
 capture's noise, and the wheels' own, with k = 4e-4 m^½, is 0.2 mm. Odometry from the same angles
 differs by 1e-15, and by 2e-4 if it was sent between two of them."""
 
+CIRCLE_WHEELS = 1e-4
+"""Noise of the best wheels that roll [m^½] (`TYPICAL_WHEEL_NOISE`). A measurement differs from the
+wheels by that, by its own noise and by the counts' rounding; one that differs by less shares the
+wheels' errors."""
+
 CIRCLE_APART = 0.012
 """Typical difference over a span [m], above which even what is called odometry is no odometry of
 these wheels. Jitter of 40 ms at 0.3 m/s, or the lag of a filter, makes as much; a larger difference
