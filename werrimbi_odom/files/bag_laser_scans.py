@@ -82,10 +82,7 @@ class LidarCollector:
             words = _lost(found) if self._echoes else _blind(found, self._reach)
             raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
-        poses, covariance = _of_base(found, mount)
-        # One number for both axes is that of the wider: the mean would be too sure in a corridor.
-        sigma_xy = np.sqrt(np.linalg.eigvalsh(covariance[:, :2, :2])[:, 1])
-        sigma_yaw = np.sqrt(covariance[:, 2, 2])
+        poses, sigma_xy, sigma_yaw = _of_base(found, mount)
         damage = f"the path by {self._name} is in pieces: {_unmatched(found)}"
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
         if self._matcher.order != "stated":
@@ -98,15 +95,7 @@ class LidarCollector:
         # Not local_map: in a room the map drifts by less than the error of a match (docs/scans.md),
         # and a fitted drift would absorb the effect of a misaligned lidar.
         reference = Reference(
-            found.time,
-            x,
-            y,
-            yaw,
-            sigma_xy,
-            sigma_yaw,
-            covariance=covariance,
-            kind="absolute",
-            own_axes=True,
+            found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute", own_axes=True
         )
         return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
 
@@ -128,20 +117,20 @@ def _beside(length: float, one: str, other: str) -> str:
     return f"{1e3 * abs(length):.0f} mm {one if length >= 0.0 else other}"
 
 
-def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats]:
-    """Poses of the base, starting at the origin, (n, 3), and their covariances, (n, 3, 3)."""
+def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
+    """Poses of the base (n, 3), starting at the origin, and their sigmas (n,), from the lidar's."""
     x, y, yaw = found.poses.T
-    side = -1.0 if mount.inverted else 1.0
-    y, yaw = side * y, side * yaw
+    if mount.inverted:
+        y, yaw = -y, -yaw
     sits = mount.x + 1j * mount.y
     lever = sits * np.exp(1j * yaw)  # both yaws start at zero: the base turns as the lidar does
     base = sits + (x + 1j * y) * np.exp(1j * mount.yaw) - lever
-    cos, sin = np.cos(mount.yaw), np.sin(mount.yaw)
-    moved = np.zeros((len(yaw), 3, 3))
-    moved[:, :2, :2] = np.array([[cos, -sin], [sin, cos]]) * [1.0, side]
-    moved[:, :, 2] = side * np.column_stack([lever.imag, -lever.real, np.ones(len(yaw))])
-    covariance = moved @ found.covariances @ moved.swapaxes(1, 2)
-    return np.column_stack([base.real, base.imag, yaw]), covariance
+    variance = np.diagonal(found.covariances, axis1=1, axis2=2)
+    sigma_yaw = np.sqrt(variance[:, 2])
+    # One number for both axes is that of the wider: the mean would be too sure along a corridor.
+    widest = np.linalg.eigvalsh(found.covariances[:, :2, :2])[:, 1]
+    sigma_xy = np.sqrt(widest + 0.5 * variance[:, 2] * np.abs(lever) ** 2)
+    return np.column_stack([base.real, base.imag, yaw]), sigma_xy, sigma_yaw
 
 
 def _in_words(found: ScanPath, sigma_xy: Floats, sigma_yaw: Floats) -> str:

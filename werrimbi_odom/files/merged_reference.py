@@ -102,11 +102,7 @@ def merged(
             f"; by them the robot turns {1e3 * abs(late):.0f} ms {when} it does by the other, on "
             "whose clock they are put"
         )
-    covariance = poses.covariance
-    if covariance is not None:
-        covariance = np.array(covariance)
-        covariance[:, 2, :] = covariance[:, :, 2] = np.nan
-    return replace(poses, yaw=laid, sigma_yaw=None, covariance=covariance, gyro=gyro), words
+    return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), words
 
 
 def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> list[Reference]:

@@ -92,9 +92,6 @@ class Reference:
     """Standard deviation of x and of y, if stated [m]."""
     sigma_yaw: Floats | None = None
     """Standard deviation of yaw, if stated [rad]."""
-    covariance: Floats | None = field(default=None, kw_only=True)
-    """Covariance of x, y and yaw of each pose in the reference's frame, if stated, (m, 3, 3); then
-    `sigma_xy` is that of the wider direction. NaN where a coordinate is of another sensor."""
     kind: ReferenceKind | None = field(default=None, kw_only=True)
     """Kind of its noise; None if unknown to the reader."""
     own_axes: bool = field(default=False, kw_only=True)
@@ -129,7 +126,6 @@ class Reference:
             self.yaw[which],
             None if self.sigma_xy is None else self.sigma_xy[which],
             None if self.sigma_yaw is None else self.sigma_yaw[which],
-            covariance=None if self.covariance is None else self.covariance[which],
             kind=self.kind,
             own_axes=self.own_axes,
             gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),

@@ -105,14 +105,11 @@ def judged_legs(prepared: PreparedRuns, model: Model, leg: float) -> Legs:
             _, own = residuals_of(own, group.every, group.measure)
         elif group.measure == "heading":
             own = _with_drifts(own, usual)
-        sigmas = group.own.sigma_xy, group.own.sigma_yaw
-        if runs.shares is not None:  # relative to the largest of a drive
-            sigmas = sigmas[0] * 0.0 + sigmas[0].max(), sigmas[1] * 0.0 + sigmas[1].max()
         errors = errors_of(
             own,
             runs,
-            sigmas[0][runs.run_of_leg],
-            sigmas[1][runs.run_of_leg],
+            group.own.sigma_xy[runs.run_of_leg],
+            group.own.sigma_yaw[runs.run_of_leg],
             prepared.options.reference_kind,
             by_position=by_position,
             sigma_stamp=group.own.noise.sigma_stamp,

@@ -15,13 +15,11 @@ from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
-from werrimbi_odom.inference.fitting.leg_loop import turn_into
 from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
     paces,
     quantisation_variance,
-    stated_shape,
     wheel_covariance,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
@@ -178,7 +176,7 @@ def errors_of(
     else:
         error = errors_between(start, finish, prediction)
         reference = _reference_part(
-            robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind, heading
+            robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind
         )
     return LegErrors(
         error,
@@ -212,12 +210,10 @@ def _reference_part(
     prediction: Prediction,
     sigmas: tuple[float | Floats, float | Floats, float],
     kind: ReferenceKind,
-    heading: Floats,
 ) -> Floats:
     """Covariance of a leg's error from the reference and from encoder quantisation.
 
-    The reference's part is that of its positions, headings and stamps. `heading` is that at the
-    leg's start (m,), in whose axes errors are.
+    The reference's part is that of its positions, headings and stamps.
     """
     reading = quantisation_variance(robot)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
@@ -232,18 +228,8 @@ def _reference_part(
         return np.asarray(swing + flat + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
     lever = np.zeros((runs.count, 3, 3)) + np.eye(3)
     lever[:, 0, 2], lever[:, 1, 2] = -prediction.relative[:, 1], prediction.relative[:, 0]
-    own = np.stack([xy, xy, yaw], axis=-1)
-    stated = stated_shape(robot, runs)
-    if stated is None:
-        both = (reading + own + late for late in (begun, ended))
-        first, last = (each[:, :, None] * np.eye(3) for each in both)
-    else:
-        turn = np.empty((runs.count, 3, 3))
-        turn_into(turn, np.nan_to_num(heading))
-        sigma = np.sqrt(own)
-        shape = turn.swapaxes(1, 2) @ (sigma[:, :, None] * stated * sigma[:, None, :]) @ turn
-        late = np.stack([begun, ended]) + reading
-        first, last = shape + late[..., None] * np.eye(3)
+    own = np.stack([xy, xy, yaw], axis=-1) + reading
+    first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
     return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1))
 
 

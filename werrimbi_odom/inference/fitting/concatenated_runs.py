@@ -33,8 +33,6 @@ DELAYS = 4
 """Reference delays whose shifted runs are cached: a fit moves one both ways, then on."""
 DRIVES = 2
 """Robots whose inputs to effects are cached: twenty numbers for each step."""
-_BOTH_ENDS = slice(-1), slice(1, None)
-"""Of the poses of a run: those at which legs begin, and at which they end."""
 Found = TypeVar("Found")
 
 
@@ -117,12 +115,19 @@ class Concatenated:
 
     @property
     def shares(self) -> Floats | None:
-        """Stated covariance at the start and the end of each leg, relative to usual, (2, m, 3, 3).
+        """Stated variances of position and heading at each leg's end, relative to usual, (m, 2).
 
-        In the axes of the references. The unit of a coordinate is the largest typical value of a
-        drive, which stands for all (`with_stated_noise`). None if any run states none.
+        The unit is the largest typical value of a drive, which stands for all
+        (`with_stated_noise`). None if any run states none.
         """
-        return self.known("shares", _shares)[0]
+        found = []
+        for name in ("sigma_xy", "sigma_yaw"):
+            stated = [getattr(run.measured, name) for run in self.runs]
+            usual = [getattr(run, name) for run in self.runs]
+            if any(sigma is None for sigma in stated):
+                return None
+            found.append(np.concatenate([sigma[1:] for sigma in stated]) / max(usual))
+        return np.stack(found, axis=-1) ** 2
 
     @property
     def run_of_step(self) -> NDArray[np.intp]:
@@ -296,20 +301,6 @@ def _counts(runs: Concatenated) -> WheelTravel[Floats]:
     """Counts of both wheels in all steps."""
     counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
     return counts
-
-
-def _shares(runs: Concatenated) -> tuple[Floats | None]:
-    """`Concatenated.shares`, in a tuple: it may be None."""
-    stated = [run.measured.covariance for run in runs.runs]
-    known = [each for each in stated if each is not None]
-    if len(known) < len(stated):
-        return (None,)
-    xy = max(run.sigma_xy or np.nan for run in runs.runs)
-    yaw = max(run.sigma_yaw or np.nan for run in runs.runs)
-    unit = np.array([xy, xy, yaw])
-    ends = [np.concatenate([each[part] for each in known]) for part in _BOTH_ENDS]
-    found = np.stack(ends) / np.outer(unit, unit)
-    return (np.where(np.isfinite(found), found, np.eye(3)),)
 
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:

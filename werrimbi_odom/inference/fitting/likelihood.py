@@ -289,27 +289,16 @@ def _reading(
     """Covariance of a measured pose, including encoder quantisation; (g, 1 or m, 3, 3)."""
     stamps = runs.has_stamp_noise
     reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
-    reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None]
+    shares = runs.known("shares", lambda runs: runs.shares) if kind == "absolute" else None
+    place, heading = (1.0, 1.0) if shares is None else shares.T
+    reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None] * place
     if kind != "incremental":
-        reading[..., 2, 2] = variances.yaw[:, None]
-    stated = None if kind == "incremental" else stated_shape(robot, runs)
-    if stated is not None:
-        sigma = np.sqrt(np.diagonal(reading[:, :1], axis1=2, axis2=3))
-        reading = sigma[..., :, None] * stated[1] * sigma[..., None, :]
+        reading[..., 2, 2] = variances.yaw[:, None] * heading
     if stamps:
         pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
         late = variances.stamp[:, None, None] * pace
         reading += late[..., None] * np.eye(3)
     return np.asarray(reading + np.diag(quantisation_variance(robot)))
-
-
-def stated_shape(robot: Robot, runs: Concatenated) -> Floats | None:
-    """`Concatenated.shares`, right-handed as the robot's frame is."""
-    found = runs.shares
-    if found is None or not view_of(robot.effects).mirrored:
-        return found
-    mirror = np.array([1.0, -1.0, -1.0])
-    return np.asarray(mirror[:, None] * found * mirror)
 
 
 def wheel_covariance(

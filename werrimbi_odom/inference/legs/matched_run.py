@@ -163,23 +163,17 @@ def _gaps_between(record: AlignedRun, rows: NDArray[np.intp]) -> NDArray[np.bool
 
 
 def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
-    """Some poses of a reference, with a stated covariance, without stated sigmas.
-
-    A covariance is that of each scan match; sigmas are a localiser's, of its error in all.
-    """
+    """Some poses of a reference, without the stated noise of its absolute poses."""
     columns: list[Any] = [reference.time, reference.x, reference.y, reference.yaw]
     if rows.size < reference.time.size:
         columns = [part[rows] for part in columns]
     gyro = reference.gyro
     if gyro is not None:
         gyro = gyro._replace(turned=gyro.turned[rows])
-    stated = reference.covariance
-    return Reference(
-        *columns,
-        covariance=None if stated is None else stated[rows],
-        own_axes=reference.own_axes,
-        gyro=gyro,
-    )
+    if reference.own_axes:  # stated per scan match; a localiser states its absolute error
+        for sigma in (reference.sigma_xy, reference.sigma_yaw):
+            columns.append(None if sigma is None else sigma[rows])
+    return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
 
 
 def typical_sigma(sigma: Floats | None) -> float | None:
