@@ -15,7 +15,7 @@ left out, and the whole search is repeated without them.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
@@ -96,14 +96,12 @@ def diagnose(
     InputError
         When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
-    shown: set[str] = set()
 
     def search(
         runs: Sequence[Run], holdout: Sequence[Run], first: bool
     ) -> tuple[Diagnosis, Events]:
         told = show if first else silent
-        found, judge = _searched(runs, holdout, robot, effects, options, told, shown)
-        shown.update(found.final.names)
+        found, judge = _searched(runs, holdout, robot, effects, options, told)
         if found.of_another_drive:
             return found, Events()
         found.runs.forget_steps()
@@ -120,12 +118,8 @@ def _searched(
     effects: Sequence[Effect],
     options: EvaluationOptions,
     show: Show,
-    shown: Collection[str],
 ) -> tuple[Diagnosis, Judge]:
-    """One complete search for missing effects, and the judge of its models.
-
-    `shown` are effects that were found before events were left out.
-    """
+    """One complete search for missing effects, and the judge of its models."""
     show(0.0, "set-up")
     begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
@@ -138,9 +132,9 @@ def _searched(
     beyond = misfit = None
     for number in range(ROUNDS):
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
-        this = search_round(laid, fit, effects, set_up.robot, shown)
+        this = search_round(laid, fit, effects, set_up.robot)
         rounds.append(this)
-        best, beyond = _chosen(this, laid, shown)
+        best, beyond = _chosen(this, laid)
         misfit = misfit_of_held_law(this, best, beyond, laid)
         if misfit is not None:
             beyond = None
@@ -178,22 +172,15 @@ def _significant(this: Round) -> Fitted | None:
     return fit if significant else None
 
 
-def _chosen(
-    this: Round, runs: Concatenated, shown: Collection[str]
-) -> tuple[Fitted | None, Dependence | None]:
+def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence | None]:
     """The model that a round finds, or the dependence that is beyond the library, if any.
-
-    That the parts agree on an effect in `shown` was found with the legs that events have since
-    taken away. It must still lower the cost beyond chance, and that of legs left out.
 
     Few parts of the drives may show an effect: of a late clock on one long circle, those with
     starts and stops. So few cannot prove it alone, even if they agree. But if a dependence lasts,
     something is missing, and the effect competes for it.
     """
     best = _significant(this)
-    if best is not None and (
-        best.names[-1] in shown or p_value_by_parts(runs, best, best.names[-1], this.number) < SURE
-    ):
+    if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < SURE:
         return best, _beyond_the_library(this, best, runs)
     lasts = _beyond_the_library(this, None, runs)
     if lasts is None or best is None or disagreeing(best, best.names[-1]):

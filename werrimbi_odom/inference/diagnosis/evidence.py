@@ -35,14 +35,14 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
-from werrimbi_odom.inference.distributions import bonferroni, chi2_survival, fisher_survival
+from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
-from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR, NOISE_NUMBERS
+from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.pose import Floats
 
 BATCH = 500_000
@@ -132,24 +132,12 @@ def dependences(
             else test.coefficients,
             test.gain,
             test.degrees,
-            bonferroni(len(found), _chance(runs, frame.basis.shape[1], rest, test)),
+            bonferroni(len(found), chi2_survival(test.gain, test.degrees)),
             shares[amount],
         )
         for amount, variable, form, test in found
     ]
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
-
-
-def _chance(runs: Concatenated, fitted: int, rest: Floats, test: ScoreTest) -> float:
-    """P-value of a cell; by Fisher's F where few data must also tell their scatter.
-
-    `rest` are the innovations with `fitted` columns projected out.
-    """
-    if runs.data >= NOISE_NUMBERS:
-        return chi2_survival(test.gain, test.degrees)
-    spare = max(runs.data - fitted - test.degrees, 1)
-    scatter = max((float(rest @ rest) - test.gain) / spare, 1.0)
-    return fisher_survival(test.gain / test.degrees / scatter, test.degrees, spare)
 
 
 def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
@@ -128,13 +128,9 @@ def instead_of_calibration(
 
 
 def search_round(
-    runs: Concatenated,
-    before: Fitted,
-    effects: Sequence[Effect],
-    given: Robot,
-    shown: Collection[str] = (),
+    runs: Concatenated, before: Fitted, effects: Sequence[Effect], given: Robot
 ) -> Round:
-    """Score all candidates once more and fit the best few, and those that were `shown` before."""
+    """Score all candidates once more and fit the best few."""
     point = before.point
     held = {applied.name for applied in point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
@@ -144,9 +140,7 @@ def search_round(
     ordered = best_of_each(found)
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
     tried = []
-    worth = worth_fitting(ordered)
-    again = [score for score in ordered if score.candidate.name in shown and score not in worth]
-    for score in (*worth, *again):
+    for score in worth_fitting(ordered):
         variants = [
             other
             for other in found

@@ -171,25 +171,9 @@ def fit_model(
         covariance[np.ix_(where, where)],
         tuple(number for number in shared_of(numbers) if number not in free),
         ways,
-        tuple(
-            number
-            for number in shared_of(numbers)
-            if _at_bound(point.model.value(number), number)
-            # A bound may be the null, where a number that is not determined stays; and one that
-            # was moved to its bound may not be determined there.
-            and (number in free or point.model.value(number) != _null(point.model, number))
-        ),
+        tuple(number for number in free if _at_bound(point.model.value(number), number)),
         float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
-
-
-def _null(model: Model, number: FreeParameter) -> float | None:
-    """Value of an effect's parameter without the effect; None for other numbers."""
-    name, _, parameter = number.name.rpartition(".")
-    for applied in model.robot.effects:
-        if applied.name == name:
-            return applied.effect.parameters[parameter].null
-    return None
 
 
 def _at_bound(value: float, number: FreeParameter) -> bool:
