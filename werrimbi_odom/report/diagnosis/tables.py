@@ -158,6 +158,8 @@ def json_of(
         if diagnosis.happened.left_out
         else None,
         "reference_remarks": remarks_json(diagnosis.remarks),
+        "reference_wanders": diagnosis.wander
+        and picked(diagnosis.wander, "xy_m:place yaw_rad:heading for_s:seconds"),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
         "widened": widest(diagnosis),

@@ -41,6 +41,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     not_shown,
     otherwise,
     scatter,
+    wandering,
     without_events,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -69,6 +70,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
+    suspect = [*wandering(diagnosis), *suspect]
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
     left_out += without_events(told)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
