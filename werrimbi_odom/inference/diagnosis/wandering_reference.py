@@ -41,20 +41,26 @@ from werrimbi_odom.inference.rules import (
 
 @dataclass(frozen=True, slots=True)
 class Wander:
-    """Size of a reference's slowly varying error (standard deviations), and how long it lasts."""
+    """Slowly varying error of a reference: standard deviations of its change, and of itself."""
 
-    place: float
+    place_in_a_second: float
     """[m]"""
-    heading: float
+    heading_in_a_second: float
     """[rad]"""
+    place: float
+    """In the long run [m]."""
+    heading: float
     seconds: float
-    """Correlation time [s]."""
+    """For how long it stays alike (correlation time) [s]. Short drives tell it, and the size in the
+    long run, much less well than the change in a second."""
 
 
 def wander_of(variances: Variances) -> Wander:
     """The wander of a reference on a local map."""
     place, _, heading = np.sqrt(variances.wandered()[0])
-    return Wander(float(place), float(heading), float(1.0 / np.sqrt(variances.reversion[0])))
+    walk = np.sqrt([variances.walk_xy[0], variances.walk_yaw[0]])
+    seconds = 1.0 / np.sqrt(variances.reversion[0])
+    return Wander(*map(float, (*walk, place, heading, seconds)))
 
 
 def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependence]) -> bool:
@@ -94,12 +100,12 @@ def _typical(fitted: Variances) -> Variances:
     """Localisers about the middle of their prior, each with typical wheels and two noises."""
     sides = (-1.0, 0.0, 1.0)
     noises = ((fitted.xy[0], fitted.yaw[0]), np.square(TYPICAL_MATCH))
-    rows = [
-        [*[TYPICAL_WHEEL_NOISE**2] * 2, *noise, fitted.stamp[0], *np.square(walk)]
-        for noise, size, rate in product(noises, sides, sides)
-        for walk in [np.array(TYPICAL_WALK) * np.exp(WALK_SPREAD * [size, size, rate])]
-    ]
-    return Variances(*np.array(rows).T)
+    wheels = np.full(2, TYPICAL_WHEEL_NOISE**2)
+    rows = []
+    for noise, size, rate in product(noises, sides, sides):
+        walk = np.array(TYPICAL_WALK) * np.exp(WALK_SPREAD * [size, size, rate])
+        rows.append(np.concatenate([wheels, noise, fitted.stamp, np.square(walk)]))
+    return Variances(*np.stack(rows, axis=-1))
 
 
 def _chosen(sets: Variances, index: int) -> Variances:

@@ -50,10 +50,12 @@ def wandering(diagnosis: Diagnosis) -> list[str]:
         return []
     return [
         "But: the reference is not absolute. Its error wanders, by "
-        f"{error_words(wander.place, 'm')} and {error_words(wander.heading, 'rad')}, and stays "
-        f"alike for {two_digits(wander.seconds)} s, as a localiser's does; that explains these "
-        "drives better than whatever fits poses that err one by one. So all of this is reckoned "
-        "with it, as by --reference-kind local_map; compare and add want that option too."
+        f"{error_words(wander.place_in_a_second, 'm')} and "
+        f"{error_words(wander.heading_in_a_second, 'rad')} in a second, and by "
+        f"{error_words(wander.place, 'm')} and {error_words(wander.heading, 'rad')} in the long "
+        f"run (some {two_digits(wander.seconds)} s), as a localiser's does. That explains these "
+        "drives far better than poses that err one by one. So all of this is reckoned with it, as "
+        "by --reference-kind local_map; compare and add want that option too."
     ]
 
 
