@@ -109,7 +109,7 @@ def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
     train = [driven(seed, wanders, f"drive_{seed}") for seed in range(60, 64)]
     holdout = [driven(seed, wanders, f"drive_{seed}") for seed in range(64, 66)]
     found = diagnose(train, ROBOT, LIBRARY, holdout=holdout)
-    assert found.depends_on[0].p_value < 1e-5
+    assert found.wander is not None
     assert (found.verdict, found.found) == ("none", ())
 
 

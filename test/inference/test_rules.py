@@ -128,7 +128,7 @@ ELSEWHERE = {
 BARE = {
     ("drafting/law_forms.py", 3.1415927): "half a turn",
     ("calibration/noise_likelihood.py", 10.0): "a decade above where the search ends",
-    ("diagnosis/diagnosis.py", 0.999): "a logarithm that stays finite",
+    ("diagnosis/evidence.py", 0.999): "a logarithm that stays finite",
     ("events/steps.py", 2.0): "either side",
     ("fitting/fisher_scoring.py", 0.01): "damping of a search",
     ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",

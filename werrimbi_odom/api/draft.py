@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.next_command import beside, next_command
 from werrimbi_odom.api.result import Result
+from werrimbi_odom.api.verbs import as_judged
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
@@ -101,6 +102,7 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         holdout=given.holdout,
         show=show,
     )
+    given = as_judged(given, diagnosis)
     if diagnosis.verdict != "unknown" and insist:
         raise InputError(_known(diagnosis, given, insist))
 

@@ -54,6 +54,8 @@ def found_in(folder: Path) -> dict[str, Any]:
         refuse_unjudgeable(run, robot.robot)
         drives = halves(run)
         whole = diagnose(robot, drives, **options)
+        if whole.found.diagnosis.wander is not None:
+            options["reference_kind"] = "local_map"
         result, drives = of_now(whole, robot, drives, options)
     except InputError as error:
         return {"error": str(error)}

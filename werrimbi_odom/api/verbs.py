@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.comparison.compare import Comparison
     from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+    from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
     from werrimbi_odom.inference.manoeuvres.advice import Told
     from werrimbi_odom.model.effect import Effect
 
@@ -107,7 +109,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
     told = told_of(given, show)
-    given = with_leg(given, told.leg)
+    given = as_judged(with_leg(given, told.leg), told.diagnosis)
 
     def steps() -> NextSteps:
         better = beside(given.source.path, "better")
@@ -124,6 +126,13 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
             "leg_m": told.leg,
         },
     )
+
+
+def as_judged(given: Recordings, diagnosis: Diagnosis) -> Recordings:
+    """Recordings with the kind of reference that a diagnosis found, for what follows it."""
+    if diagnosis.wander is None:
+        return given
+    return replace(given, how=replace(given.how, reference_kind="local_map"))
 
 
 def add(

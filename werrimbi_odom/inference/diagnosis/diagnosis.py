@@ -9,12 +9,12 @@ of them is accepted if its gain exceeds its penalty on the fitted drives, and in
 Held-out drives have no part in this: they are for reporting only.
 
 An abrupt error that the final model does not explain is an event. Events without a common cause are
-left out, and the whole search is repeated without them.
+left out, and the whole search is repeated without them. If a wandering reference explains what is
+left where independent poses were assumed, all is repeated with such a reference.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import robot_for_cutting
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
@@ -39,6 +39,7 @@ from werrimbi_odom.inference.diagnosis.search import (
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
+from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -108,6 +109,10 @@ def diagnose(
         return found, events_beside(found.runs, found.final.point, judge)
 
     found, happened = refit_without_events(search, runs, holdout)
+    if not found.of_another_drive and error_wanders(found.runs, found.final, found.remaining):
+        on_map = replace(options, reference_kind="local_map")
+        found = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
+        return replace(found, wander=wander_of(found.final.point.variances))
     return replace(found, happened=happened)
 
 
@@ -208,7 +213,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     if score is not None and best is not None:
         support = _support(score, runs, this.before.point.model)
         data, penalty = runs.data, this.before.penalty_of_one
-        fall = max(_fall(score.gain, data), this.before.cost - best.cost)
+        fall = max(fall_of_cost(score.gain, data), this.before.cost - best.cost)
         worth = fall - (best.penalty - this.before.penalty)
 
         def more_than_a_law_leaves(cell: Dependence) -> bool:
@@ -216,17 +221,12 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
                 support.inputs & set(cell.variable.looks_at)
             )
             share = OWN_LAW_SHARE if own else LAW_SHARE
-            return share * (_fall(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
+            return share * (fall_of_cost(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
 
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     numbers = (*CALIBRATION, *this.before.numbers)
     found = lasting(runs, this.before.point, numbers, certain[:CELLS_ASKED])
     return next((each.cell for each in found if each.p_value < SURE and not each.only_in), None)
-
-
-def _fall(gain: float, data: int) -> float:
-    """Cost reduction for a fall of the squared innovations, with the noise re-estimated."""
-    return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
 def _support(score: Score, runs: Concatenated, model: Model) -> Support:

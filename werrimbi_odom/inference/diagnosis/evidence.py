@@ -12,6 +12,7 @@ innovations.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -138,6 +139,11 @@ def dependences(
         for amount, variable, form, test in found
     ]
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
+
+
+def fall_of_cost(gain: float, data: int) -> float:
+    """Cost reduction for a fall of the squared innovations, with the noise re-estimated."""
+    return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
 def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:

@@ -32,6 +32,7 @@ from werrimbi_odom.inference.diagnosis.rivals import (
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.wandering_reference import Wander
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -102,6 +103,8 @@ class Diagnosis:
     """Suspicions about the reference of the fitted runs."""
     misfit: Misfit | None = None
     """Remainder of a law of slightly wrong form, or beside everything found."""
+    wander: Wander | None = None
+    """Of a reference that was taken as absolute and is not: then all this is by `local_map`."""
     happened: Events = field(default_factory=Events)
     """Abrupt errors, which no law explains."""
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

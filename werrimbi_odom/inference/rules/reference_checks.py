@@ -57,3 +57,10 @@ SUSPECT_TURNS_AGREE = 0.01
 SUSPECT_TURNED = 2.0 * math.pi
 """Total turn of all drives [rad] for that test: 1 % of a whole turn is 4 degrees, more than
 references with a metric scale err by."""
+
+WANDER_OVER_DEPENDENCE = 2.0
+"""How many times as much as the strongest dependence on a measured variable a wandering reference
+must explain (fall of the cost), beyond chance (`VERY_SURE`). Chosen: an effect of two variables
+that the library does not hold shows about half of itself over either, and the wander of a reference
+takes up some of what is left. With seven such effects and a sound reference it took up at most 1.1
+times as much; references that wander by centimetres explain 3 to 12 times as much."""

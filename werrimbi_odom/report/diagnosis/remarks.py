@@ -17,7 +17,7 @@ from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
 from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged
-from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
+from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity, two_digits
 
 
 def law(told: Told) -> list[str]:
@@ -40,6 +40,22 @@ def law(told: Told) -> list[str]:
     return [
         f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
         f"looks at: {cell}. That is a matter of the law's form, and no other effect."
+    ]
+
+
+def wandering(diagnosis: Diagnosis) -> list[str]:
+    """Remark that the reference was taken as absolute, and wanders."""
+    wander = diagnosis.wander
+    if wander is None:
+        return []
+    return [
+        "But: the reference is not absolute. Its error wanders, by "
+        f"{error_words(wander.place_in_a_second, 'm')} and "
+        f"{error_words(wander.heading_in_a_second, 'rad')} in a second, and by "
+        f"{error_words(wander.place, 'm')} and {error_words(wander.heading, 'rad')} in the long "
+        f"run (some {two_digits(wander.seconds)} s), as a localiser's does. That explains these "
+        "drives far better than poses that err one by one. So all of this is reckoned with it, as "
+        "by --reference-kind local_map; compare and add want that option too."
     ]
 
 

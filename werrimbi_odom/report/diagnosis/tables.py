@@ -25,6 +25,10 @@ from werrimbi_odom.report.numbers import error_words, in_unit, p_words, picked
 from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 _RANKED = 8
+_WANDER = (
+    "second_xy_m:place_in_a_second second_yaw_rad:heading_in_a_second xy_m:place yaw_rad:heading "
+    "for_s:seconds"
+)
 _MAPPED = 10
 
 
@@ -158,6 +162,7 @@ def json_of(
         if diagnosis.happened.left_out
         else None,
         "reference_remarks": remarks_json(diagnosis.remarks),
+        "reference_wanders": diagnosis.wander and picked(diagnosis.wander, _WANDER),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
         "widened": widest(diagnosis),

@@ -41,6 +41,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     not_shown,
     otherwise,
     scatter,
+    wandering,
     without_events,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -66,7 +67,8 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     diagnosis = told.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
-    suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
+    suspect = wandering(diagnosis)
+    suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)

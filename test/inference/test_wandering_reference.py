@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A localiser that is taken as absolute: it is told, and its slow error is no effect's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from test.inference.test_homogeneity import ROBOT, driven, nothing
+from test.inference.test_local_map_errors import TRUE, WALK, session
+from werrimbi_odom.api.verbs import as_judged
+from werrimbi_odom.effects.lookup import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.recordings import DriveOptions, Recordings
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+
+NAMES = ("floor_slope", "anisotropic_floor", "reference_delay", "track_width", "sideways_drift")
+EFFECTS = [find(name) for name in (*NAMES, "unequal_wheel_radii", "wheel_radius_scale")]
+
+
+def seen_by_a_localiser(robot: Robot) -> Diagnosis:
+    return diagnose(session(range(40, 44), jumps=0), robot, EFFECTS, EvaluationOptions())
+
+
+@pytest.fixture(scope="module")
+def sound() -> Diagnosis:
+    return seen_by_a_localiser(TRUE.entered())
+
+
+def test_a_localiser_taken_as_absolute_names_nothing_false(sound: Diagnosis) -> None:
+    assert (sound.verdict, sound.found) == ("none", ())
+    assert sound.wander is not None
+    assert sound.wander.place_in_a_second == pytest.approx(WALK[0], rel=0.2)
+    assert 0.5 * WALK[1] < sound.wander.heading_in_a_second < 2.0 * WALK[1]
+
+
+def test_it_is_said_and_what_follows_reckons_with_it(sound: Diagnosis) -> None:
+    said = " ".join(str(each) for each in words_of(Told(sound, None, ()), NextSteps()))
+    assert "--reference-kind local_map" in said
+    given = Recordings(SimpleNamespace(), SimpleNamespace(), (), (), DriveOptions())  # type: ignore[arg-type]
+    assert as_judged(given, sound).how.reference_kind == "local_map"
+    assert as_judged(given, replace(sound, wander=None)) is given
+
+
+def test_what_is_really_wrong_is_named_beside_it() -> None:
+    wide = seen_by_a_localiser(replace(TRUE.entered(), wheel_separation_multiplier=1.05))
+    assert wide.wander is not None
+    assert wide.found == ("track_width",)
+
+
+@pytest.mark.parametrize("hotter", [0.0, 0.02])
+def test_independent_errors_stay_absolute_whatever_the_library_lacks(hotter: float) -> None:
+    drives = [driven(seed, nothing, f"drive_{seed}", hotter) for seed in range(90, 94)]
+    found = diagnose(drives, ROBOT, EFFECTS, holdout=[driven(94, nothing, "apart", hotter)])
+    assert found.verdict == ("unknown" if hotter else "none")
+    assert found.wander is None
+    assert found.final.point.options.reference_kind == "absolute"

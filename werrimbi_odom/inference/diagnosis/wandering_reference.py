@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the error of a reference that is taken as absolute wanders, as a localiser's does.
+
+The poses of a localiser (AMCL, SLAM, visual odometry) err alike for seconds. Taken as independent,
+such errors are put down to whatever of the robot resembles them: a floor, a delay, a lever arm. So
+when everything is found that can be found, the same model is judged once more with a reference on a
+local map. A sound reference gains nothing by that, whatever is hidden in the robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, fall_of_cost
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.distributions import chi2_survival
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Costs
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.noise import (
+    WALK,
+    map_variances,
+    prior_cost,
+    with_known_noise,
+)
+from werrimbi_odom.inference.rules import (
+    NOISE_NUMBERS,
+    TYPICAL_MATCH,
+    TYPICAL_WALK,
+    TYPICAL_WHEEL_NOISE,
+    VERY_SURE,
+    WALK_SPREAD,
+    WANDER_OVER_DEPENDENCE,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Wander:
+    """Slowly varying error of a reference: standard deviations of its change, and of itself."""
+
+    place_in_a_second: float
+    """[m]"""
+    heading_in_a_second: float
+    """[rad]"""
+    place: float
+    """In the long run [m]."""
+    heading: float
+    seconds: float
+    """For how long it stays alike (correlation time) [s]. Short drives tell it, and the size in the
+    long run, much less well than the change in a second."""
+
+
+def wander_of(variances: Variances) -> Wander:
+    """The wander of a reference on a local map."""
+    place, _, heading = np.sqrt(variances.wandered()[0])
+    walk = np.sqrt([variances.walk_xy[0], variances.walk_yaw[0]])
+    seconds = 1.0 / np.sqrt(variances.reversion[0])
+    return Wander(*map(float, (*walk, place, heading, seconds)))
+
+
+def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependence]) -> bool:
+    """Whether a wandering reference explains what a model of everything found leaves.
+
+    What a dependence on a variable explains of it is not the reference's: an effect that the
+    library does not hold. Scans are left alone, as the noise of each is known from its match, and
+    headings alone, whose walk is a gyro's.
+
+    Parameters
+    ----------
+    fit : Fitted
+        The final model, with independent errors of the poses.
+    remaining : sequence of Dependence
+        Its evidence map.
+    """
+    point = fit.point
+    independent = point.options.reference_kind == "absolute"
+    if not independent or runs.has_stamp_noise or runs.data < NOISE_NUMBERS:
+        return False
+    options = replace(point.options, reference_kind="local_map")
+    costs = Costs(runs, replace(point, options=options))
+    some = _typical(point.variances)
+    # One pass over a few typical localisers: with a sound reference all of them are far worse.
+    trial = costs(some) + prior_cost(costs, some)
+    best = int(np.argmin(trial))
+    if trial[best] > fit.cost:
+        return False
+    start = with_known_noise(_chosen(some, best), options)
+    found = map_variances(costs, start, options.sigmas_known)
+    gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
+    most = max((fall_of_cost(cell.gain, runs.data) for cell in remaining), default=0.0)
+    return chi2_survival(gain - WANDER_OVER_DEPENDENCE * most, len(WALK)) < VERY_SURE
+
+
+def _typical(fitted: Variances) -> Variances:
+    """Localisers about the middle of their prior, each with typical wheels and two noises."""
+    sides = (-1.0, 0.0, 1.0)
+    noises = ((fitted.xy[0], fitted.yaw[0]), np.square(TYPICAL_MATCH))
+    wheels = np.full(2, TYPICAL_WHEEL_NOISE**2)
+    rows = []
+    for noise, size, rate in product(noises, sides, sides):
+        walk = np.array(TYPICAL_WALK) * np.exp(WALK_SPREAD * [size, size, rate])
+        rows.append(np.concatenate([wheels, noise, fitted.stamp, np.square(walk)]))
+    return Variances(*np.stack(rows, axis=-1))
+
+
+def _chosen(sets: Variances, index: int) -> Variances:
+    return Variances(*(getattr(sets, name)[[index]] for name in Variances.__slots__))
