@@ -138,6 +138,13 @@ class Launched:
         while time.monotonic() < end:
             self.executor.spin_once(timeout_sec=max(0.0, end - time.monotonic()))
 
+    def catch_up(self) -> None:
+        """Take what was published while a test was busy with another node."""
+        seen = -1
+        while seen != len(self.diagnostics):
+            seen = len(self.diagnostics)
+            self.rest(0.02)
+
     # ------------------------------------------------------------------ to the node
 
     def publisher(self, kind: type, topic: str) -> Any:
@@ -244,6 +251,7 @@ class Launched:
 
     def counts(self) -> Counter[str]:
         """Counts on the last /diagnostics, or the first."""
+        self.catch_up()
         if not self.diagnostics:
             self.report()
         pairs = ((item.key, item.value) for item in self.diagnostics[-1].values)
@@ -255,6 +263,7 @@ class Launched:
         Underscores stand for spaces and colons where a count has those in its name.
         """
         new: dict[str, int] = {}
+        self.catch_up()
         for _ in range(4):
             level, words, values = self.report()
             new = {
