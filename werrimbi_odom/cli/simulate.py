@@ -21,7 +21,7 @@ from werrimbi_odom.errors import InputError
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, Peculiarity, Recording, TrueRobot
 
-HELP = "runs made by a physics engine, with a hidden effect"
+HELP = "make drives of a robot in a physics engine, with a hidden effect"
 _KINDS = {
     "effect": "Effects of the library (`random` takes one of these)",
     "mistake": "Mistakes of set-up",
