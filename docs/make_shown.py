@@ -43,8 +43,8 @@ def by_tests(places: str, claim: str, *, long: bool = False) -> Shown:
 SECTIONS: dict[str, tuple[Shown, ...]] = {
     "Find out why": (
         Shown(
-            "Real robots, by the tool's own advice alone. The attainable figures are those of the "
-            "recordings' own description: 1.9, 4, 3.3 and 26 mm.",
+            "Real robots, mended by following the tool's advice alone. With everything that is "
+            "wrong in them found and fitted, 1.9, 4, 3.3 and 26 mm can be reached.",
             "python docs/follow_advice.py",
         ),
         Shown(
@@ -54,8 +54,8 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
         ),
         by_tests(
             "test/hidden/test_live_node.py",
-            "The live node with the added effect errs less on the held-out ticks, played through "
-            "DDS.",
+            "The live node with the added effect errs less on held-out drives, whose ticks are "
+            "sent to it over DDS.",
         ),
         by_tests(
             "test/inference/test_set_up_recorded_robots.py test/inference/test_set_up.py",
@@ -90,8 +90,8 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
         ),
         by_tests(
             "test/files/test_bag_ticks.py test/files/test_bag_reference.py",
-            "Bags, sqlite3 and MCAP, of our own input and of common robots, made with real "
-            "messages.",
+            "Bags, sqlite3 and MCAP, with the node's own input and with the messages of common "
+            "robots.",
         ),
         by_tests(
             "test/ros/test_compare_node.py test/ros/test_compare_legs.py",
@@ -109,7 +109,7 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
     "Faults": (
         by_tests(
             "test/faults test/ros/test_bad_input.py",
-            "Made-up messages, kill and restart, hostile YAML, CSV and bags.",
+            "Random messages, kill and restart, hostile YAML, CSV and bags.",
         ),
         Shown(
             "Ten hours at 50 Hz: memory, and the covariance against the closed form of the whole "
@@ -117,13 +117,19 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
             "python -m pytest -m evidence -s test/faults/test_soak.py",
         ),
         Shown(
-            "atheris, guided by coverage, on each reader.",
+            "Fuzzing of each reader of files by atheris, guided by coverage.",
             "python -m pytest -m evidence -s test/faults/test_fuzz.py",
         ),
     ),
     "Speed": (
-        Shown("The model.", "python benchmark/core_speed.py --most 10000000"),
-        Shown("What pieces cost and save.", "python benchmark/piece_tolerance.py"),
+        Shown(
+            "The model, in seconds for a million ticks.",
+            "python benchmark/core_speed.py --most 10000000",
+        ),
+        Shown(
+            "Messages per piece, and the error of the covariance.",
+            "python benchmark/piece_tolerance.py",
+        ),
         Shown(
             "The node beside an empty relay, and beside itself with a piece for each message.",
             "python benchmark/node_cost.py",
@@ -169,9 +175,12 @@ def page(kept: dict[str, str]) -> str:
     parts = [
         "# What is claimed, and the command that shows it",
         "",
-        "Each with what it printed, on two cores that did little else. Written by "
-        "`python docs/make_shown.py`, which runs them all; change nothing by hand. "
-        "`python` is that of `make setup` (`.venv/bin/python`).",
+        "This page lists what is claimed, and for each claim a command that shows it, with what "
+        "it printed on two cores. To try one, type it as it stands; `python` is that of "
+        "`make setup` (`.venv/bin/python`).",
+        "",
+        "    python docs/make_shown.py           # runs all, and writes this page",
+        "    python docs/make_shown.py fleet     # only those whose command holds this word",
     ]
     for heading, entries in SECTIONS.items():
         parts += ["", f"## {heading}"]

@@ -44,6 +44,9 @@ def test_the_law_is_found_written_and_added(
     (effect,) = load_file(file)
     check_effect(effect)
     assert "werrimbi_odom.effects" in (out / "pyproject.toml").read_text()
+    assert (
+        "the node refuses it: it has counters alone, no load_kg" in (out / "README.md").read_text()
+    )
 
     new = tmp_path / "new.yaml"
     words = ["add", effect.name, *runs(loaded), "--effects", str(file), "--out", str(new)]

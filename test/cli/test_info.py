@@ -369,7 +369,7 @@ def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> N
     said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
     assert "show the base" not in said
     assert "show the ratio" not in said
-    assert "Whether it can show base and radii is told once their sizes are known." in said
+    assert "Whether it can show base and radii is said once --robot gives their sizes." in said
 
 
 def test_the_speeds_of_a_simulator_are_no_counts() -> None:

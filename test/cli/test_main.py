@@ -63,7 +63,7 @@ def test_every_help_ends_with_examples_that_are_right(of: str) -> None:
 def test_help_says_what_a_leg_is() -> None:
     for verb in ("compare", "diagnose", "add", "draft", "workbench"):
         text = " ".join(werrimbi(verb, "--help").stdout.split())
-        assert "drives are cut into legs, stretches of so much way" in text
+        assert "drives are cut into legs of so much path" in text
 
 
 def test_help_is_quick_and_imports_nothing_heavy() -> None:

@@ -151,5 +151,8 @@ def rank_table(found: Scores) -> Table:
         if sum(counts):
             rows.append((verb, *map(str, counts)))
     columns = ("verb", *(f"{number / RANKS:.1f}" for number in range(RANKS)))
-    words = "How many truths lie in each tenth of what was stated; even where all is right."
+    words = (
+        "How many true values lie in each tenth of the distribution that was stated; if all is "
+        "right, all ten counts are alike but for chance."
+    )
     return Table("Ranks of the truth", columns, tuple(rows), words)

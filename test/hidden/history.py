@@ -72,7 +72,8 @@ def table(entries: Sequence[Entry]) -> Table:
         for each in reversed(entries)
     )
     words = (
-        "One line for each state of the code that was judged; sets that kept each rule of all that "
-        "it speaks of. *Fresh*: seeds from the code's own digest, seen by nobody before."
+        "One line for each state of the code that was judged: how many sets kept each rule, of all "
+        "to which it applies. *Fresh*: with seeds from the code's own digest, seen by nobody "
+        "before."
     )
     return Table("All judged", ("date", "commit", "digest", "sets", *shorts), rows, words)

@@ -271,8 +271,9 @@ def tables(lines: Sequence[Judged], gaps: Mapping[str, Line]) -> list[Table]:
             "Margins: how sure",
             ("p-value", "of what is hidden (sets)", "of the likeliest where none is (sets)"),
             tuple(p_rows) if true or false else (),
-            "The chance that the diagnosis states for what is hidden and, where nothing is but "
-            "calibration, for the likeliest effect. It believes what is below its SURE.",
+            "The chance (p-value) that the diagnosis states for what is hidden and, where nothing "
+            "is hidden but calibration, for the likeliest effect. It takes an effect if the chance "
+            "is below the limit `SURE`.",
         ),
         Table(
             "Margins: the second best",

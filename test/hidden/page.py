@@ -13,19 +13,29 @@ from test.hidden.tables import Table
 
 HEAD = """# Evidence: effects hidden by a physics engine, and what the diagnosis made of them
 
-Made by `make evidence` (`python -m test.hidden`{how}); {judged} of {planned} sets judged, with the
-code of `{commit}`, digest `{digest}`{known}. Written by the program: change nothing by hand.
+This page shows how often `werrimbi diagnose` finds what a physics engine hid, and how often it is
+wrong. The first table has the rules that it must keep, broken ones included.
 
-Every set is a robot in a physics engine with something hidden in it, seven drives to learn from
+    make evidence          # judges fresh sets and writes this page (change nothing by hand)
+
+{judged} of {planned} sets judged (`python -m test.hidden{how}`), with the code of `{commit}`,
+digest `{digest}`{known}.
+
+A *set* is a robot in a physics engine with something hidden in it: seven drives to learn from
 and four held out. Its seed is drawn from the digest of the code that is judged, so nobody who wrote
 that code has seen it. `werrimbi diagnose` is given the robot file and the runs, and the commands
-that it prints are followed, word for word, until nothing more is proposed; the hidden name reaches
-only the comparison. Errors are root mean squares of the position error of held-out legs of 1 m,
-medians over the sets. *Before*: the robot file as it was. *After*: with the first printed command
-followed, or as it was where none was. *Floor*: the model with the true effect, fitted on the train
-runs. A hidden effect *matters* when before is more than 1.1 times the floor. *Wrong*: another
-name, or `unknown` for an effect that the library holds. Intervals hold the true rate in at least 95
-of 100 cases (Clopper and Pearson 1934).
+that it prints are followed, word for word, until nothing more is proposed. The diagnosis never
+learns what was hidden. Errors are root mean squares of the position error of held-out legs of 1 m,
+medians over the sets.
+
+- *Before*: with the robot file as it was. *After*: with the first printed command followed, if
+  there was one. *Floor*: with the true effect in the model, fitted on the seven drives.
+- A hidden effect *matters* if before is more than 1.1 times the floor; else it is *weak*.
+- *Wrong*: another name, *unknown* for an effect that the library holds, or the drives refused.
+  *Missed*: the verdict *none*.
+- *Twins* are effects that no drive can tell apart; *rivals by construction* are effects that the
+  drives of the set cannot tell apart.
+- Intervals hold the true rate in at least 95 of 100 cases (Clopper and Pearson 1934).
 """
 
 

@@ -16,7 +16,14 @@ from test.cli.commands import complaint
 from werrimbi_odom.cli import simulate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.simulation import Nominal, TrueRobot, drives, moves, write_robot_file
+from werrimbi_odom.simulation import (
+    CATALOGUE,
+    Nominal,
+    TrueRobot,
+    drives,
+    moves,
+    write_robot_file,
+)
 
 
 def call(*words: str) -> int:
@@ -147,7 +154,10 @@ def test_out_is_asked_for() -> None:
 
 def test_the_list_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
     assert call("--list") == 0
-    assert "track_width" in capsys.readouterr().out
+    listed = capsys.readouterr().out
+    for entry in CATALOGUE:
+        assert f"  {entry.name}  " in listed
+    assert "1.3 to 2.5" in listed, "skid_steer: its null added to both ends"
 
 
 def test_a_day_has_seven_drives_to_learn_from_and_four_to_test() -> None:

@@ -21,11 +21,15 @@ from werrimbi_odom.cli.outputs import add_file_arguments, write_and_tell
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
 
-HELP = "better numbers for the robot file, with error bars"
+HELP = "base, radii and noise of the wheels, by tape or from drives, with error bars"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the three kinds of calibration and their options."""
+    parser.description = (
+        "Finds the wheel base, the radii and the noise of the wheels, and writes a new robot file. "
+        "umbmark and noise need a tape measure and a typed table; fit needs recorded drives."
+    )
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     for kind, (says, add, _) in KINDS.items():
         below = kinds.add_parser(
@@ -150,15 +154,15 @@ def _fit(arguments: argparse.Namespace) -> Result[Any]:
 
 KINDS = {
     "umbmark": (
-        "wheel base and radii from squares in both senses (the paper's section 3)",
+        "wheel base and radii from squares in both senses (Chong and Kleeman 1997, section 3)",
         _add_umbmark_arguments,
         _umbmark,
     ),
     "noise": (
-        "noise of the wheels from drives out and back (the paper's section 5.2)",
+        "noise of the wheels from drives out and back (there, section 5.2)",
         _add_noise_arguments,
         _noise,
     ),
-    "fit": ("all of them from any driving with a reference", _add_fit_arguments, _fit),
+    "fit": ("all of these from any drives with a reference", _add_fit_arguments, _fit),
 }
 """For each kind: its purpose, its options, and the function that calibrates."""

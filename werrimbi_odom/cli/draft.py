@@ -64,6 +64,6 @@ def _next(folder: Path, given: Recordings, name: str) -> str:
     new = beside(given.source.path, "new")
     add = next_command(["add", name], given, effects=[file], out=new)
     return (
-        f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files and the node "
-        f"know its name:\n    {shlex.join(['pip', 'install', str(folder)])}"
+        f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files may name it:\n"
+        f"    {shlex.join(['pip', 'install', str(folder)])}"
     )

@@ -17,7 +17,7 @@ from werrimbi_odom.cli.outputs import write_and_tell
 if TYPE_CHECKING:
     from werrimbi_odom.api.history import DriveTask, Looked
 
-HELP = "how base, radii, mount and effects went over months of drives, and when one changed"
+HELP = "what changed on the robot over months of drives, and when: base, radii, mount, effects"
 
 _FEW = 6  # drives that are processed faster than another process starts
 
@@ -25,10 +25,10 @@ _FEW = 6  # drives that are processed faster than another process starts
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `werrimbi history`."""
     parser.description = (
-        "Fits each drive by itself, puts the drives in the order of their dates, and tells which "
+        "Fits each drive by itself, puts the drives in the order of their dates, and says which "
         "number of the robot changed when: base, radii, how the reference is mounted, the sizes of "
-        "the effects in the robot file. What each drive tells is kept by the content of its files, "
-        "so one drive more costs seconds."
+        "the effects in the robot file. The fit of each drive is kept on disk, so that one drive "
+        "more takes seconds."
     )
     add_recording_arguments(parser)
     parser.add_argument(
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         dest="other",
         type=Path,
         help="robot file of a sound robot of the same kind, or of this one when it was sound: "
-        "tells what is new against it",
+        "lists what differs from it",
     )
     parser.add_argument(
         "--jobs",

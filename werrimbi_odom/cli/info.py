@@ -10,23 +10,23 @@ from functools import partial
 from werrimbi_odom.cli.options import declare
 from werrimbi_odom.errors import InputError
 
-HELP = "what a recording holds and allows, and the command that comes next"
+HELP = "what a recording holds, what it can show, and the next command"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `werrimbi info`."""
     parser.description = (
-        "Looks at any recording: what tells the wheels, what measures the robot and whether that "
-        "is independent of them, stamps, where the robot stood, drove, was held or carried, what "
-        "can be told with it and what not. With --out it writes a first robot file, from the URDF "
-        "in the bag or from a diff_drive_controller's parameters."
+        "Looks into any recording: which topic holds the wheels, what measures the robot and "
+        "whether that is independent of them, stamps, when the robot stood, drove, was held or "
+        "carried, what can be diagnosed with it and what not. With --out it writes a first robot "
+        "file, from the URDF in the bag or from a diff_drive_controller's parameters."
     )
     declare(parser, "runs")
     words = "robot file, or the parameter file of a diff_drive_controller"
     declare(parser, "--robot", required=False, help=words)
     declare(parser, "--out", required=False, help="first robot file to write")
     for what, topic in (("wheels", "--ticks-topic"), ("reference", "--reference-topic")):
-        declare(parser, topic, help=f"topic of the {what}, where not what seems best")
+        declare(parser, topic, help=f"topic of the {what}, if not the one that is chosen")
     declare(parser, "--json", "--force")
 
 

@@ -42,7 +42,7 @@ def _file(says: str, metavar: str = "F", **more: Any) -> dict[str, Any]:
 
 
 _RUNS = "recorded drives: run folders or bags"
-_TICKS = "topic of the ticks, in a bag with several; LEFT,RIGHT for one a wheel"
+_TICKS = "topic of the wheels, in a bag with several; LEFT,RIGHT where each wheel has its own"
 _EFFECTS = "file with effects of your own, to try them; may be given again"
 
 OPTIONS: dict[str, dict[str, Any]] = {
@@ -52,7 +52,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--reference-topic": {"metavar": "T"},
     "--effects": _file(_EFFECTS, "FILE", action="append", default=[]),
     "--out": _file("robot file to write", "NEW", required=True),
-    "--json": _file("write the numbers to this file"),
+    "--json": _file("write the numbers to this file, as JSON"),
     "--report": _file("write a page with plots (.html), or the plots (.pdf, .png)"),
     "--force": {"action": "store_true", "help": "overwrite --out if it exists"},
 }
@@ -93,7 +93,7 @@ def add_recording_arguments(
             nargs="+",
             default=[],
             type=Path,
-            help="drives to judge on, that take no part in the fit",
+            help="drives to judge on, which take no part in the fit",
         )
     declare(parser, "--robot", required=required)
     parser.add_argument(
@@ -101,21 +101,21 @@ def add_recording_arguments(
         metavar="M",
         type=positive,
         default=1.0,
-        help="length of a leg [m], 1 if not given: drives are cut into legs, stretches of so much "
-        "way (on the spot of a quarter turn), and each is judged by the pose at its end as seen "
-        "from its start",
+        help="length of a leg [m], 1 if not given: drives are cut into legs of so much path (or a "
+        "quarter turn on the spot), and each is judged by the pose at its end as seen from its "
+        "start",
     )
     parser.add_argument(
         "--reference-kind",
         choices=("absolute", "incremental", "local_map"),
         help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
-        "along the way (each scan matched with the last one); local_map: it also wanders slowly, "
-        "about a map (a localiser, SLAM, satellites). If not given: incremental for a gyro, "
+        "along the way (each scan matched with the last one); local_map: it also wanders slowly "
+        "about the truth (a localiser, SLAM, satellites). If not given: incremental for a gyro, "
         "local_map for a localiser (map -> odom -> base_link, AMCL) and satellites, else absolute",
     )
     for part, unit, what in (
         ("xy", "M", "noise of the reference in x and in y [m], if known"),
-        ("yaw", "RAD", "its noise in heading [rad], if known"),
+        ("yaw", "RAD", "noise of the reference in heading [rad], if known"),
     ):
         parser.add_argument(f"--reference-sigma-{part}", metavar=unit, type=positive, help=what)
     declare(parser, "--ticks-topic")
@@ -134,10 +134,10 @@ def add_recording_arguments(
         action="append",
         default=[],
         type=Path,
-        help="what holds the reference of a drive, where RUN does not: another bag, or a folder "
-        "with reference.csv; once for each RUN, then for each of --holdout",
+        help="bag, or folder with reference.csv, that holds the reference of a drive whose RUN "
+        f"does not; once for each RUN{', then once for each of --holdout' if holdout else ''}",
     )
-    words = f"{force}{'; ' if force else ''}take a reference that is made from the wheels"
+    words = f"{force}{'; ' if force else ''}take a reference although it is made from the wheels"
     declare(parser, "--force", help=words)
     declare(parser, "--effects", "--json", *(["--report"] if report else []))
 

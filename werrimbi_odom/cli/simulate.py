@@ -21,7 +21,14 @@ from werrimbi_odom.errors import InputError
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, Peculiarity, Recording, TrueRobot
 
-HELP = "runs made by a physics engine, with a hidden effect"
+HELP = "make drives of a robot in a physics engine, with a hidden effect"
+_KINDS = {
+    "effect": "Effects of the library (`random` takes one of these)",
+    "mistake": "Mistakes of set-up",
+    "outside": "Effects that the library does not hold",
+    "robot": "Another kind of robot",
+    "event": "What happens at an instant",
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,8 +43,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="EFFECT[=STRENGTH]",
         action="append",
         default=[],
-        help="effect to hide, several times for several; STRENGTH in the effect's own unit, else "
-        "drawn from a realistic range; `random` takes any effect of the library",
+        help="effect to hide, nothing if not given; several times for several; STRENGTH in the "
+        "effect's own unit, else drawn from a realistic range; `random` takes any effect of the "
+        "library",
     )
     parser.add_argument(
         "--seed",
@@ -58,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="laboratory",
         help="laboratory: counters and motion capture, in run folders; field: bags (rosbag2) with "
         "joint states, a gyro, a lidar, /odom and /tf of a localiser, and the robot held and "
-        "carried in between (when, stands in truth.json)",
+        "carried in between (truth.json says when)",
     )
     parser.add_argument(
         "--list", action="store_true", help="list what can be hidden, with units, and stop"
@@ -71,13 +79,18 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.cli.progress import share_done
 
     if arguments.list:
+        width = max(len(entry.name) for entry in simulation.CATALOGUE)
+        kind = ""
         for entry in simulation.CATALOGUE:
-            print(f"{entry.name:24}{entry.range_in_words:36}{entry.says}")
+            if entry.kind != kind:
+                kind = entry.kind
+                print(_KINDS[kind])
+            print(f"  {entry.name:{width}}  {entry.range_in_words:28}  {entry.says}")
         return 0
     if arguments.out is None:
-        raise InputError("simulate: --out DIR is missing")
+        raise InputError("--out DIR is missing")
     if arguments.seed < 0:
-        raise InputError("simulate: --seed must not be negative")
+        raise InputError("--seed must not be negative")
     hidden = _chosen(arguments.hide, arguments.seed)
     robot = simulation.TrueRobot(
         left_wheel_noise=4.0e-4,
@@ -114,7 +127,7 @@ def run(arguments: argparse.Namespace) -> int:
             truth["events"] = events
         (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     out = arguments.out
-    print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden stands in truth.json")
+    print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden is in truth.json")
     print(f"next: werrimbi compare --robot {out}/robot.yaml {out}/train/*")
     return 0
 

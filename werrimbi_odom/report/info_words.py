@@ -44,18 +44,19 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             yield f"Reference: reference.csv, {_MEASURES[measures]}."
     if held.restamped:
         yield (
-            "By their counts, a timer read the wheels' counters evenly, and the stamps say when a "
-            f"message came: they are put back to when it was read, by {_ms(held.restamped)} (rms)."
+            "The counts show that the wheels' counters were read at even intervals, and stamped as "
+            "their messages came: the stamps are set back to the readings, by "
+            f"{_ms(held.restamped)} (rms)."
         )
     if held.scans_restamped:
         yield (
-            "By its path, the lidar turned evenly, and its scans are not stamped so: they are put "
-            f"back by {_ms(held.scans_restamped)} (rms)."
+            "The path shows that the lidar turned evenly, and that its scans are not stamped so: "
+            f"their stamps are set back by {_ms(held.scans_restamped)} (rms)."
         )
     if held.gyro_bias:
         yield (
             f"Its headings turn by {math.degrees(held.gyro_bias):.2g}°/s while the wheels stand: "
-            "a gyro's bias, which is taken off."
+            "a gyro's bias, which is removed."
         )
     if held.problem:
         yield f"It cannot be used as it is: {held.problem}{'' if held.problem[-1] == '?' else '.'}"
@@ -73,7 +74,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield f"It can show {listed(can)}."
     yield from (f"It cannot show {each}." for each in cannot)
     if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
-        yield "Whether it can show base and radii is told once their sizes are known."
+        yield "Whether it can show base and radii is said once --robot gives their sizes."
 
 
 def _references(held: Held) -> Iterator[str]:
@@ -128,8 +129,8 @@ def _clock(name: str, stamps: Stamps) -> str:
             return f"{words}; {apart} when a computer was switched on)."
         if (stamps.wander or 0.0) > _WANDERS:
             words += (
-                f"; what lies between stamp and receipt wanders by {stamps.wander:.2g} s, and is "
-                f"{stamps.offset:.2g} s as a rule and {stamps.latest:.2g} s at most"
+                f"; from stamp to receipt it takes {stamps.offset:.2g} s as a rule and "
+                f"{stamps.latest:.2g} s at most, and wanders by {stamps.wander:.2g} s"
             )
             if (stamps.offset or 0.0) < 0.0:
                 words += " (negative: two clocks that differ)"

@@ -39,6 +39,11 @@ def _readme(draft: Draft) -> str:
     claim, two = draft.claim, draft.of_two
     names = claim.variable if two is None else "` and `".join(two.variables)
     law = f": `{draft.law}`" if draft.law else ""
+    node = (
+        f"; the node refuses it: it has counters alone, no {' and no '.join(draft.effect.channels)}"
+        if draft.effect.channels
+        else ", and the node runs it"
+    )
     return f"""# {draft.name}
 
 A draft of `werrimbi draft`. In the drives that it was made from, the {claim.channel} error goes
@@ -49,7 +54,7 @@ That is what the data show; why it is so they cannot know.
 2. Try it before it is installed: every werrimbi command takes `--effects {draft.name}.py`.
 3. Find the physics, measure it with a ruler, and give the effect its name and its law: the name
    stands in the file, in `pyproject.toml` and in your robot file.
-4. `pip install .` here; then robot files may name it, and the node runs it.
+4. `pip install .` here; then robot files may name it{node}.
 
 `werrimbi_odom.effects.contract.check_effect` tests it for the properties that effects must have.
 """

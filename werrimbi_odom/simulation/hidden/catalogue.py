@@ -72,10 +72,11 @@ class Entry:
         """Realistic strengths, as text."""
         if self.kind == "mistake":
             return "yes or no"
-        null = f"{self.null:g} " if self.null else ""
-        sign = "+/- " if self.signed else ""
         unit = f" {self.unit}" if self.unit != "1" else ""
-        return f"{null}{sign}{self.low:g} to {self.high:g}{unit}"
+        if not self.signed:
+            return f"{self.null + self.low:g} to {self.null + self.high:g}{unit}"
+        null = f"{self.null:g} " if self.null else ""
+        return f"{null}+/- {self.low:g} to {self.high:g}{unit}"
 
 
 def _mistake(name: str, make: Callable[[Rng], Peculiarity], says: str) -> Entry:
@@ -231,7 +232,7 @@ CATALOGUE: tuple[Entry, ...] = (
             lambda s, rng: OneTyreByLoadOverPressure(_one_side(rng), s), "kPa/kg", 0.1, 0.5,
             "share of one radius lost per load over pressure, measured", signed=False,
             kind="outside"),
-    Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turning by four skidding wheels over the true",
+    Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turn by four skidding wheels over true turn",
             null=1.0, signed=False, kind="robot"),
     Entry("push", lambda s, rng: Knock("push", s), "m", 0.01, 0.03,
             "pushed sideways, every 25 s or so", signed=False, kind="event"),
