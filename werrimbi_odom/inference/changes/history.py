@@ -137,7 +137,7 @@ def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Cour
 
     Parameters
     ----------
-    told : sequence of DriveTold
+    told : sequence of DriveEstimate
         Information of each drive, in order.
     robot : Robot
         The robot file.

@@ -72,11 +72,11 @@ def find_changes(
 
     Parameters
     ----------
-    drives : Drives
+    drives : DriveNumbers
         In the order in which they were driven.
-    groups : sequence of Group
+    groups : sequence of NumberGroup
         Groups of parameters that may change.
-    price : float
+    penalty : float
         Penalty of each free parameter; the drive of the change counts as one.
     kinds : sequence of Kind
         Shapes of changes to try.
@@ -85,7 +85,7 @@ def find_changes(
 
     Returns
     -------
-    Segmented
+    ChangePoints
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)

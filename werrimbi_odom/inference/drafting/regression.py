@@ -50,7 +50,7 @@ def selections(
         out.
     cross : ndarray, shape (k,)
         Products of the columns with the response.
-    price : float
+    penalty : float
         Penalty of a term.
     may_join : callable
         Whether a term may join a set of selected terms.

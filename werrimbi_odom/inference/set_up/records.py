@@ -175,7 +175,7 @@ def cut(
 
     Parameters
     ----------
-    records : sequence of Record
+    records : sequence of SetUpRecord
         Runs to cut.
     robot : Robot
         The robot as its file has it.
