@@ -38,6 +38,7 @@ from werrimbi_odom.inference.diagnosis.search import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
+from werrimbi_odom.inference.diagnosis.values_of_robot_file import outdated
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
@@ -164,7 +165,8 @@ def _searched(
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, effects, set_up.robot)
-    return replace(found, misfit=misfit, rivals_of_held=held), judge
+    old = outdated(fit, robot) if found.verdict == "none" else ()
+    return replace(found, misfit=misfit, rivals_of_held=held, outdated=old), judge
 
 
 def _significant(this: Round) -> Fitted | None:

@@ -110,6 +110,9 @@ class Diagnosis:
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that explain as much in place of one that the file holds,
     by its name."""
+    outdated: tuple[str, ...] = ()
+    """Where nothing is missing: effects that the file holds with values that the drives
+    contradict."""
 
     @property
     def of_another_drive(self) -> bool:

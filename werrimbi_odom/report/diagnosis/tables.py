@@ -39,7 +39,7 @@ def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> li
 
 
 def _parameters(diagnosis: Diagnosis) -> list[Part]:
-    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals]))
+    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals, *diagnosis.outdated]))
     rows = [
         [
             f"{name}.{parameter}",
@@ -143,6 +143,9 @@ def json_of(
         "next_manoeuvre": manoeuvre and asdict(manoeuvre),
         "found": [
             {"effect": name, "parameters": _values(diagnosis, name)} for name in diagnosis.found
+        ],
+        "outdated": [
+            {"effect": name, "parameters": _values(diagnosis, name)} for name in diagnosis.outdated
         ],
         "set_up": [
             picked(finding, "effect values factor words twins")

@@ -40,6 +40,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     nearest,
     not_shown,
     otherwise,
+    outdated_told,
     scatter,
     wandering,
     without_events,
@@ -118,11 +119,14 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     hidden = [sight for sight in told.sights if sight.hidden]
     wanders = reference_wanders(diagnosis)
     large = drowned(told)
-    noise = diagnosis.misfit is None and not wanders and not large
+    old = outdated_told(told)
+    noise = diagnosis.misfit is None and not wanders and not large and not old
     ending = ": the model explains them to their noise." if noise else "."
-    lines = [f"Nothing is missing that these drives could show{ending}", *law(told)]
-    if math.isfinite(diagnosis.holdout.after):
-        errors = error_words(diagnosis.holdout.after, diagnosis.holdout.unit)
+    if old:
+        ending = ", but values of effects in the robot file are off."
+    lines = [f"Nothing is missing that these drives could show{ending}", *old, *law(told)]
+    if math.isfinite(diagnosis.holdout.before) and not old:
+        errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
         like = ", and they look like noise" if noise else ""
         lines.append(f"Its errors on {judged(told)} are {errors}{like}.")
         lines += large
@@ -141,6 +145,12 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
         )
     if hidden:
         lines += not_shown(told)
+    if old:
+        return [
+            *lines,
+            "Next: fit them anew, together with all calibration:",
+            f"    {steps.add(diagnosis.outdated)}",
+        ]
     lines.append(
         "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
         "covariance is honest; where it is not, `werrimbi calibrate fit` fits the wheels' noise."
