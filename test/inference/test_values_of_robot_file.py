@@ -50,7 +50,8 @@ def test_a_wrong_value_is_told_and_mended_by_the_printed_command(runs: list[Run]
     assert "values of effects in the robot file are off" in said
     assert "where the robot file has creep 20 ms" in said
     assert "werrimbi add lateral_slip" in said
-    assert "to their noise" not in said and "nothing to add" not in said
+    assert "to their noise" not in said
+    assert "nothing to add" not in said
     (told,) = json_of(found, None)["outdated"]
     assert told["parameters"]["creep"]["value"] == pytest.approx(0.04, abs=3e-3)
     mended = add_effects([SLIP], runs[:2], holding(0.02), holdout=runs[2:]).robot
