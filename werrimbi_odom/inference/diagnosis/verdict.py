@@ -113,6 +113,8 @@ class Diagnosis:
     outdated: tuple[str, ...] = ()
     """Where nothing is missing: effects that the file holds with values that the drives
     contradict."""
+    ahead_or_behind: bool = False
+    """Whether the measured point may as well lie as far on the other side of the axle."""
 
     @property
     def of_another_drive(self) -> bool:

@@ -83,6 +83,8 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
 
 def _unseen(value: Value) -> bool:
     """Whether a parameter is not significantly different from null, as in `add`."""
+    if not value.determined:
+        return False
     away = abs(value.value - value.null)
     if away == 0.0 and not value.is_shape and not value.per_run:
         return True

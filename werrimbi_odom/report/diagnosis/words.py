@@ -35,6 +35,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     at_bounds_told,
     by_headings_alone,
     drowned,
+    either_side,
     instead_of_held,
     law,
     nearest,
@@ -68,7 +69,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     diagnosis = told.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
-    suspect = wandering(diagnosis)
+    suspect = either_side(diagnosis) + wandering(diagnosis)
     suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
@@ -120,7 +121,8 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     wanders = reference_wanders(diagnosis)
     large = drowned(told)
     old = outdated_told(told)
-    noise = diagnosis.misfit is None and not wanders and not large and not old
+    alike = diagnosis.happened.alike is not None
+    noise = not (diagnosis.misfit or wanders or large or old or alike)
     ending = ": the model explains them to their noise." if noise else "."
     if old:
         ending = ", but values of effects in the robot file are off."
