@@ -271,7 +271,7 @@ def next_words(row: Row) -> str:
     if row.verdict == "unknown":
         return "draft"
     if row.verdict == "none" and row.figures is not None and row.figures["outdated"]:
-        return f"fit {row.figures['outdated'][0]['effect']} anew (add)"
+        return f"add {row.figures['outdated'][0]['effect']}"
     if row.verdict == "ambiguous" and row.figures is not None:
         move = row.figures["next_manoeuvre"]
         if move is None:
