@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -14,6 +15,8 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.events.common_cause import Alike
+from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.tables import json_of
@@ -72,3 +75,10 @@ def test_errors_that_are_told_are_those_of_the_file(runs: list[Run]) -> None:
     assert "Its errors on the drives held out (legs of 1 m) are 12.3 mm" in " ".join(
         as_text(words_of(Told(told, None, (), held_out=True), NextSteps())).split()
     )
+
+
+def test_events_that_come_with_starts_are_no_noise(runs: list[Run]) -> None:
+    """The model was said to explain the drives, and, below, to lack a law."""
+    alike = Alike("start or stop", 8, 8, (math.nan, math.nan), 1e-6)
+    found = diagnosed(runs, holding(0.04))
+    assert "noise" not in words(replace(found, happened=Events(alike=alike))).partition("Next")[0]

@@ -322,4 +322,5 @@ def _next_add(told: Told, steps: NextSteps) -> list[str]:
 
 
 def _count(number: int) -> str:
-    return {2: "Two", 3: "Three", 4: "Four", 5: "Five"}.get(number, str(number))
+    names = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight")
+    return dict(enumerate(names, 2)).get(number, str(number))
