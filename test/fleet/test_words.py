@@ -33,6 +33,7 @@ def row(name: str, verdict: str, before: float, after: float, **more: Any) -> Ro
         "holdout": {"before": before, "after": after},
         "next_manoeuvre": None,
         "depends_on": [],
+        "outdated": [],
         **more,
     }
     return Row(name, 11, figures)
@@ -71,6 +72,11 @@ WARM = row("robot_6", "unknown", 0.3, 0.3, depends_on=[{"words": "the left wheel
 GOOD = row("robot_7", "none", 0.002, 0.002)
 BAD = Row("robot_8", 2, None, "robot_8/<train>: no ticks")
 ALL = Fleet((slips("robot_1", 0.0075, 0.0025, 0.03), WIDE, RIVALS, BY_HAND, WARM, GOOD, BAD))
+
+
+def test_a_value_that_the_file_has_wrong_is_to_be_fitted_anew() -> None:
+    old = row("robot_9", "none", 0.008, 0.002, outdated=[{"effect": "castor_kick"}])
+    assert cells(old)[3:] == ["nothing", "8.0 → 2.0", "add castor_kick"]
 
 
 def test_the_page_of_the_docs_shows_what_is_printed() -> None:

@@ -132,7 +132,7 @@ def test_a_wheel_noise_ten_times_too_small_makes_the_covariance_too_small(
     sure = replace(RIGHT, left_wheel_noise=5e-5, right_wheel_noise=5e-5)
     found = compare(runs, sure)
     words = flat(found)
-    assert words.startswith("On average the model is right")
+    assert words.startswith("Nothing systematic is seen, but the errors are larger than")
     assert "times too small over legs" in words
     low, high = (np.sqrt(bound) for bound in verdict_of(found).factor[1:])
     assert low < 10.0 < high

@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -13,7 +16,10 @@ import pytest
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.inference.diagnosis.estimated_values import Value
+from werrimbi_odom.inference.diagnosis.verdict import Diagnosis
 from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.diagnosis import phrases
 from werrimbi_odom.report.diagnosis.expected import expected_words
 
 
@@ -69,3 +75,18 @@ def test_every_effect_that_can_be_measured_has_its_number(effect: object) -> Non
     assert words.startswith("expect ")
     assert re.search(r"\d", words)
     assert "nan" not in words
+
+
+def test_what_the_drives_do_not_tell_is_not_expected(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside a y that was not determined, 0.87 mm to the right were to be expected by tape."""
+    unseen = Value(-0.2e-3, 0.2e-3, "m", "left", 0.0)
+    untold = replace(unseen, std=math.nan, determined=False)
+    arm = find("reference_lever_arm")
+    diagnosis = SimpleNamespace(robot=ROBOT, runs=SimpleNamespace(headings_alone=False))
+    said = []
+    for y in (unseen, untold):
+        found = {"x": Value(0.04, 1e-4, "m", "ahead", 0.0), "y": y}
+        monkeypatch.setattr(phrases, "values_of", lambda *_, found=found: found)
+        said += phrases.ruler(cast("Diagnosis", diagnosis), arm, "Check it")
+    assert said[0].endswith("and across it; expect 40 mm ahead.")
+    assert said[1].endswith("and across it.")

@@ -270,6 +270,8 @@ def next_words(row: Row) -> str:
         return f"add {row.missing[0]}"
     if row.verdict == "unknown":
         return "draft"
+    if row.verdict == "none" and row.figures is not None and row.figures["outdated"]:
+        return f"add {row.figures['outdated'][0]['effect']}"
     if row.verdict == "ambiguous" and row.figures is not None:
         move = row.figures["next_manoeuvre"]
         if move is None:

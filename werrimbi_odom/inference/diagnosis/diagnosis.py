@@ -21,6 +21,7 @@ from dataclasses import replace
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import robot_for_cutting
+from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
@@ -38,6 +39,7 @@ from werrimbi_odom.inference.diagnosis.search import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
+from werrimbi_odom.inference.diagnosis.values_of_robot_file import outdated
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
@@ -164,7 +166,10 @@ def _searched(
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, effects, set_up.robot)
-    return replace(found, misfit=misfit, rivals_of_held=held), judge
+    old = outdated(fit, robot) if found.verdict == "none" else ()
+    either = ahead_or_behind(laid, fit, set_up.robot)
+    found = replace(found, misfit=misfit, rivals_of_held=held, outdated=old, ahead_or_behind=either)
+    return found, judge
 
 
 def _significant(this: Round) -> Fitted | None:

@@ -11,7 +11,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
-from werrimbi_odom.inference.fitting.candidate_starts import started_with
+from werrimbi_odom.inference.fitting.candidate_starts import looked_for, started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
@@ -140,7 +140,14 @@ def search_round(
     ordered = best_of_each(found)
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
     tried = []
-    for score in worth_fitting(ordered):
+    chosen = worth_fitting(ordered)
+    for score in ordered:
+        if score not in chosen and (start := looked_for(runs, point, score)) is not None:
+            names = (*before.names, score.candidate.name)
+            numbers = (*before.numbers, *parameters_of_candidate(score.candidate))
+            fit = fitted(runs, start, names, numbers, given)
+            tried += [fit] if fit.told else []
+    for score in chosen:
         variants = [
             other
             for other in found

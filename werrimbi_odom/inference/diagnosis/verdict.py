@@ -110,6 +110,11 @@ class Diagnosis:
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that explain as much in place of one that the file holds,
     by its name."""
+    outdated: tuple[str, ...] = ()
+    """Where nothing is missing: effects that the file holds with values that the drives
+    contradict."""
+    ahead_or_behind: bool = False
+    """Whether the measured point may as well lie as far on the other side of the axle."""
 
     @property
     def of_another_drive(self) -> bool:

@@ -41,6 +41,21 @@ def started_with(runs: Concatenated, point: Point, score: Score) -> Point:
     return replace(point, model=model)
 
 
+def looked_for(runs: Concatenated, point: Point, score: Score) -> Point | None:
+    """Start with the measured point at usual distances, where its score at null is blind; or None.
+
+    Positions of a drive on one circle do not tell ahead from behind: with the heading free, its
+    radius goes with the square of the distance, and the derivative at null is none.
+    """
+    if not (starts_unmeasured(point.model) and _is_of_a_point(score)):
+        return None
+    items = score.candidate.effect.parameters.values()
+    far = max(item.typical / (STEP * item.scale) for item in items)
+    return _turned_with_the_headings(
+        runs, point, replace(score, coefficients=np.array([2.0 * far, 0.0]))
+    )
+
+
 def _is_of_a_point(score: Score) -> bool:
     """Whether the coordinates are those of the measured point, in the robot's axes."""
     return score.candidate.effect.stage == "reference" and score.coefficients.shape == (2,)

@@ -94,7 +94,7 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
     if verdict.mean_is_right and not verdict.off_at_all and verdict.covariance == "too large":
         return "The model is right, and better than its covariance says."
     if verdict.mean_is_right and verdict.noise == "too small":
-        return "On average the model is right, but its errors are larger than it promises."
+        return "Nothing systematic is seen, but the errors are larger than the model promises."
     if verdict.mean_is_right and verdict.covariance == "honest" and verdict.off_at_all:
         where = listed([NAMES[kind] for kind in KINDS if kind in verdict.off_at_all])
         return f"The model's errors are larger than it promises in {where}."

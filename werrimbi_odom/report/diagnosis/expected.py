@@ -114,8 +114,10 @@ def _seen_late(values: Values, robot: Robot) -> str:
 
 
 def _arm(values: Values, robot: Robot) -> str:
-    along = f"{_length(values['x'])} {'ahead' if values['x'] > 0.0 else 'behind'}"
-    return f"{along} and {_length(values['y'])} to the {'left' if values['y'] > 0.0 else 'right'}"
+    x, y = values["x"], values["y"]
+    parts = [f"{_length(x)} {'ahead' if x > 0.0 else 'behind'}"] if x else []
+    parts += [f"{_length(y)} to the {'left' if y > 0.0 else 'right'}"] if y else []
+    return " and ".join(parts)
 
 
 def _drift(values: Values, robot: Robot) -> str:

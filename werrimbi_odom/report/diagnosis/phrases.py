@@ -83,6 +83,8 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
 
 def _unseen(value: Value) -> bool:
     """Whether a parameter is not significantly different from null, as in `add`."""
+    if not value.determined:
+        return False
     away = abs(value.value - value.null)
     if away == 0.0 and not value.is_shape and not value.per_run:
         return True
@@ -228,7 +230,9 @@ def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     """How to check an effect on the robot, with a heading and the expected result."""
     if effect is None:
         return []
-    values = {name: item.value for name, item in values_of(diagnosis, effect.name).items()}
+    found = values_of(diagnosis, effect.name)
+    seen = any(not _unseen(item) for item in found.values())
+    values = {name: _to_expect(item, seen) for name, item in found.items()}
     if diagnosis.runs.headings_alone and effect.name == "reference_delay":
         effect = find("reference_heading_delay")  # one model, and a gyro sees no mark passed
     text = page_of(effect).sections.get("Ruler")
@@ -237,3 +241,10 @@ def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     numbers = expected_words(effect.name, values, diagnosis.robot) if values else ""
     ending = f"; {numbers}" if numbers else ""
     return [f"{head}: {' '.join(text.split())}{ending}."]
+
+
+def _to_expect(value: Value, seen: bool) -> float:
+    """A value for the check: NaN if it is not known, and none of what is not seen (as `add`)."""
+    if not (value.determined or value.is_shape):
+        return math.nan
+    return value.null if seen and _unseen(value) else value.value

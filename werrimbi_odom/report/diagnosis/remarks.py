@@ -16,7 +16,7 @@ from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
 from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.phrases import error_kind, judged
+from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity, two_digits
 
 
@@ -169,6 +169,38 @@ def instead_of_held(diagnosis: Diagnosis) -> list[str]:
         f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
         "how each is checked on the robot; a reference that measures more often tells them apart."
         for name, others in diagnosis.rivals_of_held.items()
+    ]
+
+
+def outdated_told(told: Told) -> list[str]:
+    """Effects in the robot file whose values these drives contradict, and the errors."""
+    diagnosis, sides = told.diagnosis, told.diagnosis.holdout
+    lines = []
+    for name in diagnosis.outdated:
+        values = next(item.values for item in diagnosis.given.effects if item.name == name)
+        file = ", ".join(
+            f"{parameter} {quantity(values[parameter], math.nan, item.unit)}"
+            for parameter, item in values_of(diagnosis, name).items()
+            if item.told
+        )
+        lines.append(f"- {name}: {sizes(diagnosis, name)}, where the robot file has {file}.")
+    if lines and math.isfinite(sides.before):
+        before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
+        lines.append(
+            f"With these values the {error_kind(sides)} error on {judged(told)} goes from {before} "
+            f"to {after}."
+        )
+    return lines
+
+
+def either_side(diagnosis: Diagnosis) -> list[str]:
+    """Of positions on one circle a drive, which do not tell on which side the point lies."""
+    if not diagnosis.ahead_or_behind:
+        return []
+    return [
+        "But: the measured point may as well lie as far on the other side of the axle, with x of "
+        "the other sign: positions alone do not tell ahead from behind where each drive keeps to "
+        "one circle. A line and a curve in one drive do, or a look at the robot."
     ]
 
 

@@ -39,7 +39,7 @@ def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> li
 
 
 def _parameters(diagnosis: Diagnosis) -> list[Part]:
-    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals]))
+    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals, *diagnosis.outdated]))
     rows = [
         [
             f"{name}.{parameter}",
@@ -126,7 +126,7 @@ def json_of(
     """Complete result."""
     misfit = diagnosis.misfit
     return {
-        **picked(diagnosis, "verdict effect rivals rivals_by_halves:torn"),
+        **picked(diagnosis, "verdict effect rivals rivals_by_halves:torn ahead_or_behind"),
         **{
             part: {name: list(each) for name, each in getattr(diagnosis, part).items()}
             for part in ("rivals_of_others", "rivals_of_held")
@@ -143,6 +143,9 @@ def json_of(
         "next_manoeuvre": manoeuvre and asdict(manoeuvre),
         "found": [
             {"effect": name, "parameters": _values(diagnosis, name)} for name in diagnosis.found
+        ],
+        "outdated": [
+            {"effect": name, "parameters": _values(diagnosis, name)} for name in diagnosis.outdated
         ],
         "set_up": [
             picked(finding, "effect values factor words twins")

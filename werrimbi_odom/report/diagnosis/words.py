@@ -35,11 +35,13 @@ from werrimbi_odom.report.diagnosis.remarks import (
     at_bounds_told,
     by_headings_alone,
     drowned,
+    either_side,
     instead_of_held,
     law,
     nearest,
     not_shown,
     otherwise,
+    outdated_told,
     scatter,
     wandering,
     without_events,
@@ -67,7 +69,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     diagnosis = told.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
-    suspect = wandering(diagnosis)
+    suspect = either_side(diagnosis) + wandering(diagnosis)
     suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
@@ -118,11 +120,15 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     hidden = [sight for sight in told.sights if sight.hidden]
     wanders = reference_wanders(diagnosis)
     large = drowned(told)
-    noise = diagnosis.misfit is None and not wanders and not large
+    old = outdated_told(told)
+    alike = diagnosis.happened.alike is not None
+    noise = not (diagnosis.misfit or wanders or large or old or alike)
     ending = ": the model explains them to their noise." if noise else "."
-    lines = [f"Nothing is missing that these drives could show{ending}", *law(told)]
-    if math.isfinite(diagnosis.holdout.after):
-        errors = error_words(diagnosis.holdout.after, diagnosis.holdout.unit)
+    if old:
+        ending = ", but values of effects in the robot file are off."
+    lines = [f"Nothing is missing that these drives could show{ending}", *old, *law(told)]
+    if math.isfinite(diagnosis.holdout.before) and not old:
+        errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
         like = ", and they look like noise" if noise else ""
         lines.append(f"Its errors on {judged(told)} are {errors}{like}.")
         lines += large
@@ -141,6 +147,12 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
         )
     if hidden:
         lines += not_shown(told)
+    if old:
+        return [
+            *lines,
+            "Next: fit them anew, together with all calibration:",
+            f"    {steps.add(diagnosis.outdated)}",
+        ]
     lines.append(
         "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
         "covariance is honest; where it is not, `werrimbi calibrate fit` fits the wheels' noise."
@@ -310,4 +322,5 @@ def _next_add(told: Told, steps: NextSteps) -> list[str]:
 
 
 def _count(number: int) -> str:
-    return {2: "Two", 3: "Three", 4: "Four", 5: "Five"}.get(number, str(number))
+    names = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight")
+    return dict(enumerate(names, 2)).get(number, str(number))

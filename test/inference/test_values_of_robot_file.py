@@ -1,0 +1,84 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A wrong value of an effect that the robot file holds is told, and the command that mends it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from test.inference.driven import runs_of
+from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.adding.adding import add_effects
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.events.common_cause import Alike
+from werrimbi_odom.inference.events.events import Events
+from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.tables import json_of
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.terminal import as_text
+
+SLIP = find("lateral_slip")
+SOME = [find(name) for name in ("reference_delay", "left_missed_ticks")]
+
+
+def holding(creep: float, angle: float = 0.02) -> Robot:
+    crabbing = find("sideways_drift").using(angle=angle)
+    return replace(ROBOT, effects=(SLIP.using(creep=creep), crabbing))
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return runs_of(holding(0.04), [1, 2, 3])
+
+
+def diagnosed(runs: list[Run], robot: Robot) -> Diagnosis:
+    return diagnose(runs[:2], robot, SOME, holdout=runs[2:])
+
+
+def words(found: Diagnosis) -> str:
+    return " ".join(as_text(words_of(Told(found, None, ()), NextSteps())).split())
+
+
+def test_a_wrong_value_is_told_and_mended_by_the_printed_command(runs: list[Run]) -> None:
+    """The model was said to explain the drives to their noise: with that value fitted anew."""
+    found = diagnosed(runs, holding(0.02))
+    assert (found.verdict, found.outdated) == ("none", ("lateral_slip",))
+    said = words(found)
+    assert "values of effects in the robot file are off" in said
+    assert "where the robot file has creep 20 ms" in said
+    assert "werrimbi add lateral_slip" in said
+    assert "to their noise" not in said
+    assert "nothing to add" not in said
+    (told,) = json_of(found, None)["outdated"]
+    assert told["parameters"]["creep"]["value"] == pytest.approx(0.04, abs=3e-3)
+    mended = add_effects([SLIP], runs[:2], holding(0.02), holdout=runs[2:]).robot
+    assert diagnosed(runs, mended).outdated == ()
+
+
+def test_right_values_and_those_within_their_noise_are_left_alone(runs: list[Run]) -> None:
+    for robot in (holding(0.04), holding(0.0402, 0.0201)):
+        found = diagnosed(runs, robot)
+        assert (found.verdict, found.outdated) == ("none", ())
+        assert "to their noise" in words(found)
+
+
+def test_errors_that_are_told_are_those_of_the_file(runs: list[Run]) -> None:
+    """As `compare` prints for the same file and drives: not with values fitted anew."""
+    found = diagnosed(runs, holding(0.0402, 0.0201))
+    told = replace(found, holdout=replace(found.holdout, before=0.0123))
+    assert "Its errors on the drives held out (legs of 1 m) are 12.3 mm" in " ".join(
+        as_text(words_of(Told(told, None, (), held_out=True), NextSteps())).split()
+    )
+
+
+def test_events_that_come_with_starts_are_no_noise(runs: list[Run]) -> None:
+    """The model was said to explain the drives, and, below, to lack a law."""
+    alike = Alike("start or stop", 8, 8, (math.nan, math.nan), 1e-6)
+    found = diagnosed(runs, holding(0.04))
+    assert "noise" not in words(replace(found, happened=Events(alike=alike))).partition("Next")[0]
