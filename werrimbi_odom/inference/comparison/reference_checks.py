@@ -50,8 +50,9 @@ What = Literal[
     "another_drive", "places", "short", "sideways", "sideways_by_place", "apart", "metre"
 ]
 """Kind of anomaly. another_drive: nothing in common with the wheels; places: only its turns; short:
-path shorter (or longer) in places; sideways: constant angle between path and heading; sideways_by_place: such an
-angle in places; apart: an angle that grows; metre: another metric scale."""
+path shorter (or longer) in places; sideways: constant angle between path and heading;
+sideways_by_place: such an angle in places; apart: an angle that grows; metre: another metric
+scale."""
 
 
 @dataclass(frozen=True, slots=True)
