@@ -74,6 +74,36 @@ def test_poses_without_a_stamp_are_of_when_they_came(tmp_path: Path, ros: Any, r
     assert reference.yaw.tolist() == [0.5, 0.5]
 
 
+def test_of_poses_that_come_in_bursts_the_last_is_kept(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Measured at 100 Hz, sent ten at a time: the others were measured earlier than they came.
+
+    Pauses between bursts, a hundred times the usual interval, looked like losses of the reference.
+    """
+    entries = [
+        ("/mocap", (100 * (n // 10) + 100) * MS + n, ros.plane_pose(0.01 * n, 0.0, 0.0))
+        for n in range(100)
+    ]
+    run = read_run(written(ros, tmp_path, entries), robot())
+    assert run.reference is not None
+    np.testing.assert_allclose(run.reference.time, 0.1 * np.arange(1, 11), atol=1e-6)
+    np.testing.assert_allclose(run.reference.x, 0.1 * np.arange(1, 11) - 0.01)
+    assert any("they come 10 at a time, of which the last is kept" in note for note in run.notes)
+
+
+@pytest.mark.parametrize("stamps", [[1, 2, 3, 4], [1, 2, 60, 61, 62, 120, 121, 122]])
+def test_what_a_person_measured_together_is_kept(
+    stamps: list[int], tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    entries = [
+        ("/tape", n, ros.pose(1000 * MS * at, *POSES[n % 3])) for n, at in enumerate(stamps, 2)
+    ]
+    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    assert reference is not None
+    assert reference.time.size == len(stamps)
+
+
 def test_what_is_no_pose_is_not_measured(tmp_path: Path, ros: Any, robot: Any) -> None:
     entries = [
         ("/pose", 2, ros.pose(1 * MS, 1.0, 2.0, math.nan)),

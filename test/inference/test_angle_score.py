@@ -26,6 +26,7 @@ from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.run_phases import fitted_per_run
 from werrimbi_odom.inference.fitting.score_tests import Candidate, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import words_of
@@ -159,6 +160,15 @@ def test_it_is_named_and_lasts() -> None:
     laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
     best = search_round(laid, fit_calibration(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
     assert homogeneity_of_effect(laid, best.tried[0], "reference_gyro_drift") < SURE
+
+
+def test_matched_scans_have_neither_a_gyro_nor_headings_that_come_later() -> None:
+    """What they do wrong goes by no such name, and what they cannot have is not told as unseen."""
+    gyros = {"reference_gyro_drift", "reference_heading_delay"}
+    runs = [replace(run, reference=replace(run.reference, own_axes=True)) for run in drifting()[:2]]
+    told = diagnose(runs, PLAIN, effects=LIBRARY)
+    assert gyros.isdisjoint(score.candidate.name for this in told.rounds for score in this.scores)
+    assert gyros.isdisjoint(limit.effect for limit in detection_limits(told, LIBRARY))
 
 
 def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -> None:

@@ -94,6 +94,23 @@ def test_that_of_this_drive_is_not(keep: Callable[[Reference], Reference]) -> No
     assert not diagnosed(*runs, holdout=(driven(4),)).diagnosis.of_another_drive
 
 
+def test_where_only_the_turns_are_right_it_is_said_of_the_places() -> None:
+    """A tracker that is lost and a lidar that slides still turn with the robot."""
+
+    def lost(reference: Reference) -> Reference:
+        random = np.random.default_rng(7)
+        x, y = np.cumsum(random.normal(0.0, 0.3, (2, reference.time.size)), axis=1)
+        return replace(reference, x=x, y=y)
+
+    runs = [with_reference_of(driven(seed), driven(seed), lost) for seed in (1, 2)]
+    told = diagnosed(*runs, holdout=(with_reference_of(driven(4), driven(4), lost),))
+    assert (told.diagnosis.verdict, told.diagnosis.found) == ("unknown", ())
+    words = spoken(told)
+    assert "nothing in common" not in words
+    assert "turns as the wheels do, but goes elsewhere" in words
+    assert "of the same drive" not in words
+
+
 def test_wheels_that_stand_are_told_before_any_work() -> None:
     run = driven(1)
     stood = replace(run.ticks, left=0 * run.ticks.left, right=0 * run.ticks.right)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of
+from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.columns import without_zeros
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
@@ -26,7 +28,13 @@ from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_pose
 from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.files.urdf_wheels import of_urdf
-from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart, of_another_robot
+from werrimbi_odom.files.wheel_joints import (
+    SIDES,
+    chosen_wheels,
+    joints_told_apart,
+    of_another_robot,
+)
+from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -123,8 +131,24 @@ def _held(
             first = _with_ticks(path, held.wheels, first)
         run = _read(path, source, first, held.wheels.name, reference)
     except InputError as error:
-        return replace(held, problem=str(error)), first
+        at_fault = _at_fault(path, held, source, first)
+        return replace(held, problem=str(error), at_fault=at_fault), first
     return _judged(replace(held, run=run), source, first), first
+
+
+def _at_fault(
+    path: Path, held: Held, source: RobotFile | None, first: FirstRobot
+) -> Literal["", "wheels", "names"]:
+    """Whether the wheels, or their joints' names in the robot file, are why a bag is unreadable."""
+    if held.wheels is None:
+        return ""
+    try:
+        _read(path, source, first, held.wheels.name, "none")
+    except InputError:
+        ours = (held.joints.left, held.joints.right)
+        named = None if source is None else tuple(wheel_names(source, side) for side in SIDES)
+        return "names" if all(ours) and named not in (None, ours) else "wheels"
+    return ""
 
 
 def _of_bag(
@@ -169,7 +193,7 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
     order = ("poses", "positions", "yaw")
     usable = [each for each in references if each.independent and each.messages >= FEW_POSES]
     usable = usable or [each for each in references if each.independent]
-    return min(usable, key=lambda each: order.index(each.measures), default=None)
+    return min(usable, key=lambda each: (each.aboard, order.index(each.measures)), default=None)
 
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
@@ -211,6 +235,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     try:
         if recorded.reference is not None:
             refuse_unjudgeable(recorded, robot)
+            if source is not None or first.has_sizes:
+                require_independent(recorded, robot, limits)
             if recorded.reference.kind != "incremental":  # as where drives are judged
                 recorded = without_held_poses(recorded, robot)
         run = looked_at(recorded, robot, limits)

@@ -24,6 +24,7 @@ from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_bas
 from werrimbi_odom.files.own_odometry import (
     ODOMETRY,
     is_asked_for,
+    is_base,
     is_odometry_frame,
     is_unfiltered,
     why_from_wheels,
@@ -103,6 +104,8 @@ class Measured:
     """Reason for `independent`: the end of a sentence."""
     chain: Chain | None = None
     """Transforms to compose."""
+    aboard: bool = False
+    """Whether it is given in a frame on the robot, and so rather of something that it sees."""
 
 
 @dataclass(frozen=True)
@@ -148,6 +151,8 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
     ]
     references = [each for each in references if not is_asked_for(each.name)]
+    on_robot = _frames_on_the_robot(found, references)
+    references = [_aboard(each) if each.parent in on_robot else each for each in references]
     whys = {each.name: each.why for each in references}
     for name, odometry in copies(bag, references).items():
         whys[name] = f"the same poses as {odometry}, and {whys[odometry]}"
@@ -165,7 +170,12 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     # Scans last, since a localiser may have made poses of them. The sort is stable: otherwise the
     # bag's order.
     references.sort(
-        key=lambda each: (not each.independent, each.kind == SCAN, each.name in made_of)
+        key=lambda each: (
+            not each.independent,
+            each.aboard,
+            each.kind == SCAN,
+            each.name in made_of,
+        )
     )
     return Contents(
         bag.path, bag.topics, tuple(_wheels(bag, firsts, found)), tuple(references), found
@@ -191,6 +201,35 @@ def _measured(topic: Topic, first: Any) -> Measured:
         reason = why_from_wheels(topic.name, kind, parent, child)
         why = reason or f"poses in {parent or 'a frame of their own'}, of a sensor or a localiser"
     return Measured(topic.name, kind, topic.messages, measures, parent, child, not reason, why)
+
+
+def _frames_on_the_robot(edges: Sequence[Edge], references: Sequence[Measured]) -> set[str]:
+    """Frames of its base and of its sensors, and what hangs on them."""
+    found = {each.child for each in references if each.kind in (IMU, SCAN) and each.child}
+    named = [each.parent for each in references]
+    named += [name for edge in edges for name in (edge.parent, edge.child)]
+    found |= {name for name in named if is_base(name)}
+    while more := {edge.child for edge in edges if edge.parent in found} - found:
+        found |= more
+    above = {"map", "world", "earth"}  # an IMU may be stamped so, and its plugin's default is
+    while more := {edge.parent for edge in edges if is_base(edge.child) or edge.child in above}:
+        if more <= above:
+            break
+        above |= more
+    return {
+        name for name in found if is_base(name) or not (name in above or is_odometry_frame(name))
+    }
+
+
+def _aboard(reference: Measured) -> Measured:
+    """A pose or a position in a frame on the robot; a chain of transforms is none."""
+    if reference.chain is not None or reference.kind == ODOMETRY or not reference.independent:
+        return reference
+    why = (
+        f"{reference.measures} in {reference.parent}, a frame on the robot: they rather tell where "
+        "something is, as the robot sees it"
+    )
+    return replace(reference, aboard=True, why=why)
 
 
 def _chains(edges: tuple[Edge, ...], base: str) -> list[Measured]:

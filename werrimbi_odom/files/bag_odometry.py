@@ -85,12 +85,13 @@ class OdometryTurnedBack:
         moves = length > _SLOW * np.quantile(length, 0.9)
         share = float(np.mean(aside[moves] > _ASIDE * length[moves])) if moves.any() else 0.0
         if share > _OFTEN:
+            two = ", or two nodes publish poses of their own on one topic"
+            two = f"{two} (its stamps go back {back} times)" if back else ""
             raise InputError(
                 f"{self._place}: by its odometry the robot goes sideways to its heading for "
                 f"{100 * share:.0f} % of the time. Mecanum and omni wheels do so, and no model "
                 "here is for them. On any other robot the odometry is given of a frame whose x "
-                "axis does not point ahead, or two nodes publish poses of their own on one topic "
-                f"(its stamps go back {back} times)"
+                f"axis does not point ahead{two}"
             )
 
     def _transforms(self, content: Any) -> Iterator[Any]:

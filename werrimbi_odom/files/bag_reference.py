@@ -19,6 +19,7 @@ from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind, integrated
+from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.model.pose import Floats
 
 NAN = math.nan
@@ -81,7 +82,8 @@ class ReferenceCollector:
         if self._source.kind == FIX:
             table[:, 1], table[:, 2] = east_and_north(self._place, *table[:, 1:4].T)
             table[:, 3] = NAN
-        time, x, y, yaw, sigma_xy, sigma_yaw = table.T.copy()
+        newest = newest_of_bursts(table[:, 0])
+        time, x, y, yaw, sigma_xy, sigma_yaw = table[newest].T.copy()
         if not (np.isfinite(yaw) | np.isfinite(x + y)).any():
             raise InputError(f"{self._place}: no message holds a finite pose")
         sigmas = (each if np.isfinite(each).any() else None for each in (sigma_xy, sigma_yaw))
@@ -89,6 +91,9 @@ class ReferenceCollector:
             f"{parent} -> {child}" if parent and child else f"frame {parent or child or 'unnamed'}"
         )
         told = f"{told}, {mounted}" if mounted else told
+        if not newest.all():
+            together = newest.size / newest.sum()
+            told += f"; they come {together:.0f} at a time, of which the last is kept"
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
         if self._source.kind == LOCALISED and parent == "map":
             kind = "local_map"  # AMCL, SLAM: their errors drift

@@ -62,6 +62,7 @@ def choose_reference(
     if wish is not None:
         return _wished(held, there, wish, force)
     independent = [each for each in there if each.independent]
+    independent = [each for each in independent if not each.aboard] or independent
     # Scans are matched if requested, or if nothing else measures the robot.
     independent = [each for each in independent if each.kind != SCAN] or independent
     if len(independent) > 1:

@@ -9,12 +9,18 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.files.bag import Bag
 from werrimbi_odom.model.pose import Floats
 
 _BURST = 0.2
 """Share of the usual interval below which two messages arrived in a burst."""
+_MOSTLY = 0.5
+"""Share of intervals within bursts from which on a topic counts as sent in bursts: then the usual
+interval is next to nothing, and every pause between two bursts would look like a loss."""
+_SLOW = 1.0
+"""Usual interval from which on readings close together were taken so [s], by a person."""
 _LATE = 0.1
 """Delay beyond the usual one above which a message counts as late [s]."""
 _FEWEST = 3
@@ -112,6 +118,20 @@ def _judged(header: Floats, received: Floats) -> Stamps:
         late=float(np.mean(after > np.median(after) + _LATE)) if has_header else 0.0,
         back=int(np.count_nonzero(np.diff(header) < 0.0)) if has_header else 0,
     )
+
+
+def newest_of_bursts(time: Floats) -> NDArray[np.bool_]:
+    """Rows to keep where most stamps are of arrival in bursts, shape (n,): the last of each.
+
+    What came before it in a burst was measured up to a whole pause earlier than it is stamped.
+    """
+    gaps = np.abs(np.diff(time))
+    usual = float(np.ptp(time)) / max(gaps.size, 1) if time.size else 0.0
+    together = gaps < _BURST * usual
+    keep = np.ones(time.size, dtype=np.bool_)
+    if usual < _SLOW and together.size and together.mean() > _MOSTLY:
+        keep[:-1] = ~together
+    return keep
 
 
 def _spread(intervals: Floats) -> float:

@@ -46,6 +46,9 @@ class Held:
     """Why it cannot be read."""
     joints: WheelJoints = field(default_factory=WheelJoints)
     """Joints of the wheels' topic: which of them are wheels."""
+    at_fault: Literal["", "wheels", "names"] = ""
+    """Set if `problem` is one of the wheels, which no other reference mends: the wheels themselves,
+    or the names that the robot file gives to their joints."""
     driven: DrivenAmount | None = None
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
@@ -120,6 +123,15 @@ def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
     return "yaw" if headings else "nothing"
 
 
+def drove(held: Held, sizes: bool) -> bool:
+    """Whether the robot drove far enough for a single leg; true if it is not known."""
+    drive = held.driven
+    if drive is None:
+        return True
+    far = drive.way + drive.turned / QUARTER_TURN >= SHORT_LEG if sizes else True
+    return far and any(span.what == "drove" for span in drive.spans)
+
+
 def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     """What a recording can and cannot show, as ends of sentences; nothing if it is unusable."""
     if held.problem:
@@ -128,6 +140,8 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     if measures == "nothing" or held.driven is None:
         return [], ["anything: nothing measured the robot beside its wheels"]
     drive = held.driven
+    if not drove(held, sizes):
+        return [], ["anything: the robot hardly moved"]
     can: list[str] = []
     cannot: list[str] = []
 

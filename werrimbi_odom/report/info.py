@@ -8,7 +8,7 @@ import shlex
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
+from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
 from werrimbi_odom.report.numbers import picked
@@ -84,6 +84,8 @@ def next_step(found: Info) -> tuple[str, str]:
         again = "Record again with something that measures the robot beside its wheels"
         how = "an IMU's gyro shows its turning, a localiser or a scan matcher its poses"
         return f"{again}: {how}.", ""
+    if not any(drove(each, found.sizes) for each in usable):
+        return "Record again while the robot drives.", ""
     if found.given is None and found.written is None:
         if not found.first.has_sizes:
             return (
@@ -100,6 +102,11 @@ def _otherwise(found: Info) -> tuple[str, str]:
     if all(held.contents is not None and held.wheels is None for held in found.held):
         return WITHOUT_WHEELS, ""
     for held in found.held:
+        if held.at_fault == "names":
+            return f"Next: {_names_to_write(held, found)}", ""
+        if held.at_fault:
+            return "Nothing of it can be judged.", ""
+    for held in found.held:
         if held.contents is None or held.reference is None:
             continue
         others = [each.name for each in held.contents.independent if each != held.reference]
@@ -109,6 +116,15 @@ def _otherwise(found: Info) -> tuple[str, str]:
             command = shlex.join([*words, *robot, "--reference-topic", others[0]])
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged.", ""
+
+
+def _names_to_write(held: Held, found: Info) -> str:
+    """Lines for a robot file that names other joints than the recording has."""
+    lines = (
+        f"{side}_wheel_names: [{', '.join(names)}]"
+        for side, names in (("left", held.joints.left), ("right", held.joints.right))
+    )
+    return f"if these are its wheels, write {' and '.join(lines)} into {found.given}."
 
 
 def command_of(found: Info) -> str:

@@ -116,6 +116,13 @@ def remark_words(remark: ReferenceRemark) -> str:
             "large as the way itself. It is the reference of another robot or another drive, its "
             "clock is far off, or its topic is not where the robot is."
         )
+    if remark.what == "places":
+        return (
+            "The reference turns as the wheels do, but goes elsewhere: whatever is put right, its "
+            "places are off by as much as the way itself. It is lost, it slides (scans in a "
+            "corridor, or with a narrow view), or it sits far from the axle on a robot that only "
+            "turned. A gyro would do to judge the turns; drive on with walls on several sides."
+        )
     if remark.what == "metre":
         return (
             f"The reference's path is {_share(remark.size)} than the wheels' way, and its turns "

@@ -37,10 +37,19 @@ def of_another_drive(prepared: PreparedRuns, model: Model) -> bool:
     def legs_of(length: float) -> Legs:
         return judged_legs(prepared, model, length)
 
-    def all_untold(driven: Driven, least: float) -> bool:
+    def all_untold(driven: Driven, least: float) -> bool | None:
         return _untold((legs_of(length) for length in prepared.cuts), driven, least)
 
-    return all_untold(_by_position, 0.0) or all_untold(_by_heading, OTHER_DRIVE_TURN)
+    return bool(all_untold(_by_position, 0.0) or all_untold(_by_heading, OTHER_DRIVE_TURN))
+
+
+def turns_alike(prepared: PreparedRuns, model: Model) -> bool:
+    """Whether the headings of a reference follow the wheels, whatever its places are of.
+
+    Then it is of this robot and this drive. Straight lines show nothing of it.
+    """
+    every = (judged_legs(prepared, model, length) for length in prepared.cuts)
+    return _untold(every, _by_heading, OTHER_DRIVE_TURN) is False
 
 
 def _by_position(legs: Legs) -> tuple[slice, Floats, Floats]:
@@ -52,8 +61,11 @@ def _by_heading(legs: Legs) -> tuple[slice, Floats, Floats]:
     return slice(2, 3), turn, wrap_all(turn + legs.errors.error[:, 2])
 
 
-def _untold(every: Iterable[Legs], driven: Driven, least: float) -> bool:
-    """Whether errors are as large as the motion, at every length with motion above `least`."""
+def _untold(every: Iterable[Legs], driven: Driven, least: float) -> bool | None:
+    """Whether errors are as large as the motion, at every length with motion above `least`.
+
+    None if no length has so much motion.
+    """
     looked_at = False
     for legs in every:
         places, rolled, measured = driven(legs)
@@ -69,4 +81,4 @@ def _untold(every: Iterable[Legs], driven: Driven, least: float) -> bool:
         if np.median(square[known]) < max(OTHER_DRIVE * way, noise):
             return False
         looked_at = True
-    return looked_at
+    return looked_at or None

@@ -46,10 +46,13 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 _PAIRED = 100
 """Stretches of a drive whose pairwise slopes are used (Theil-Sen)."""
 
-What = Literal["another_drive", "short", "sideways", "sideways_by_place", "apart", "metre"]
-"""Kind of anomaly. another_drive: nothing in common with the wheels; short: path shorter (or
-longer) in places; sideways: constant angle between path and heading; sideways_by_place: such an
-angle in places; apart: an angle that grows; metre: another metric scale."""
+What = Literal[
+    "another_drive", "places", "short", "sideways", "sideways_by_place", "apart", "metre"
+]
+"""Kind of anomaly. another_drive: nothing in common with the wheels; places: only its turns; short:
+path shorter (or longer) in places; sideways: constant angle between path and heading;
+sideways_by_place: such an angle in places; apart: an angle that grows; metre: another metric
+scale."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 
 
@@ -54,10 +55,29 @@ def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tupl
 
     Effects that read a channel are kept: their other inputs are not known here.
     """
+    effects = able(effects, runs)
     if not runs.own_axes:
-        return tuple(effects)
+        return effects
     drive = runs.drive(robot)
     return tuple(each for each in effects if each.lacks(()) or not _on_the_floor(each, drive))
+
+
+def able(effects: Sequence[Effect], runs: Concatenated) -> tuple[Effect, ...]:
+    """Effects that such a reference can have: a scan tells place and heading of one instant.
+
+    No gyro has a part in it, and its heading is not later than its place, unless a gyro's headings
+    were put in.
+    """
+    if not runs.own_axes or runs.has_gyro_headings:
+        return tuple(effects)
+    return tuple(each for each in effects if each.stage != "reference" or not _of_a_gyro(each))
+
+
+def _of_a_gyro(effect: Effect) -> bool:
+    """Whether an effect is of headings that another sensor gives than places."""
+    usual = {name: item.typical for name, item in effect.parameters.items()}
+    view = effect.apply(View(), **usual)
+    return bool(view.heading_delay != 0.0 or view.wander != 0.0)
 
 
 def _on_the_floor(effect: Effect, drive: Drive[Floats]) -> bool:

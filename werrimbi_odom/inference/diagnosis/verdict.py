@@ -13,7 +13,7 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
-from werrimbi_odom.inference.comparison.another_drive import of_another_drive
+from werrimbi_odom.inference.comparison.another_drive import of_another_drive, turns_alike
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -118,8 +118,8 @@ class Diagnosis:
 
     @property
     def of_another_drive(self) -> bool:
-        """Whether wheels and reference have nothing in common, so that there is no result."""
-        return any(remark.what == "another_drive" for remark in self.remarks)
+        """Whether wheels and reference have at most their turns in common: there is no result."""
+        return any(remark.what in ("another_drive", "places") for remark in self.remarks)
 
     @property
     def robot(self) -> Robot:
@@ -225,7 +225,7 @@ def told(
         ),
         rivals_of_others(found, rivals, rounds, final, given, laid),
         judge.left_out,
-        (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
+        (_nothing_in_common(judge, as_given),) if another else remarks_on(judge.train),
     )
 
 
@@ -322,3 +322,7 @@ def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) ->
         Sides(before.train, after.train, after.unit),
         before.to(after),
     )
+
+
+def _nothing_in_common(judge: Judge, as_given: Model) -> ReferenceRemark:
+    return ReferenceRemark("places" if turns_alike(judge.train, as_given) else "another_drive", 0.0)

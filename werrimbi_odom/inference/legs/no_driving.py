@@ -24,6 +24,7 @@ from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.spans import driven
+from werrimbi_odom.inference.legs.stuck_reference import as_stuck
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
@@ -98,6 +99,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     if by_turns is not None:
         parts = [part for part in parts if part.why != "held" or not _follows(part, by_turns)]
     parts = _with_rests(parts, counters, robot)
+    parts = [part if part.words == CARRIED else as_stuck(part, reference) for part in parts]
     if turns is not None and by_turns is None:  # to and fro on a line, carried in between
         by_hand = _turned_by_hand(turns, robot.track)
         alone = (

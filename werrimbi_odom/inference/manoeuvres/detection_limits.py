@@ -25,7 +25,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import base_name, name_of_base
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.support import askable
+from werrimbi_odom.inference.diagnosis.support import able, askable
 from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -84,7 +84,7 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
     measured = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     candidates = [
         _typical(effect)
-        for effect in effects
+        for effect in able(effects, diagnosis.runs)
         if not effect.is_mistake
         and effect.name not in OF_THE_MEASUREMENT
         and effect.name not in held

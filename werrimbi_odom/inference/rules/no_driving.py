@@ -194,3 +194,8 @@ were late in recordings, so that no turning is in it."""
 
 BIAS_SURE = 4.0
 """Standard deviations from none that a bias must be to be taken off: 6 of 100,000 without one."""
+
+NO_DRIVING_STUCK = 0.7
+"""Share of the poses of a held stretch that repeat the one before to the last digit, from which on
+it was the reference that stood still. Chosen: half a window at both ends is of the motion before
+and after, which is a third of the shortest stretch."""

@@ -240,13 +240,18 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     yield f"Then give that drive to `{diagnose}` together with these."
 
 
+def _of_the_same(diagnosis: Diagnosis) -> str:
+    unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
+    return " Give the reference of the same drive." if unrelated else ""
+
+
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     if diagnosis.of_another_drive:
         return [
             "Nothing can be told of the robot from these drives.",
             "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
-            "--report draws both paths. Give the reference of the same drive.",
+            f"--report draws both paths.{_of_the_same(diagnosis)}",
         ]
     lines = _set_up(diagnosis)
     cells = significant(diagnosis)
