@@ -330,13 +330,18 @@ def test_paths_that_are_no_run(tmp_path: Path, robot: Any) -> None:
     (tmp_path / "day" / "square").mkdir(parents=True)
     (tmp_path / "day" / "square" / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n0,1,2\n")
     (tmp_path / "old.bag").write_text("")
+    (tmp_path / "log").mkdir()
+    (tmp_path / "log" / "kobuki.csv").write_text("left,right,time\n1,2,3\n")
     day = tmp_path / "day"
+    columns = "; a log of text is read from a folder of its own with ticks.csv (t_s,left_ticks,"
     for path, said in (
         (tmp_path / "none", "there is no such run"),
         (day, f"neither ticks.csv nor a bag (metadata.yaml); did you mean {day}/square?"),
         (day / "square" / "ticks.csv", f"give the folder that holds it, {day}/square"),
         (tmp_path / "old.bag", "cannot be read as a bag: File"),
         (file.path, "is neither a run folder nor a bag (.mcap, .db3, .bag)"),
+        (tmp_path / "log", f"holds neither ticks.csv nor a bag (metadata.yaml){columns}"),
+        (tmp_path / "log" / "kobuki.csv", f"a bag (.mcap, .db3, .bag){columns}"),
         (Path("a\0b"), "there is no such run"),
     ):
         with pytest.raises(InputError, match=re.escape(said)):
