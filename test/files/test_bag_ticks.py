@@ -206,6 +206,19 @@ def test_counters_as_floats_are_read_where_they_are_asked_for(
     assert run.ticks.right.tolist() == [-3, -6, -9]
 
 
+def test_whole_counts_are_no_angles(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Of 210 a turn, taken for radians: a robot that turned by 99° in a tenth of a second."""
+    names = ["left_wheel_joint", "right_wheel_joint"]
+    entries = [
+        ("/joint_states", n * MS, ros.joints(n * MS, names, [3.0 * n, 4.0 * n])) for n in range(60)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    with pytest.raises(InputError, match="are whole numbers, and so counts, no angles; they are"):
+        read_run(bag, robot())
+    run = read_run(bag, robot("position_unit: ticks"))
+    assert run.ticks.right[-1] == 236
+
+
 def test_floats_that_are_no_counters_are_refused(tmp_path: Path, ros: Any, robot: Any) -> None:
     bag = ros.write(tmp_path / "bag", [("/speeds", 1 * MS, ros.floats(0.25, 1.5))])
     with pytest.raises(InputError, match=r"/speeds: 0.25 and 1.5 are no whole numbers, and so no"):
