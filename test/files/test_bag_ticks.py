@@ -206,6 +206,19 @@ def test_counters_as_floats_are_read_where_they_are_asked_for(
     assert run.ticks.right.tolist() == [-3, -6, -9]
 
 
+def test_whole_counts_are_no_angles(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Of 210 a turn, taken for radians: a robot that turned by 99° in a tenth of a second."""
+    names = ["left_wheel_joint", "right_wheel_joint"]
+    entries = [
+        ("/joint_states", n * MS, ros.joints(n * MS, names, [3.0 * n, 4.0 * n])) for n in range(60)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    with pytest.raises(InputError, match="are whole numbers, and so counts, no angles; they are"):
+        read_run(bag, robot())
+    run = read_run(bag, robot("position_unit: ticks"))
+    assert run.ticks.right[-1] == 236
+
+
 def test_floats_that_are_no_counters_are_refused(tmp_path: Path, ros: Any, robot: Any) -> None:
     bag = ros.write(tmp_path / "bag", [("/speeds", 1 * MS, ros.floats(0.25, 1.5))])
     with pytest.raises(InputError, match=r"/speeds: 0.25 and 1.5 are no whole numbers, and so no"):
@@ -330,13 +343,18 @@ def test_paths_that_are_no_run(tmp_path: Path, robot: Any) -> None:
     (tmp_path / "day" / "square").mkdir(parents=True)
     (tmp_path / "day" / "square" / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n0,1,2\n")
     (tmp_path / "old.bag").write_text("")
+    (tmp_path / "log").mkdir()
+    (tmp_path / "log" / "kobuki.csv").write_text("left,right,time\n1,2,3\n")
     day = tmp_path / "day"
+    columns = "; a log of text is read from a folder of its own with ticks.csv (t_s,left_ticks,"
     for path, said in (
         (tmp_path / "none", "there is no such run"),
         (day, f"neither ticks.csv nor a bag (metadata.yaml); did you mean {day}/square?"),
         (day / "square" / "ticks.csv", f"give the folder that holds it, {day}/square"),
         (tmp_path / "old.bag", "cannot be read as a bag: File"),
         (file.path, "is neither a run folder nor a bag (.mcap, .db3, .bag)"),
+        (tmp_path / "log", f"holds neither ticks.csv nor a bag (metadata.yaml){columns}"),
+        (tmp_path / "log" / "kobuki.csv", f"a bag (.mcap, .db3, .bag){columns}"),
         (Path("a\0b"), "there is no such run"),
     ):
         with pytest.raises(InputError, match=re.escape(said)):

@@ -120,7 +120,12 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
         ),
         (
             "t_s;left_ticks;right_ticks\n0;1;2\n",
-            "ticks.csv, line 1: the columns are separated by ';'",
+            "ticks.csv, line 1: the columns are not separated by commas; separate them so, and the "
+            "first line must be t_s,left_ticks,right_ticks",
+        ),
+        (
+            "1248272272.841 \t 0.074 \t 0.229\n",
+            "ticks.csv, line 1: the columns are not separated by commas",
         ),
         (
             "t_s,left_ticks,right_ticks,t_s\n0,1,2,3\n",

@@ -15,6 +15,7 @@ from test.inference.driven import run_of
 from test.model.drives import read
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import Added, add_effects
@@ -97,6 +98,19 @@ def kick(runs: list[Run]) -> Added:
     return add_effects([find("castor_kick")], runs[:9], PLAIN, holdout=runs[9:])
 
 
+def test_of_four_drives_by_tape_nothing_is_beyond_chance(runs: list[Run]) -> None:
+    """Three legs were fitted: a wave over a wheel's angle was "beyond any chance"."""
+    random = np.random.default_rng(4)
+    taped = []
+    for run in runs[:4]:
+        seen = run.reference
+        assert seen is not None
+        x, y, yaw = (part + random.normal(0.0, 0.05, 2) for part in (seen.x, seen.y, seen.yaw))
+        taped.append(replace(run, reference=replace(seen, x=x, y=y, yaw=yaw)))
+    with pytest.raises(InputError, match="have 3 legs to fit, and 6 are the least"):
+        diagnose(taped, PLAIN, LIBRARY)
+
+
 def test_a_length_that_they_do_not_hold_is_no_number(first: Diagnosis, kick: Added) -> None:
     """It was printed and written as 0.15 m ± 1e+06 m."""
     found = replace(first, found=("castor_kick",), rivals=())
@@ -155,13 +169,13 @@ def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
     """Poses by chance: what is printed of them stays within what the parameters allow."""
     random = np.random.default_rng(seed)
     runs = []
-    for number in range(5):
+    for number in range(9):
         run = by_tape(run_of(PLAIN, 10 * seed + number, 20))
         assert run.reference is not None
         x, y = random.uniform(-2.0, 2.0, (2, 2))
         seen = replace(run.reference, x=x, y=y, yaw=random.uniform(-3.0, 3.0, 2))
         runs.append(replace(run, reference=seen))
-    found = diagnose(runs[:4], PLAIN, LIBRARY, holdout=runs[4:])
+    found = diagnose(runs[:8], PLAIN, LIBRARY, holdout=runs[8:])
     said = as_text(words_of(Told(found, None, ()), NextSteps())) + as_text(tables_of(found))
     assert "nan" not in said.lower()
     assert not re.search(r"± \d(\.\d+)?e\+", said)

@@ -42,3 +42,25 @@ def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     assert told.diagnosis.verdict == "unknown"
     words = " ".join(each.text for each in words_of(told, NextSteps()))
     assert ("werrimbi draft" in words) == ("What is known of it" in words)
+
+
+def test_nor_is_it_beside_a_set_up_mistake() -> None:
+    """A marker askew, and errors of the fitted drive alone that a lever arm suits.
+
+    A Kobuki's ratio of the radii was "beyond any chance" beside such a marker, with 72 mm on a leg
+    put aside where the marker's angle by itself left 5.
+    """
+    sides = []
+    for seed, ahead in ((1, 0.1), (101, 0.0)):
+        run = run_of(ROBOT, seed, 60 if ahead else 30)
+        seen = run.reference
+        assert seen is not None
+        way = np.cumsum(np.hypot(np.diff(seen.x, prepend=0.0), np.diff(seen.y, prepend=0.0)))
+        x = seen.x + ahead * np.cos(seen.yaw) + 0.03 * np.sin(5.0 * way)
+        y = seen.y + ahead * np.sin(seen.yaw) + 0.03 * np.cos(5.0 * way)
+        sides.append((replace(run, reference=replace(seen, x=x, y=y, yaw=seen.yaw + 1.8)),))
+    robot = read_robot(FILE)
+    found = told_of(Recordings(robot, collection_of(), *sides, DriveOptions(), ROBOT)).diagnosis
+    assert found.found == ("reference_yaw_offset",)
+    assert found.verdict == "named"
+    assert found.holdout.after < 0.06

@@ -17,7 +17,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import NoDriving, Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -26,7 +26,7 @@ from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.legs.measured_motion import judged_motion
 from werrimbi_odom.inference.legs.no_driving import _stretches, looked_at
-from werrimbi_odom.inference.legs.spans import driven
+from werrimbi_odom.inference.legs.spans import LOST, driven
 from werrimbi_odom.inference.legs.windows import Windows
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
@@ -206,6 +206,15 @@ def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:
     assert found.turned < 1e-3
     other = replace(ROBOT, effects=(find("right_wheel_reversed").using(),))
     assert driven(counters_of(run, other, None), other, ()).turned > 1.0, "as the file says"
+
+
+def test_what_follows_a_carry_is_not_said_to_be_carried() -> None:
+    """Of positions alone: half of a car's drive, whose heading was not known after a silence."""
+    run = run_of(ROBOT, 1)
+    parts = (NoDriving(10.0, 12.0, "carried", "carried"), NoDriving(12.0, 30.0, "carried", LOST))
+    spans = driven(counters_of(run, ROBOT, None), ROBOT, parts).spans
+    lasted = {each.what: each.end - each.begin for each in spans if each.what[0] in "cl"}
+    assert lasted == pytest.approx({"carried": 2.0, "lost": 18.0}, abs=0.2)
 
 
 def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:

@@ -32,6 +32,8 @@ _UNLIKE = 0.25
 """Share of the way of a side's wheels that may be unlike. Steered and driven wheels of one side
 differ by up to an eighth in the tightest turns, skidding ones by less; mecanum wheels on a drive
 that is sideways in part by more than a third."""
+_WHOLE_COUNTS = 50
+"""Different whole numbers, and nothing else, that no angle in radians runs through by chance."""
 UNTURNED = "the angles begin anew at each turn; they are unwrapped"
 
 
@@ -96,19 +98,25 @@ class JointsCollector:
         values = self._file.values
         per_turn = float(values[f"{side}_ticks_per_revolution"])  # type: ignore[arg-type]
         in_radians = values["position_unit"] == "radians"
-        self._refuse_fractions(in_radians, positions)
         counts = positions * (per_turn / (2.0 * math.pi)) if in_radians else positions
         bits = int(values["encoder_bits"])  # type: ignore[arg-type]
         self._refuse_unlike(side, time, counts, per_turn, bits)
+        self._refuse_other_unit(in_radians, positions)
         return counts_of(side_counts(counts, per_turn, bits))
 
-    def _refuse_fractions(self, in_radians: bool, positions: Floats) -> None:
-        """Raise if angles are to be read as counts."""
+    def _refuse_other_unit(self, in_radians: bool, positions: Floats) -> None:
+        """Raise if angles are to be read as counts, or counts as angles."""
         known = positions[np.isfinite(positions)]
-        if not in_radians and known.size and np.mean(known != np.rint(known)) > 0.5:
+        fractions = known != np.rint(known)
+        if not in_radians and known.size and np.mean(fractions) > 0.5:
             raise InputError(
                 f"{self._place}: its positions are no whole numbers, and so no counts; angles are "
                 "read with position_unit: radians"
+            )
+        if in_radians and not fractions.any() and np.unique(known).size >= _WHOLE_COUNTS:
+            raise InputError(
+                f"{self._place}: its positions are whole numbers, and so counts, no angles; they "
+                "are read with position_unit: ticks and left_ticks_per_revolution in the robot file"
             )
 
     def _refuse_unlike(

@@ -21,7 +21,22 @@ from werrimbi_odom.files.run_bag import (
     read_reference_bag,
     read_run_bag,
 )
-from werrimbi_odom.files.run_folder import REFERENCE, TICKS, read_reference, read_run_folder
+from werrimbi_odom.files.run_folder import (
+    REFERENCE,
+    REFERENCE_COLUMNS,
+    TICKS,
+    TICKS_COLUMNS,
+    read_reference,
+    read_run_folder,
+)
+
+_TEXT = (".csv", ".txt", ".dat", ".log", ".tsv", ".clf")
+FROM_TEXT = (
+    f"a log of text is read from a folder of its own with {TICKS} ({','.join(TICKS_COLUMNS)}: "
+    "seconds, and counts since the start) and, as far as it was measured, "
+    f"{REFERENCE} ({','.join(REFERENCE_COLUMNS)}); docs/recordings.md says how speeds and metres "
+    "become counts"
+)
 
 
 def read_run(
@@ -135,6 +150,8 @@ def _bag_in(folder: Path) -> Path:
     for below in (*sorted(folder.glob(f"*/{TICKS}")), *sorted(folder.glob("*/metadata.yaml"))):
         hint = f"; did you mean {below.parent}?"
         break
+    if not hint and any(_is_text(each) for each in folder.iterdir()):
+        hint = f"; {FROM_TEXT}"
     raise InputError(f"{folder} holds neither {TICKS} nor a bag (metadata.yaml){hint}")
 
 
@@ -143,4 +160,9 @@ def _bag_file(path: Path) -> Path:
         return path
     if path.name == TICKS:
         raise InputError(f"{path}: give the folder that holds it, {path.parent}")
-    raise InputError(f"{path} is neither a run folder nor a bag ({', '.join(SUFFIXES)})")
+    hint = f"; {FROM_TEXT}" if _is_text(path) else ""
+    raise InputError(f"{path} is neither a run folder nor a bag ({', '.join(SUFFIXES)}){hint}")
+
+
+def _is_text(path: Path) -> bool:
+    return path.suffix.lower() in _TEXT

@@ -138,8 +138,11 @@ def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
     if missing:
         if all(_NUMBER.match(name) for name in names):
             raise InputError(f"{place}: there is no header; the first line must be {wanted}")
-        if len(names) == 1 and ";" in line:
-            raise InputError(f"{place}: the columns are separated by ';'; separate them by commas")
+        if len(names) == 1 and len(re.split(r"[;\s]+", names[0])) > 1:
+            raise InputError(
+                f"{place}: the columns are not separated by commas; separate them so, and the "
+                f"first line must be {wanted}"
+            )
         held = line.strip()[:200]
         raise InputError(f"{place}: no column {', '.join(missing)}; the header is {held!r}")
     if len(names) > MAX_COLUMNS:

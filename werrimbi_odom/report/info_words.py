@@ -177,6 +177,7 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
             ("stood", "stood"),
             ("held", "was held"),
             ("carried", "was carried or turned by hand"),
+            ("lost", "drove with a heading that is not known"),
         )
         if what in times
     ]

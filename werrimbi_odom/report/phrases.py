@@ -19,21 +19,22 @@ _TOLD = 3  # the same, for a suspect reference
 
 
 def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
-    """A sentence for each of the first stretches, and one for the rest; empty for none.
+    """A sentence for each of the longest stretches, in order, and one for the rest; empty for none.
 
     Jumps of the reference are not included; see `jumps_words`.
     """
     runs = {part.run for part in parts}
     silent = [part for part in parts if part.why != "reference"]
+    long = sorted(silent, key=lambda part: part.begin - part.end)[:_MOST]
     lines = []
-    for part in silent[:_MOST]:
+    for part in (each for each in silent if each in long):
         where = f" of {part.run.name}" if len(runs) > 1 or len(silent) > _MOST else ""
         from_s, to_s = from_start(part.started, part.begin, part.end)
         end = ". Left out." if ":" in part.words else ": left out."
         first, last = f"{from_s:.1f} s", f"{to_s:.1f} s"
         when = f"At {first}" if first == last else f"From {first} to {last}"
         lines.append(f"{when}{where} {part.words}{end}")
-    rest = silent[_MOST:]
+    rest = [part for part in silent if part not in long]
     if rest:
         seconds = sum(part.end - part.begin for part in rest)
         lines.append(

@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import robot_for_cutting
@@ -51,12 +52,14 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_nois
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
     LAW_SHARE,
+    LEGS_OF_A_PART,
     OWN_LAW_SHARE,
     RIVAL,
     ROUNDS,
     SURE,
     VERY_SURE,
 )
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
@@ -97,7 +100,8 @@ def diagnose(
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks, or is in degrees or millimetres.
+        When a run has no usable reference or no ticks, or is in degrees or millimetres; when there
+        are too few legs for any verdict.
     """
 
     def search(
@@ -132,6 +136,7 @@ def _searched(
     judge, set_up = begun.judge, begun.set_up
     cutter = robot_for_cutting(set_up.robot, robot)
     laid = concatenated(match_for_fit(judge.fitted_on, cutter, options.leg, options.limits))
+    _refuse_few(laid, set_up, judge)
     effects = askable(effects, laid, set_up.robot)
     show(0.1, "calibration")
     fit = fit_calibration(laid, set_up.robot, with_stated_noise(options, laid.runs))
@@ -170,6 +175,18 @@ def _searched(
     either = ahead_or_behind(laid, fit, set_up.robot)
     found = replace(found, misfit=misfit, rivals_of_held=held, outdated=old, ahead_or_behind=either)
     return found, judge
+
+
+def _refuse_few(laid: Concatenated, set_up: SetUp, judge: Judge) -> None:
+    """Raise where legs are so few that no cause but a set-up mistake could ever be significant."""
+    if laid.begin.size >= LEGS_OF_A_PART or set_up.findings:
+        return
+    raise InputError(
+        f"{', '.join(str(run.path) for run in judge.fitted_on)}: too little to diagnose: from pose "
+        f"to pose the drives have {laid.begin.size} legs to fit, and {LEGS_OF_A_PART} are the "
+        "least. Measure the robot more often on its way, or drive more; `werrimbi compare` shows "
+        "the errors of these"
+    )
 
 
 def _significant(this: Round) -> Fitted | None:

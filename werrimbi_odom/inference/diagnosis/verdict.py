@@ -195,10 +195,14 @@ def told(
     start = judge.of(as_given)
     model = _as_told(final, set_up.robot, found, laid)
     last = judge.of(model)
-    if found and not mistakes and not start.to(last).fell and far_above_noise(judge.train, model):
+    mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if mistakes else start
+    further = any(name not in mistakes for name in found)
+    if further and not mended.to(last).fell and far_above_noise(judge.train, model):
         # It suits the fitted drives alone, and what is left there is no noise.
-        verdict, found, rivals, torn = "unknown", (), (), ()
-        model = _as_told(final, set_up.robot, found, laid)
+        found = tuple(mistakes)
+        if not mistakes:
+            verdict, rivals, torn = "unknown", (), ()
+        model = _as_told(rounds[0].before if mistakes else final, set_up.robot, found, laid)
         last = judge.of(model)
     return Diagnosis(
         verdict,

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
-from werrimbi_odom.inference.legs.spans import driven
+from werrimbi_odom.inference.legs.spans import LOST, driven
 from werrimbi_odom.inference.legs.stuck_reference import as_stuck
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
@@ -54,7 +54,6 @@ _GRID = 0.1  # grid on which held and carried are told apart [s]
 
 HELD = "the wheels turned and the robot did not: held, or against a wall"
 CARRIED = "the robot moved and its wheels did not: carried, or pushed"
-UNKNOWN = "the robot drove, and its heading is not known: it was held or carried before or after"
 BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
 
 
@@ -305,5 +304,5 @@ def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[N
     found = list(parts)
     for number, (begin, end) in enumerate(drives):
         if number != longest and end > begin:
-            found.append(NoDriving(begin, end, parts[min(number, len(parts) - 1)].why, UNKNOWN))
+            found.append(NoDriving(begin, end, parts[min(number, len(parts) - 1)].why, LOST))
     return sorted(found)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""States of a robot over time: standing, driving, held, carried."""
+"""States of a robot over time: standing, driving, held, carried, not known."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # [s]
-What = Literal["stood", "drove", "held", "carried"]
+LOST = "the robot drove, and its heading is not known: it was held or carried before or after"
+What = Literal["stood", "drove", "held", "carried", "lost"]
+"""`lost`: it drove, with a heading that is not known."""
 
 
 class TimeSpan(NamedTuple):
@@ -58,7 +60,8 @@ def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) 
     middle = 0.5 * (grid[1:] + grid[:-1])
     for part in no_driving:
         if part.why in ("held", "carried"):
-            state[(middle >= part.begin) & (middle <= part.end)] = part.why
+            what = "lost" if part.words == LOST else part.why
+            state[(middle >= part.begin) & (middle <= part.end)] = what
     spans = tuple(
         TimeSpan(float(grid[begin]), float(grid[end]), state[begin])
         for begin, end in itertools.pairwise(_changes(state))
