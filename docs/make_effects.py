@@ -11,8 +11,8 @@ import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
+from werrimbi_odom.effects.effect_docstring import MEANING, STAGES, absent_at, anew, page_of
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.effects.page import MEANING, STAGES, absent_at, anew, page_of
 from werrimbi_odom.model.effect import Effect
 
 BEGIN = "<!-- made by docs/make_effects.py; write elsewhere -->"

@@ -12,7 +12,7 @@ import pytest
 
 from werrimbi_odom.effects import LIBRARY, load_file
 from werrimbi_odom.effects.contract import check_effect
-from werrimbi_odom.effects.page import as_json, as_text, page_of
+from werrimbi_odom.effects.effect_docstring import as_json, as_text, page_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "effects.md"
 with_chapter = run_path(str(PAGE.with_name("make_effects.py")))["with_chapter"]

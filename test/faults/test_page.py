@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.files import table, text_files
+from werrimbi_odom.files import csv_table, text_files
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
@@ -18,7 +18,7 @@ PAGE = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
 def test_limits_of_files() -> None:
     assert text_files.MAX_BYTES == 10**6
     assert "more than 1 MB" in PAGE
-    assert math.isclose(table.MAX_ROWS, 20e6)
+    assert math.isclose(csv_table.MAX_ROWS, 20e6)
     assert "more than 20 million rows" in PAGE
 
 

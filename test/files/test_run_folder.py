@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import table
+from werrimbi_odom.files import csv_table
 from werrimbi_odom.files.run_folder import read_run_folder
 
 TICKS = "t_s,left_ticks,right_ticks\n"
@@ -226,7 +226,7 @@ def test_what_is_too_large_is_refused_before_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder(tmp_path, FINE * 10)
-    monkeypatch.setattr(table, "MAX_ROWS", 20)
+    monkeypatch.setattr(csv_table, "MAX_ROWS", 20)
     assert complaint(tmp_path).startswith("ticks.csv has more than 20 rows or")
     folder(tmp_path, "t_s," + "a" * 2**21)
     assert complaint(tmp_path).startswith("ticks.csv, line 1 is longer than 1,048,576 bytes")

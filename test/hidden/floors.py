@@ -14,9 +14,9 @@ from test.hidden.right_laws import RIGHT_LAWS
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
-from werrimbi_odom.inference.diagnosis.search import fit_calibration
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
@@ -28,7 +28,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
 )
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 LEG = 1.0

@@ -39,7 +39,7 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.inference.comparison.residuals import chained
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.search import fit_calibration
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, variables_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model

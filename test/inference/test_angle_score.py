@@ -16,8 +16,8 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
-from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.angle_score import best_angles
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated

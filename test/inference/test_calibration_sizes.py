@@ -11,7 +11,7 @@ import pytest
 
 from test.model.drives import ROBOT, random_drive
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.calibration_sizes import (
+from werrimbi_odom.inference.calibration_parametrisation import (
     calibration_deviation,
     sizes_of,
     std_as_effect,

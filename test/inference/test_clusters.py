@@ -12,10 +12,10 @@ import pytest
 
 from test.inference.test_homogeneity import ROBOT, driven, late, nothing
 from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.p_values import p_value_by_parts, p_value_of_size
-from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
 from werrimbi_odom.inference.fitting.clusters import (
     effective_freedom,

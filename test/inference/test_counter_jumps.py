@@ -14,7 +14,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.legs.aligned_run import record_of
-from werrimbi_odom.inference.legs.counters import counters_of
+from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.model.robot import Robot
 
 ROBOT = Robot(0.3, 0.05, 1000.0, 1000.0)

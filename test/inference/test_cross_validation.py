@@ -18,8 +18,8 @@ from werrimbi_odom.inference.diagnosis.cross_validation import (
     fold_of_leg,
     holds_when_cross_validated,
 )
-from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot

@@ -15,17 +15,17 @@ from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.evidence import summed_over_legs
-from werrimbi_odom.inference.diagnosis.search import fit_calibration
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount, step_jacobians
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting import caches
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.design import jacobian_of
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict, predict_all, predicted_legs
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
+from werrimbi_odom.inference.fitting.whitened_innovations import jacobian_of
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount

@@ -20,7 +20,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance, diagnose
-from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import Told

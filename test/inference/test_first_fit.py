@@ -14,7 +14,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.search import fit_calibration
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 

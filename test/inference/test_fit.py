@@ -22,10 +22,10 @@ from werrimbi_odom.inference.comparison.leg_errors import (
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
 

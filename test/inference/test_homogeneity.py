@@ -17,8 +17,8 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.homogeneity import _chance, homogeneity_of_effect, lasting
-from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_for_fit

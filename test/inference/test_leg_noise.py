@@ -20,7 +20,7 @@ from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.leg_noise import noise_of_legs
 from werrimbi_odom.inference.fitting.prediction import extrinsics_of, path_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.model import course
+from werrimbi_odom.model import recorded_propagation
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.scalar_loop import follow
 
@@ -60,10 +60,10 @@ def test_machine_code_follows_the_steps_as_arrays_do(
 ) -> None:
     model, runs = legs
     motion = path_of(model, runs).motion
-    with patch.object(course, "compiled_for", lambda *of, again: None):
-        position, yaw = course.followed(motion)
-    with patch.object(course, "compiled_for", lambda *of, again: way):
-        its_position, its_yaw = course.followed(motion)
+    with patch.object(recorded_propagation, "compiled_for", lambda *of, again: None):
+        position, yaw = recorded_propagation.followed(motion)
+    with patch.object(recorded_propagation, "compiled_for", lambda *of, again: way):
+        its_position, its_yaw = recorded_propagation.followed(motion)
     assert np.ptp(yaw) > 1.0
     np.testing.assert_allclose(its_position, position, rtol=0.0, atol=1e-12)
     np.testing.assert_array_equal(its_yaw, yaw)

@@ -13,7 +13,7 @@ import pytest
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.made_from_wheels import closeness, require_independent
-from werrimbi_odom.inference.legs.counters import counters_of
+from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.workbench.opened import opened
+from werrimbi_odom.workbench.loaded_input import opened
 
 ANY_FILE = read_robot_file(
     Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square" / "robot.yaml"

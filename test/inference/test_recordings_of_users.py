@@ -21,8 +21,8 @@ from werrimbi_odom.inference.comparison.leg_errors import statistics
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.search import fit_calibration, search_round
-from werrimbi_odom.inference.diagnosis.selection import RATIO
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import RATIO
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
 from werrimbi_odom.inference.drafting.draft import draft_effect

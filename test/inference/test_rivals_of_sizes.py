@@ -11,9 +11,9 @@ import pytest
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference.diagnosis.forward_selection import Round, fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import rivals_of
-from werrimbi_odom.inference.diagnosis.search import Round, fit_calibration, search_round
-from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.rules import RIVAL

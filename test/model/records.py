@@ -11,7 +11,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from test.model.drives import Ticks
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 PERIOD = 0.02

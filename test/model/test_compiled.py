@@ -23,7 +23,7 @@ from test.model.drives import ROBOT, random_drive
 from test.model.records import Record, records
 from test.model.test_odometer_and_trajectory import Live, assert_one_odometry, has_a_row
 from werrimbi_odom.effects import find
-from werrimbi_odom.model import course, recorded_counts
+from werrimbi_odom.model import encoder_recorded, recorded_propagation
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.motion import BodyMotion
@@ -50,8 +50,8 @@ def as_written(function: Callable[..., Any]) -> Callable[..., Any]:
 def along(way: Way) -> Iterator[None]:
     """Recorded runs go this way, however long they are."""
     with (
-        patch.object(course, "compiled_for", lambda steps, function: way(function)),
-        patch.object(recorded_counts, "compiled_for", lambda steps, function: way(function)),
+        patch.object(recorded_propagation, "compiled_for", lambda steps, function: way(function)),
+        patch.object(encoder_recorded, "compiled_for", lambda steps, function: way(function)),
     ):
         yield
 
@@ -72,7 +72,7 @@ def test_machine_code_says_what_its_lines_and_the_live_odometer_say_to_the_last_
     robot, limits, ticks = record
     if not has_a_row(ticks):
         return
-    with patch.object(course, "_BLOCK", together):
+    with patch.object(recorded_propagation, "_BLOCK", together):
         with along(as_written):
             plain = trajectory(robot, *ticks, limits=limits)
         with along(compiled):

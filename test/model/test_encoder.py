@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT
 from test.model.records import Record, as_read, drives, records
-from werrimbi_odom.model.encoder import (
+from werrimbi_odom.model.encoder_online import (
     CLOCK_JUMP,
     Encoder,
     EncoderLimits,
@@ -22,7 +22,7 @@ from werrimbi_odom.model.encoder import (
     WheelStep,
     wrapped,
 )
-from werrimbi_odom.model.recorded_counts import wheel_steps
+from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 TICK = ROBOT.left_tick

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from test.model.drives import ROBOT, Ticks
 from test.model.records import Record, as_read, records
 from test.model.test_odometer_and_trajectory import Live
-from werrimbi_odom.model.encoder import Encoder, EncoderLimits, WheelStep
+from werrimbi_odom.model.encoder_online import Encoder, EncoderLimits, WheelStep
+from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pace import REMEMBERED
-from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 

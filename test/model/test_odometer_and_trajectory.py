@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT, Ticks, random_drive, square, then
 from test.model.records import Record, records
-from werrimbi_odom.model import course, pieces_recorded, recorded_counts
+from werrimbi_odom.model import encoder_recorded, pieces_recorded, recorded_propagation
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -129,12 +129,12 @@ def rows_together(count: int | None) -> Iterator[None]:
         yield
         return
     sizes = [
-        (recorded_counts, "_STRETCH", count),
-        (recorded_counts, "_BLOCK", 2 * count),
+        (encoder_recorded, "_STRETCH", count),
+        (encoder_recorded, "_BLOCK", 2 * count),
         (pieces_recorded, "_FEW", count),
         (pieces_recorded, "_MANY", 3 * count),
         (pieces_recorded, "_SHORT", count),
-        (course, "_BLOCK", count),
+        (recorded_propagation, "_BLOCK", count),
     ]
     with ExitStack() as stack:
         for size in sizes:

@@ -20,7 +20,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.model import quick_odometer
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import PoseCovariance
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Pose

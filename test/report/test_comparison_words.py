@@ -25,7 +25,7 @@ from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
 from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.phrases import covariance_words
-from werrimbi_odom.report.numbers import from_start
+from werrimbi_odom.report.number_format import from_start
 
 SYSTEMATIC = Systematic("line", "heading", "travel", 0.1, 0.01, 1e-9, 0.1, 0.1, True)
 NUMBER = r"([\d.]+(?:e[+-]?\d+)?)"

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from test.scans.drives import seen
-from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import Sweep
+from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar

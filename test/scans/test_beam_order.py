@@ -11,8 +11,8 @@ import pytest
 
 from test.scans.drives import Matched, in_circles, rms, seen
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
-from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import Sweep
+from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.lidar import Lidar
 

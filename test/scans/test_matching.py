@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from test.scans.drives import in_circles, seen
-from werrimbi_odom.scans.elements import line_elements
+from werrimbi_odom.scans.line_features import line_elements
 from werrimbi_odom.scans.matching import match
 from werrimbi_odom.scans.sweep import Sweep, SweepMotion, deskewed, own_course, sweep_of
 from werrimbi_odom.simulation import rooms

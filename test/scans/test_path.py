@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from test.scans.drives import ahead, brisk, hops, in_circles, matched, of_sweeps, rms, seen
-from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import sweep_of
+from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, AxlePose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room

@@ -22,7 +22,7 @@ from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.workbench.job import CancelledError, Job, Open
-from werrimbi_odom.workbench.opened import opened
+from werrimbi_odom.workbench.loaded_input import opened
 from werrimbi_odom.workbench.saving import Target
 from werrimbi_odom.workbench.tab import Opening
 

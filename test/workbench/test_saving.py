@@ -15,7 +15,7 @@ from test.workbench.session import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.workbench.saving import Target, beside, saved, text_of
-from werrimbi_odom.workbench.undo import Session, begun
+from werrimbi_odom.workbench.session import Session, begun
 
 
 @pytest.fixture

@@ -28,13 +28,13 @@ from werrimbi_odom.files.recordings import DriveOptions, gathered, refuse_twice
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
-from werrimbi_odom.inference.changes.dated import Dated, History, Unusable, in_order
 from werrimbi_odom.inference.changes.history import (
     Course,
     DriveEstimate,
     course_of,
     estimate_of_drive,
 )
+from werrimbi_odom.inference.changes.parameter_history import Dated, History, Unusable, in_order
 from werrimbi_odom.inference.rules import DATED
 from werrimbi_odom.progress import Show, silent
 

@@ -20,7 +20,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.model.effect import view_of
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose, wrap_all
 from werrimbi_odom.model.reference_measurement import Path as ShownPath

@@ -55,7 +55,7 @@ class Result(Generic[Found]):
 
     def to_dict(self) -> dict[str, Any]:
         """Content of `--json`: numbers, strings, lists, dictionaries; None: not known."""
-        from werrimbi_odom.report.numbers import plain
+        from werrimbi_odom.report.number_format import plain
 
         found = plain(self.figures_of_json())
         assert isinstance(found, dict)

@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print one page, or the list of all effects; return 0."""
     from werrimbi_odom.effects import all_effects
-    from werrimbi_odom.effects.page import as_json
+    from werrimbi_odom.effects.effect_docstring import as_json
 
     collection = all_effects(arguments.effects)
     for warning in collection.warnings:
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _print_list(collection: Collection) -> None:
-    from werrimbi_odom.effects.page import absent_at
+    from werrimbi_odom.effects.effect_docstring import absent_at
 
     try:
         from rich.table import Table
@@ -90,7 +90,7 @@ def _print_list(collection: Collection) -> None:
 
 
 def _print_page(effect: Effect) -> None:
-    from werrimbi_odom.effects.page import MEANING, STAGES, as_text, numbers, page_of
+    from werrimbi_odom.effects.effect_docstring import MEANING, STAGES, as_text, numbers, page_of
 
     try:
         from rich.padding import Padding

@@ -182,7 +182,7 @@ def write_json(path: Path, figures: Mapping[str, Any]) -> None:
         If the file cannot be written.
     """
     from werrimbi_odom.files.text_files import replacing
-    from werrimbi_odom.report.numbers import plain
+    from werrimbi_odom.report.number_format import plain
 
     with replacing(path) as file:
         json.dump(plain(figures), file, indent=2, allow_nan=False)

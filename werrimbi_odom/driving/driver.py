@@ -15,7 +15,7 @@ from typing import Literal
 from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
 from werrimbi_odom.driving.path_following import PathFollower
 from werrimbi_odom.driving.plan import SLACK, ManoeuvrePlan, room_of, seen_from
-from werrimbi_odom.driving.watch import SLIP_WINDOW, OdometryReading, Watch, fault_between
+from werrimbi_odom.driving.stop_conditions import SLIP_WINDOW, OdometryReading, Watch, fault_between
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
 from werrimbi_odom.model.turn_comparison import Turns

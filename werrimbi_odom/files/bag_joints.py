@@ -18,7 +18,7 @@ from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks, counts_of, integrated
 from werrimbi_odom.model.counter_wraps import differences
-from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
 INTEGRATED = (

@@ -17,9 +17,9 @@ from werrimbi_odom.files.run import Collected, Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
 from werrimbi_odom.scans.limits import LONGEST_SWEEP
-from werrimbi_odom.scans.path import ScanPath
 from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
+from werrimbi_odom.scans.two_pass_odometry import ScanPath
 
 WHY: dict[Flag, str] = {
     "few": "too little within the lidar's reach",

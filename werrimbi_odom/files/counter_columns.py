@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Ticks
-from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 FEWEST = 20

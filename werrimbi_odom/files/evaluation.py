@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

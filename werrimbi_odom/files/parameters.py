@@ -11,7 +11,7 @@ from dataclasses import fields
 from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.model.effect import AppliedEffect
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
 

@@ -43,7 +43,7 @@ from werrimbi_odom.files.parameters import (
 )
 from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
 from werrimbi_odom.model.effect import AppliedEffect
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
 

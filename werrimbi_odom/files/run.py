@@ -13,7 +13,7 @@ from weakref import ref
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
 EXACT = 2.0**53

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.columns import refuse_wrong_columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.model.encoder import CLOCK_JUMP
+from werrimbi_odom.model.encoder_online import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

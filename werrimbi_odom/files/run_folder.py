@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
-from werrimbi_odom.files.table import CsvTable, read_table
 from werrimbi_odom.files.text_files import readable
-from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
 TICKS = "ticks.csv"

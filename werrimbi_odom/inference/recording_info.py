@@ -17,7 +17,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.spans import DrivenAmount
+from werrimbi_odom.inference.legs.motion_states import DrivenAmount
 from werrimbi_odom.inference.rules import (
     FEWEST_LEGS,
     LEG_OF_POSITIONS,

@@ -18,7 +18,7 @@ from werrimbi_odom.model.covariance import (
 )
 from werrimbi_odom.model.driven_motion import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
-from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
+from werrimbi_odom.model.encoder_online import Encoder, EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.float_versions import of_floats
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, mean_twist
 from werrimbi_odom.model.pieces import OpenPiece, Piece

@@ -26,10 +26,10 @@ from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import AppliedEffect, wiring_of
 from werrimbi_odom.model.effects_over_run import after_effects
-from werrimbi_odom.model.encoder import Counts, EncoderLimits
+from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
+from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.motion import Number, WheelTravel
 from werrimbi_odom.model.pose import Floats, wrap
-from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import channel_spans
 

@@ -10,11 +10,11 @@ from typing import overload
 
 import numpy as np
 
-from werrimbi_odom.model.course import PathInPieces
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pieces import Piece, kind_of
 from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.recorded_propagation import PathInPieces
 
 _BLOCK = 1024  # pieces constructed together
 

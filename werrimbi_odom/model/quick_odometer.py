@@ -15,7 +15,7 @@ import numpy as np
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance, TwistCovariance
 from werrimbi_odom.model.driven_motion import Channels, acts
-from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally, WheelStep
+from werrimbi_odom.model.encoder_online import EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.message_loop import IN_DOUBT, marching_of, take, write_marching
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.odometer import Estimate, Odometer

@@ -20,7 +20,7 @@ from werrimbi_odom.model.covariance import (
     after_stretch,
     path_noise_of,
 )
-from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pace import REMEMBERED, seen
 from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, PieceSums, extended

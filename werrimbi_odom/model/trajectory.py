@@ -10,19 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.course import course_of
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import acts, features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven
-from werrimbi_odom.model.encoder import Counts, EncoderLimits, EncoderTally
+from werrimbi_odom.model.encoder_online import Counts, EncoderLimits, EncoderTally
+from werrimbi_odom.model.encoder_recorded import lost_travel, wheel_steps
 from werrimbi_odom.model.motion import WheelTravel, wheels_to_body
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pieces_of_run import PiecesOfRun
 from werrimbi_odom.model.pieces_online import PieceRule, PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose
-from werrimbi_odom.model.recorded_counts import lost_travel, wheel_steps
+from werrimbi_odom.model.recorded_propagation import course_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.uncertainty import known
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from werrimbi_odom.inference.changes.between_drives import Moved
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.numbers import SMALL, chance_words, in_unit, listed, with_std
+from werrimbi_odom.report.number_format import SMALL, chance_words, in_unit, listed, with_std
 
 WHAT = {
     "left_wheel": "the left wheel",

@@ -12,7 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Event, Events, Way
 from werrimbi_odom.report import style
-from werrimbi_odom.report.numbers import from_start, in_unit, picked, with_std
+from werrimbi_odom.report.number_format import from_start, in_unit, picked, with_std
 from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.style import Figure
 

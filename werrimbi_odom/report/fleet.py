@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.numbers import listed, with_std
+from werrimbi_odom.report.number_format import listed, with_std
 
 ERROR = "error"
 """Shown in place of a verdict if a robot could not be diagnosed."""

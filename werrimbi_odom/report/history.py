@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.inference.changes.history import Number
+from werrimbi_odom.inference.changes.parameter_history import Dated, History
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.changes import changes_json
@@ -26,7 +26,7 @@ from werrimbi_odom.report.history_words import (
     told_as,
     words_of,
 )
-from werrimbi_odom.report.numbers import picked
+from werrimbi_odom.report.number_format import picked
 from werrimbi_odom.report.style import Figure
 
 _HEIGHT = 190

@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 
 from werrimbi_odom.inference.changes.between_drives import Moved
-from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.inference.changes.history import Number
+from werrimbi_odom.inference.changes.parameter_history import Dated, History
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.report.changes import changes_words, in_small_unit
 from werrimbi_odom.report.document import Paragraph, Table, paragraphs
-from werrimbi_odom.report.numbers import counted, length, listed, with_std
+from werrimbi_odom.report.number_format import counted, length, listed, with_std
 
 TITLES = {
     "wheel_separation_multiplier": "wheel base",

@@ -11,7 +11,7 @@ from typing import Any
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
-from werrimbi_odom.report.numbers import picked
+from werrimbi_odom.report.number_format import picked
 from werrimbi_odom.report.phrases import left_out_json
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from werrimbi_odom.model.pose import Pose, wrap
 from werrimbi_odom.report.document import Document, Shown, Table
-from werrimbi_odom.report.numbers import counted, picked
+from werrimbi_odom.report.number_format import counted, picked
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure, spread_along_path
 from werrimbi_odom.report.reckoning import EndError, Reckoning
 

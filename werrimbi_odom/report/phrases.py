@@ -12,7 +12,7 @@ from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.numbers import from_start, picked, with_std
+from werrimbi_odom.report.number_format import from_start, picked, with_std
 
 _MOST = 5  # stretches that are reported one by one
 _TOLD = 3  # the same, for a suspect reference

@@ -11,7 +11,7 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from werrimbi_odom.model.encoder import EncoderTally
+from werrimbi_odom.model.encoder_online import EncoderTally
 from werrimbi_odom.ros.diagnostics import diagnostic
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN

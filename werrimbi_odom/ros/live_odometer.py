@@ -12,7 +12,7 @@ from builtin_interfaces.msg import Time as Stamp
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.driven_motion import DrivenStep
-from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally
+from werrimbi_odom.model.encoder_online import EncoderLimits, EncoderTally
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pieces_online import PieceTolerance

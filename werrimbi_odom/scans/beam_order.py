@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.scans.limits import LONGEST_SWEEP, ORDER_FEWEST, ORDER_MOST, ORDER_SURE
-from werrimbi_odom.scans.path import INTERVALS, USUAL, ScanMatcher, ScanPath
 from werrimbi_odom.scans.sweep import Sweep
+from werrimbi_odom.scans.two_pass_odometry import INTERVALS, USUAL, ScanMatcher, ScanPath
 
 Order = Literal["stated", "first to last", "last to first"]
 """Order in which the beams of a turn were measured."""

@@ -9,7 +9,7 @@ from collections import deque
 import numpy as np
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.elements import Elements, line_elements
+from werrimbi_odom.scans.line_features import Elements, line_elements
 
 KEYS = 24
 """Number of key scans: with 12 the poses drift a little more, with 40 no less."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.elements import Elements
+from werrimbi_odom.scans.line_features import Elements
 
 ROUNDS = 40
 PAIRED = 12

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .bag import EPOCH
 from .engine import PERIOD, AxlePose, TruePath
-from .hidden.peculiarity import Peculiarity
+from .hidden.hidden_effect import Peculiarity
 from .lidar import Lidar, Sweeps, scanned
 from .recording import Recording
 from .robot import TrueRobot

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .engine import PERIOD, AxlePose, DrivenRobot, TruePath
 from .field import FieldSensors, gyro_of
-from .hidden.peculiarity import Peculiarity
+from .hidden.hidden_effect import Peculiarity
 from .lidar import Room, sweeps_at
 from .recorder import counter_zeros, motor_speeds, prepared, stream
 from .recording import Recording

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .chassis import Chassis, chassis_of
 from .engine import PERIOD, AxlePose, Reshaper, Shifter, TruePath, drive
-from .hidden.peculiarity import Peculiarity
+from .hidden.hidden_effect import Peculiarity
 from .manoeuvre import Manoeuvre
 from .recording import Happened, Recording
 from .robot import TrueRobot

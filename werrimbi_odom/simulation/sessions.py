@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from .hidden.peculiarity import Peculiarity
+from .hidden.hidden_effect import Peculiarity
 from .manoeuvre import Manoeuvre, MoveLimits, moves
 from .manoeuvres import arcs, chain, figure_eight, free, out_and_back, pivots, spins, square
 from .manoeuvres import start_stop as hops

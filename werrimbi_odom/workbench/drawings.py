@@ -38,7 +38,7 @@ from werrimbi_odom.report.style import (
     plain,
     small,
 )
-from werrimbi_odom.workbench.undo import ModelVersion
+from werrimbi_odom.workbench.session import ModelVersion
 
 BUTTONS = ["select2d", "lasso2d", "autoScale2d", "toImage"]
 """Buttons of plotly's tool bar that are removed."""

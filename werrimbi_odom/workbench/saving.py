@@ -15,7 +15,7 @@ from werrimbi_odom.files.robot_file_rewrite import new_text, write_robot_file
 from werrimbi_odom.files.text_files import place_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.workbench.undo import Session
+from werrimbi_odom.workbench.session import Session
 
 NOISES = ("left_wheel_noise", "right_wheel_noise")
 

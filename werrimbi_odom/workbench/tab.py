@@ -22,12 +22,12 @@ from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import Verdict
-from werrimbi_odom.report.numbers import listed
+from werrimbi_odom.report.number_format import listed
 from werrimbi_odom.workbench.job import Add, CancelledError, Diagnose, Job, Task
-from werrimbi_odom.workbench.opened import Look, Opened
-from werrimbi_odom.workbench.parts import Part
+from werrimbi_odom.workbench.leg_selection import Part
+from werrimbi_odom.workbench.loaded_input import Look, Opened
 from werrimbi_odom.workbench.saving import Target, saved
-from werrimbi_odom.workbench.undo import Session, begun
+from werrimbi_odom.workbench.session import Session, begun
 from werrimbi_odom.workbench.worker import NOT_SENT, known_before, known_to_both
 
 VIEWS = ("compare", "diagnose", "add", "save")

@@ -24,7 +24,7 @@ from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.progress import Show
 from werrimbi_odom.workbench.job import Diagnose, Open, Task
-from werrimbi_odom.workbench.opened import Opened, opened
+from werrimbi_odom.workbench.loaded_input import Opened, opened
 
 
 def _read_only(values: dict[str, Any]) -> Mapping[str, Any]:

@@ -16,8 +16,8 @@ from werrimbi_odom.progress import Show
 from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.workbench.job import Add, Diagnose
-from werrimbi_odom.workbench.opened import Opened, split
-from werrimbi_odom.workbench.undo import Diagnosed, ModelVersion
+from werrimbi_odom.workbench.loaded_input import Opened, split
+from werrimbi_odom.workbench.session import Diagnosed, ModelVersion
 
 
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:

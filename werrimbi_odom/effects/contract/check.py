@@ -11,7 +11,7 @@ import numpy as np
 from werrimbi_odom.effects.contract.demands import corners, demand, told
 from werrimbi_odom.effects.contract.sample_drive import Rehearsal
 from werrimbi_odom.effects.contract.wheel_and_body_laws import LAWS
-from werrimbi_odom.effects.page import SECTIONS, page_of
+from werrimbi_odom.effects.effect_docstring import SECTIONS, page_of
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.wiring import Wiring

@@ -32,16 +32,20 @@ from werrimbi_odom.inference.adding.start_values import (
 )
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.worth import Question
-from werrimbi_odom.inference.calibration_sizes import base_name, robot_for_cutting
+from werrimbi_odom.inference.calibration_parametrisation import base_name, robot_for_cutting
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.diagnosis.calibration_selection import (
+    FreeSizes,
+    sizes_needed,
+    with_sizes,
+)
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
-from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.adding.start_values import (
     start_of_held,
     starts,
 )
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import Model, changed
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED

@@ -12,13 +12,13 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.calibration_sizes import (
+from werrimbi_odom.inference.calibration_parametrisation import (
     base_name,
     base_told,
     sizes_of,
     std_as_effect,
 )
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,
     FreeParameter,

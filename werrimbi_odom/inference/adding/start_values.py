@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -35,6 +34,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
     parameters_of_candidate,
     scores,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.rules import SHAPES_FITTED

@@ -11,12 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference.adding.start_values import FitDrives
-from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
+from werrimbi_odom.inference.calibration_parametrisation import with_sizes_in_multipliers
+from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes, choices
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
-from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
-from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, choices
 from werrimbi_odom.inference.distributions import upper_part
-from werrimbi_odom.inference.fitting.design import Costs, stacked
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
@@ -30,6 +29,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, map_variances, noise_estimates
 from werrimbi_odom.inference.fitting.precision import Precision
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs, stacked
 from werrimbi_odom.inference.rules import NOISE_TOLD
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot

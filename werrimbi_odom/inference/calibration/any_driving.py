@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, START_YAW
 from werrimbi_odom.inference.fitting.likelihood import relative_errors
@@ -25,6 +24,7 @@ from werrimbi_odom.inference.fitting.noise import (
 )
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.squares import CountedSquare, Squares
 from werrimbi_odom.inference.rules import LAP_TOLERANCE, LEG_TOLERANCE, TURN_TOLERANCE
-from werrimbi_odom.model.encoder import Counts, EncoderLimits
+from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
+from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 

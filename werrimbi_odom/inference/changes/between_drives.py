@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.changes.drives import DriveNumbers, information_of_drives
-from werrimbi_odom.inference.changes.numbers import (
+from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
     PARTS,
     groups_of,
@@ -32,9 +32,8 @@ from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns, pattern_of
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Design, Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, STEP, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import (
     Candidate,
@@ -43,6 +42,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
     scores,
     signatures,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE, WORTH_OF_A_CHANGE
 from werrimbi_odom.model.effect import Effect

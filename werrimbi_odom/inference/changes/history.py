@@ -25,7 +25,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.drives import DriveNumbers
-from werrimbi_odom.inference.changes.numbers import (
+from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
     groups_of,
     numbers_of,
@@ -34,7 +34,7 @@ from werrimbi_odom.inference.changes.numbers import (
 from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
 from werrimbi_odom.inference.changes.search import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
-from werrimbi_odom.inference.diagnosis.search import fit_calibration
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter

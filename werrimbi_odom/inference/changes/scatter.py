@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.changes.drives import DriveNumbers
-from werrimbi_odom.inference.changes.numbers import (
+from werrimbi_odom.inference.changes.parameter_groups import (
     NumberGroup,
 )
 from werrimbi_odom.inference.changes.search import ChangePoints

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.changes.drives import DriveNumbers
-from werrimbi_odom.inference.changes.numbers import NumberGroup
+from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.changes.shapes import (
     Kind,
     Rows,

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.gaps import LeftOut, touched
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot

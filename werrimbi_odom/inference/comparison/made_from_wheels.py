@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
-from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.rules import (
     CIRCLE_APART,
     CIRCLE_DELAYS,
@@ -31,7 +31,7 @@ from werrimbi_odom.inference.rules import (
     CIRCLE_WHEELS,
     CIRCLE_WHOLE,
 )
-from werrimbi_odom.model.encoder import Counts, EncoderLimits
+from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -17,8 +17,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.own_noise import OwnNoise, ReferenceNoise, noise_of
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
+from werrimbi_odom.inference.comparison.reference_noise_source import (
+    OwnNoise,
+    ReferenceNoise,
+    noise_of,
+)
 from werrimbi_odom.inference.comparison.residuals import (
     Measure,
     Residual,
@@ -28,7 +32,7 @@ from werrimbi_odom.inference.comparison.residuals import (
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.aligned_run import record_of
-from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, leg_ends, match_for_fit
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, divided

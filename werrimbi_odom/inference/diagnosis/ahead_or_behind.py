@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.start_headings import (

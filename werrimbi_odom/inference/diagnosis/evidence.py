@@ -38,10 +38,10 @@ from werrimbi_odom.inference.diagnosis.variables import (
 )
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.pose import Floats

@@ -23,9 +23,9 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import (
 )
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_runs
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes

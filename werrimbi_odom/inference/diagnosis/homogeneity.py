@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, summed_over_legs
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.step_jacobians import step_jacobians
 from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
@@ -29,10 +29,10 @@ from werrimbi_odom.inference.fitting.clusters import (
     parts_of_innovations,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import of_each_run, residual_innovations
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,

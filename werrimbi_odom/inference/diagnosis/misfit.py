@@ -15,12 +15,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
-from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.diagnosis.selection import Fitted, wald_statistic
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, wald_statistic
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.score_tests import (
@@ -30,6 +29,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
     residual_innovations,
     signatures,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
 from werrimbi_odom.model.effect import AppliedEffect

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.clusters import few_parts, parts_of_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated

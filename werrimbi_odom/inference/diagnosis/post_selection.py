@@ -16,10 +16,10 @@ from itertools import chain, combinations, product
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.sizes import FreeSizes, choices
-from werrimbi_odom.inference.fitting.design import Design
+from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes, choices
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
+from werrimbi_odom.inference.fitting.whitened_innovations import Design
 from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN
 from werrimbi_odom.model.pose import Floats

@@ -7,9 +7,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.inference.calibration_sizes import sizes_of
-from werrimbi_odom.inference.diagnosis.search import Instead, Round
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of
+from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from werrimbi_odom.inference.calibration_sizes import base_name
-from werrimbi_odom.inference.diagnosis.search import best_of_each
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.calibration_parametrisation import base_name
+from werrimbi_odom.inference.diagnosis.forward_selection import best_of_each
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model

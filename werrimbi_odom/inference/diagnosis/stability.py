@@ -14,10 +14,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.forward_selection import Round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import unexpected
+from werrimbi_odom.inference.fitting.whitened_innovations import unexpected
 from werrimbi_odom.inference.rules import HALF_PARTS, RIVAL
 from werrimbi_odom.model.pose import Floats
 

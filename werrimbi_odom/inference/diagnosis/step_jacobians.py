@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.reference_view import View

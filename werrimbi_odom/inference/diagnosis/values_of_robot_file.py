@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration_sizes import base_name
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.calibration_parametrisation import base_name
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SURE
 from werrimbi_odom.model.effect import AppliedEffect

@@ -12,16 +12,23 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
+from werrimbi_odom.inference.calibration_parametrisation import (
+    name_of_base,
+    sizes_of,
+    std_as_effect,
+)
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive, turns_alike
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import (
     own_scale_instead,
     possible_twins,
@@ -29,9 +36,6 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     rivals_of_others,
     torn_by_halves,
 )
-from werrimbi_odom.inference.diagnosis.search import Instead, Round
-from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.diagnosis.wandering_reference import Wander
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.events.events import Events

@@ -17,10 +17,9 @@ from itertools import product
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, fall_of_cost
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import (
     WALK,
@@ -28,6 +27,7 @@ from werrimbi_odom.inference.fitting.noise import (
     prior_cost,
     with_known_noise,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.rules import (
     NOISE_NUMBERS,
     TYPICAL_MATCH,

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.diagnosis.holdout import Judge
 from werrimbi_odom.inference.events.events import Events, EventSide, events_among, without
 from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.rules import EVENT_ROUNDS
 
 Found = TypeVar("Found")

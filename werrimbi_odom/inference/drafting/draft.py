@@ -20,7 +20,7 @@ from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
 from werrimbi_odom.inference.drafting.formula import factor_of, in_a_line
 from werrimbi_odom.inference.drafting.law_forms import Form, Seen, forms_of, spot_form

@@ -15,7 +15,7 @@ from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.lookup import load_file
 from werrimbi_odom.inference.adding.start_values import FitDrives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.law_forms import Form, Seen
 from werrimbi_odom.inference.drafting.source import name_of, source_of

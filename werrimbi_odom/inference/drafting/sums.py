@@ -17,10 +17,10 @@ from werrimbi_odom.inference.diagnosis.evidence import BATCH, summed_over_legs
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount, step_jacobians
 from werrimbi_odom.inference.drafting.terms import Term
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import DETERMINED, SILENT
 from werrimbi_odom.model.pose import Floats
 

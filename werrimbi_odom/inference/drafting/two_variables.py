@@ -42,9 +42,9 @@ from werrimbi_odom.inference.drafting.sums import Sums, sums_of
 from werrimbi_odom.inference.drafting.terms import is_of_two, terms_of
 from werrimbi_odom.inference.drafting.two_variable_law import LawOfTwo
 from werrimbi_odom.inference.drafting.variable_source import signals_of
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.rules import (
     MOST_FITTED,
     RIVAL,

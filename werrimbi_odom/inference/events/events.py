@@ -15,8 +15,8 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.events.common_cause import Alike, alike
 from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
 from werrimbi_odom.inference.rules import (
     EDGE,

@@ -10,9 +10,9 @@ import numpy as np
 
 from werrimbi_odom.inference.distributions import chi2_median
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Costs, Point, unexpected
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, unexpected
 from werrimbi_odom.inference.rules import NOISE_NUMBERS, NOISE_TRIMMED
 
 _ROUNDS = 4

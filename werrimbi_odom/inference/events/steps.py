@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.distributions import chi2_median, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.filtering import Shocks
 from werrimbi_odom.inference.fitting.likelihood import Innovations, innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.rules import EVENT_SLOW, MOST_EVENTS, SURE_OF_EVENT
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats

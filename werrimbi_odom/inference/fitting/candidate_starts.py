@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import STEP, Model
 from werrimbi_odom.inference.fitting.prediction import predict_all, turns_over
 from werrimbi_odom.inference.fitting.score_tests import Score
@@ -18,6 +17,7 @@ from werrimbi_odom.inference.fitting.start_headings import (
     starts_unmeasured,
     turned_to_the_first_legs,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import wrap_all
 

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
-from werrimbi_odom.inference.fitting.design import Costs, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     START_YAW,
@@ -32,6 +31,7 @@ from werrimbi_odom.inference.fitting.identifiable import Directions, determined,
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, stacked, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.rules import (
     JUMP_OF_A_LEG,

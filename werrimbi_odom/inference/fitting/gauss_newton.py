@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter, Model
 from werrimbi_odom.inference.fitting.identifiable import Directions
 from werrimbi_odom.inference.fitting.prediction import predict_all, predicted_legs, turns_over
+from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.model.pose import Floats
 

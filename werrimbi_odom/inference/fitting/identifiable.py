@@ -18,13 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.design import Design
 from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,
     FreeParameter,
     Model,
     changed,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Design
 from werrimbi_odom.inference.linear import admitted, covariance_of, nuisance
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

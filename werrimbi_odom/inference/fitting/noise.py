@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.distributions import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
-from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.linear import inverse_root
 from werrimbi_odom.inference.rules import (
     GYRO_WALK_SPREAD,

@@ -12,16 +12,16 @@ import numpy as np
 
 from werrimbi_odom.inference.distributions import NORMAL_95, student_quantile
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import (
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
+from werrimbi_odom.inference.fitting.whitened_innovations import (
     Design,
     Point,
     jacobian_of,
     unexpected,
     with_columns_per_run,
 )
-from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
-from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
 from werrimbi_odom.inference.linear import covariance_of
 from werrimbi_odom.inference.rules import LEAST_KNOWN
 from werrimbi_odom.model.pose import Floats

@@ -16,12 +16,12 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, conc
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath, noise_of_legs
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
-from werrimbi_odom.model.course import followed
 from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.recorded_propagation import followed
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 

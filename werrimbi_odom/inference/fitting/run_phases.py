@@ -14,7 +14,6 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -25,6 +24,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     parameters_to_fit,
 )
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate, Score, scores
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.model.effect import AppliedEffect
 
 

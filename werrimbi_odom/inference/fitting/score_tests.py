@@ -21,7 +21,6 @@ import numpy as np
 from werrimbi_odom.inference.fitting.angle_score import best_angles
 from werrimbi_odom.inference.fitting.candidate import Candidate as Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import (
     FreeParameter,
     Model,
@@ -33,6 +32,7 @@ from werrimbi_odom.inference.fitting.prediction import (
     predict_all,
     predicted_legs,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, stacked, unexpected
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

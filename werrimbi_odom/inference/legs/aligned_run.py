@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Run
-from werrimbi_odom.inference.legs.clock import clock_offset
-from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.clock_offset import clock_offset
+from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -25,7 +25,7 @@ from werrimbi_odom.inference.rules import (
     TURN_WORTH_SAYING,
     WAY_WORTH_SAYING,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

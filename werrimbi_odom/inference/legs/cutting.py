@@ -25,7 +25,7 @@ from werrimbi_odom.inference.rules import (
     QUARTER_TURN,
     RATE_OF_FIT,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

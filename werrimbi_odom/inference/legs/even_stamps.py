@@ -28,7 +28,7 @@ from werrimbi_odom.inference.rules import (
     EVEN_TOGETHER,
     EVEN_WINDOW,
 )
-from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
 

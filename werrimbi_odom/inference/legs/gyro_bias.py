@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.files.run import Reference
-from werrimbi_odom.inference.legs.spans import TimeSpan
+from werrimbi_odom.inference.legs.motion_states import TimeSpan
 from werrimbi_odom.inference.rules import BIAS_EDGE, BIAS_REST, BIAS_SURE
 from werrimbi_odom.model.pose import wrap_all
 

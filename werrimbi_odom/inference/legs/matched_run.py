@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Reference
-from werrimbi_odom.inference.legs.counters import Counters, nodes_at
+from werrimbi_odom.inference.legs.count_interpolation import Counters, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, touched
 from werrimbi_odom.inference.rules import (
     EDGE,

@@ -18,12 +18,12 @@ from scipy.ndimage import median_filter
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
-from werrimbi_odom.inference.legs.clock import clock_offset
-from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.clock_offset import clock_offset
+from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
-from werrimbi_odom.inference.legs.spans import LOST, driven
+from werrimbi_odom.inference.legs.motion_states import LOST, driven
 from werrimbi_odom.inference.legs.stuck_reference import as_stuck
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
@@ -46,7 +46,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_WAY,
     NO_DRIVING_WINDOW,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

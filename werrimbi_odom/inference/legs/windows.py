@@ -12,7 +12,7 @@ from scipy.ndimage import maximum_filter1d, median_filter
 
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
-from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.rules import (
     JUMP_NEIGHBOURS,
     JUMP_SCATTER,

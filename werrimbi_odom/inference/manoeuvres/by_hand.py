@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 
-from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.model.effect import Effect, Twin, twin_of
 

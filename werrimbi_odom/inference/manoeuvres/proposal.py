@@ -18,9 +18,9 @@ import numpy as np
 from scipy.special import ndtr
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.calibration_sizes import sizes_of
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import NUISANCES
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import DrivingLimits, Ideal, ideal_run, rates_of
 from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment

@@ -13,7 +13,6 @@ from werrimbi_odom.inference.rules.changes import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.comparison import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.events import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.gaps import *  # noqa: F401, F403
-from werrimbi_odom.inference.rules.how_sure import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.jumps import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.no_driving import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.priors import *  # noqa: F401, F403
@@ -22,3 +21,4 @@ from werrimbi_odom.inference.rules.reference_checks import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.reporting import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.search import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.set_up import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.significance import *  # noqa: F401, F403

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.rules import (
     SURE_SIZE,
     WIDE,
 )
-from werrimbi_odom.inference.set_up.delay import lag_of
+from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Setting,

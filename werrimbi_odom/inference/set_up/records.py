@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.calibration_sizes import sizes_of
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.legs.aligned_run import usable_rows
-from werrimbi_odom.inference.legs.counters import between_messages, summed
+from werrimbi_odom.inference.legs.count_interpolation import between_messages, summed
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
@@ -29,10 +29,10 @@ from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import after_stage, view_of, wiring_of
 from werrimbi_odom.model.effects_over_run import PLACE, watched
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats, wrap_all
-from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 Complexes = NDArray[np.complex128]

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from werrimbi_odom.effects import LIBRARY, find
-from werrimbi_odom.inference.calibration_sizes import Sizes, sizes_of
+from werrimbi_odom.inference.calibration_parametrisation import Sizes, sizes_of
 from werrimbi_odom.inference.set_up.explanation import Setting
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding

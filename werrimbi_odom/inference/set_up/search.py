@@ -18,7 +18,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.calibration_sizes import skids_in_turns
+from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     FEWEST_CUTS,
@@ -27,7 +27,7 @@ from werrimbi_odom.inference.rules import (
     MOST_CREEP,
     SURE_SIZE,
 )
-from werrimbi_odom.inference.set_up.delay import lag_of
+from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.factors import LENGTHS, counts_words, unit_of_positions
 from werrimbi_odom.inference.set_up.few_poses import is_sparse, search_sparse

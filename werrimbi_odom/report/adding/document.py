@@ -16,7 +16,7 @@ from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.diagnosis.document import effect_card
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.document import Document, Shown
-from werrimbi_odom.report.numbers import listed
+from werrimbi_odom.report.number_format import listed
 from werrimbi_odom.report.style import Figure
 
 

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.drafting.formula import symbols_of
 from werrimbi_odom.report.adding.document import figures_of
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
-from werrimbi_odom.report.numbers import error_words, picked
+from werrimbi_odom.report.number_format import error_words, picked
 from werrimbi_odom.report.page import as_html
 
 

@@ -14,7 +14,7 @@ from werrimbi_odom.report.comparison.words import headline
 from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_words
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_json, events_words
-from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
+from werrimbi_odom.report.number_format import listed, picked, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
 
 

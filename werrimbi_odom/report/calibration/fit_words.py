@@ -10,7 +10,7 @@ from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.numbers import listed, picked, scaled_with_std
+from werrimbi_odom.report.number_format import listed, picked, scaled_with_std
 
 _MOST = 3  # dependences that are reported
 _UNITS = {

@@ -12,7 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, NoiseInterval, pivot_scatter
 from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
 from werrimbi_odom.report.document import Part, Table, paragraphs
-from werrimbi_odom.report.numbers import picked, scaled_with_std
+from werrimbi_odom.report.number_format import picked, scaled_with_std
 
 PIVOT_TURNS = 10.0
 

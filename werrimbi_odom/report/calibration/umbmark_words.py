@@ -20,7 +20,7 @@ from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.numbers import picked, scaled_with_std
+from werrimbi_odom.report.number_format import picked, scaled_with_std
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.comparison.dependence import ByVariable, Cell
 from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import verdict_of
-from werrimbi_odom.report.numbers import picked
+from werrimbi_odom.report.number_format import picked
 from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 

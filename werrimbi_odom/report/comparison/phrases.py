@@ -11,7 +11,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import Verdict
-from werrimbi_odom.report.numbers import from_start, listed, two_digits
+from werrimbi_odom.report.number_format import from_start, listed, two_digits
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 

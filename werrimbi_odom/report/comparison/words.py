@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.calibration_sizes import skids_in_turns
+from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
@@ -14,7 +14,7 @@ from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.numbers import counted, listed, two_digits
+from werrimbi_odom.report.number_format import counted, listed, two_digits
 from werrimbi_odom.report.phrases import left_out_words, remark_words
 
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import html
 
-from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response_curve import before_after

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.numbers import two_digits
+from werrimbi_odom.report.number_format import two_digits
 
 SLOW, FAST = 0.1, 0.5
 """Speeds of a manual check [m/s], which any robot reaches."""

@@ -17,7 +17,7 @@ from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report import style
-from werrimbi_odom.report.numbers import error_words, p_words
+from werrimbi_odom.report.number_format import error_words, p_words
 from werrimbi_odom.report.style import Figure
 
 _MOST_BARS = 10

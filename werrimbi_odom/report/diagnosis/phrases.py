@@ -7,8 +7,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
     Value,
@@ -23,7 +23,7 @@ from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import LONGER_LEG, ORDINARY, SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
+from werrimbi_odom.report.number_format import chance_words, error_words, listed, quantity
 from werrimbi_odom.report.phrases import sizes_words
 
 

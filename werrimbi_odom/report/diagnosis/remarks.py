@@ -17,7 +17,13 @@ from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
 from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
-from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity, two_digits
+from werrimbi_odom.report.number_format import (
+    chance_words,
+    error_words,
+    listed,
+    quantity,
+    two_digits,
+)
 
 
 def law(told: Told) -> list[str]:

@@ -21,7 +21,7 @@ from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.events import alike_json, events_json
-from werrimbi_odom.report.numbers import error_words, in_unit, p_words, picked
+from werrimbi_odom.report.number_format import error_words, in_unit, p_words, picked
 from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 _RANKED = 8

@@ -48,7 +48,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.numbers import chance_words, error_words, listed
+from werrimbi_odom.report.number_format import chance_words, error_words, listed
 from werrimbi_odom.report.phrases import jumps_words, left_out_words, remark_words
 
 

@@ -7,8 +7,8 @@ with units and realistic strengths, and `hiding` draws from them; each other fil
 """
 
 from .catalogue import CATALOGUE, Entry
+from .hidden_effect import Peculiarity
 from .hiding import Hidden, StrengthError, UnknownEffectError, find, hide, wished
-from .peculiarity import Peculiarity
 
 __all__ = [
     "CATALOGUE",

@@ -13,7 +13,7 @@ from ..chassis import Chassis
 from ..engine import Engine, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 from .tyres import payloads, weighed, with_channel
 from .wheels import Side
 

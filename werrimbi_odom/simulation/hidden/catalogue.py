@@ -22,9 +22,9 @@ from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
 from .creep import CastorKick, CoulombSlip, LateralSlip, LongitudinalSlip, TurnDependentTrack
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
+from .hidden_effect import Peculiarity
 from .knocks import Knock, ReferenceJump
 from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
-from .peculiarity import Peculiarity
 from .skid import skid_steer
 from .tyres import (
     LoadTransfer,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..recording import Recording
 from ..robot import TrueRobot
 from ..sensors import count
-from .peculiarity import Counted, Peculiarity
+from .hidden_effect import Counted, Peculiarity
 from .wheels import Side
 
 Floats = NDArray[np.float64]

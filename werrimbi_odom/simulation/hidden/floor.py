@@ -11,7 +11,7 @@ import numpy as np
 
 from ..engine import Shift, Shifter, Stride
 from ..robot import TrueRobot
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..robot import TrueRobot
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 PLAUSIBLE = 1.15
 """Largest plausible factor: beyond it, the error is in the robot file and not in the robot."""

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 import numpy as np
 
 from .catalogue import CATALOGUE, Entry, Rng
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 
 class UnknownEffectError(ValueError):

@@ -16,7 +16,7 @@ import numpy as np
 from ..engine import PERIOD, Shift, Shifter, Stride
 from ..recording import Happened, Recording
 from ..robot import TrueRobot
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 Kind = Literal["push", "heading_kick", "bump", "wheel_slip"]
 

@@ -13,7 +13,7 @@ from ..engine import AxlePose
 from ..recording import Recording
 from ..robot import TrueRobot
 from ..sensors import ReferenceSensor, wrap
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..engine import Shift, Shifter, Stride
 from ..robot import TrueRobot
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 LENGTH = 0.35
 """Distance from the rear to the front wheels [m]."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..chassis import Chassis, WheelPlan
 from ..engine import Engine, Reshaper, Shift, Stride
-from .peculiarity import Peculiarity
+from .hidden_effect import Peculiarity
 
 Side = Literal["left", "right"]
 

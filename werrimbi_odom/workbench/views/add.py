@@ -7,11 +7,11 @@ from __future__ import annotations
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding.words import remark_told, value_told, words_of
 from werrimbi_odom.report.document import Table
-from werrimbi_odom.report.numbers import listed
+from werrimbi_odom.report.number_format import listed
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
+from werrimbi_odom.workbench.session import ModelVersion
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
-from werrimbi_odom.workbench.undo import ModelVersion
 
 NOTHING = (
     "Nothing is added yet. Diagnose, and press Add beside an effect: it is fitted together with "

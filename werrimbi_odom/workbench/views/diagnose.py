@@ -14,11 +14,11 @@ from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
-from werrimbi_odom.report.numbers import chance_words, error_words, listed
+from werrimbi_odom.report.number_format import chance_words, error_words, listed
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
-from werrimbi_odom.workbench.parts import CellPart
+from werrimbi_odom.workbench.leg_selection import CellPart
+from werrimbi_odom.workbench.session import Diagnosed
 from werrimbi_odom.workbench.tab import Tab, millimetres
-from werrimbi_odom.workbench.undo import Diagnosed
 from werrimbi_odom.workbench.views.side_panels import floor, why
 
 SHORT = 5

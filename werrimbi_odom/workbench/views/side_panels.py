@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from nicegui import ui
 
-from werrimbi_odom.effects.page import MEANING, numbers, page_of
+from werrimbi_odom.effects.effect_docstring import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.comparison.phrases import leg_when
@@ -15,7 +15,7 @@ from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
-from werrimbi_odom.workbench.parts import figures_of, worst
+from werrimbi_odom.workbench.leg_selection import figures_of, worst
 from werrimbi_odom.workbench.tab import Tab, millimetres
 
 

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import pytest
 
-from werrimbi_odom.workbench.undo import Diagnosed, ModelVersion, Session, begun
+from werrimbi_odom.workbench.session import Diagnosed, ModelVersion, Session, begun
 
 
 def look(error: float) -> Any:

@@ -18,14 +18,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration_sizes import (
+from werrimbi_odom.inference.calibration_parametrisation import (
     calibration_deviation,
     sizes_of,
     std_as_effect,
 )
 from werrimbi_odom.inference.fitting.clusters import effective_freedom, widening
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.fit import fit_model
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -42,6 +41,7 @@ from werrimbi_odom.inference.fitting.identifiable import (
     every_direction,
 )
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,

@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.candidate_starts import looked_for, started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -29,6 +28,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
     parameters_of_candidate,
     scores,
 )
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.rules import (
     INSTEAD_FITTED,

@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.design import Costs, Design, stacked
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
@@ -26,6 +25,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.gauss_newton import moved
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Design, stacked
 from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, RIVAL, STILL
 from werrimbi_odom.model.pose import Floats

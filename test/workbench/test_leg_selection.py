@@ -29,7 +29,7 @@ from werrimbi_odom.workbench.drawings import (
     measured_drawing,
     shown,
 )
-from werrimbi_odom.workbench.parts import (
+from werrimbi_odom.workbench.leg_selection import (
     CellPart,
     bin_parts,
     channel_error,

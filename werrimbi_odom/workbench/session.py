@@ -14,7 +14,7 @@ from pathlib import Path
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.workbench.opened import Look
+from werrimbi_odom.workbench.loaded_input import Look
 
 GONE = -1
 """Index of a saved step that was undone and replaced: the file still belongs to the tab."""

@@ -17,9 +17,9 @@ from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
 from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 ROUNDING = 1e-3

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.counter_wraps import differences
-from werrimbi_odom.model.encoder import (
+from werrimbi_odom.model.encoder_online import (
     Counts,
     Encoder,
     EncoderLimits,

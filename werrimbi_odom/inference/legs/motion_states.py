@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import NoDriving
-from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.windows import standing_below
 from werrimbi_odom.inference.rules import REST_LASTS
 from werrimbi_odom.model.effect import wiring_of
