@@ -20,6 +20,8 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 
+ACCELERATIONS = frozenset({"left_acceleration", "right_acceleration"})
+
 
 class Support(NamedTuple):
     """Inputs and outputs of an effect's law."""
@@ -55,19 +57,19 @@ def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tupl
 
     Effects that read a channel are kept: their other inputs are not known here.
     """
-    effects = able(effects, runs)
-    if not runs.own_axes:
-        return effects
-    drive = runs.drive(robot)
-    return tuple(each for each in effects if each.lacks(()) or not _on_the_floor(each, drive))
+    effects = able(effects, runs, robot)
+    return _without(effects, ON_THE_FLOOR, runs.drive(robot)) if runs.own_axes else effects
 
 
-def able(effects: Sequence[Effect], runs: Concatenated) -> tuple[Effect, ...]:
-    """Effects that such a reference can have: a scan tells place and heading of one instant.
+def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:
+    """Effects that such counters can show and such a reference can have.
 
-    No gyro has a part in it, and its heading is not later than its place, unless a gyro's headings
-    were put in.
+    The acceleration by a coarse counter is that of its steps. A scan tells place and heading of one
+    instant: no gyro has a part in it, and its heading is not later than its place, unless a gyro's
+    headings were put in.
     """
+    if any(run.counters.are_coarse for run in runs.runs):
+        effects = _without(effects, ACCELERATIONS, runs.drive(robot))
     if not runs.own_axes or runs.has_gyro_headings:
         return tuple(effects)
     return tuple(each for each in effects if each.stage != "reference" or not _of_a_gyro(each))
@@ -80,9 +82,16 @@ def _of_a_gyro(effect: Effect) -> bool:
     return bool(view.heading_delay != 0.0 or view.wander != 0.0)
 
 
-def _on_the_floor(effect: Effect, drive: Drive[Floats]) -> bool:
+def _without(
+    effects: Sequence[Effect], inputs: frozenset[str], drive: Drive[Floats]
+) -> tuple[Effect, ...]:
+    """Effects that read none of some inputs; those that read a channel are kept."""
+    return tuple(each for each in effects if each.lacks(()) or not _reads(each, inputs, drive))
+
+
+def _reads(effect: Effect, inputs: frozenset[str], drive: Drive[Floats]) -> bool:
     shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
-    return not ON_THE_FLOOR.isdisjoint(support_of(Candidate(effect, shape), drive).inputs)
+    return not inputs.isdisjoint(support_of(Candidate(effect, shape), drive).inputs)
 
 
 _OF_WHEELS = {

@@ -14,7 +14,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
-from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER
+from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER, FEW_COUNTS
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -69,9 +69,19 @@ class Counters:
         """Index of the first node at or after some instants."""
         return np.searchsorted(self.time[self.nodes], time)
 
+    @property
+    def are_coarse(self) -> bool:
+        """Whether a counter brings few counts at a time to the nodes."""
+        return any(_steps_seen(side[self.nodes]) for side in (self.left, self.right))
+
     def way(self, robot: Robot, leg: float, turn: float) -> Floats:
-        """Cumulative travel at each message, in legs: path / `leg` [m] + turning / `turn`."""
-        counts = wiring_of(robot.effects).wheels(np.diff(self.left), np.diff(self.right))
+        """Cumulative travel at each message, in legs: path / `leg` [m] + turning / `turn`.
+
+        Legs that ended where a coarse counter steps would all end just behind a count, and the
+        quantisation would be no noise but an offset.
+        """
+        sides = (_without_steps(self.time, side) for side in (self.left, self.right))
+        counts = wiring_of(robot.effects).wheels(*map(np.diff, sides))
         left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
         path = np.abs(0.5 * (left + right)) / leg
         turned = np.abs(right - left) / robot.track / turn
@@ -243,6 +253,20 @@ def _at_edge(near: Floats, slope: Floats, other: Floats, other_slope: Floats) ->
     found = np.where(np.sign(found) != np.sign(slope), 0.0, found)
     steep = (np.sign(slope) != np.sign(other_slope)) & (np.abs(found) > 3.0 * np.abs(slope))
     return np.where(steep, 3.0 * slope, found)
+
+
+def _steps_seen(counts: Floats) -> bool:
+    change = np.abs(np.diff(counts))
+    return bool(change.any()) and float(np.median(change[change > 0.0])) <= FEW_COUNTS
+
+
+def _without_steps(time: Floats, counts: Floats) -> Floats:
+    """Counts of a coarse counter between the middles of its steps; others as they are."""
+    if not _steps_seen(counts):
+        return counts
+    stepped = np.flatnonzero(np.diff(counts))
+    middle, level = (0.5 * (each[stepped] + each[stepped + 1]) for each in (time, counts))
+    return np.asarray(np.interp(time, middle, level, left=counts[0], right=counts[-1]))
 
 
 def summed(steps: Floats) -> Floats:

@@ -84,7 +84,7 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
     measured = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     candidates = [
         _typical(effect)
-        for effect in able(effects, diagnosis.runs)
+        for effect in able(effects, diagnosis.runs, robot)
         if not effect.is_mistake
         and effect.name not in OF_THE_MEASUREMENT
         and effect.name not in held

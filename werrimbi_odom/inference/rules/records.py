@@ -154,3 +154,8 @@ two than to one, and more than noise of some millimetres and a start make of one
 EVEN_MOST = 0.4
 """Largest correction of scan stamps (rms), as a share of a turn of the lidar. A delay that is
 uniform over a turn has 0.29; if scans are missing by the dozen, without a report, it is 0.45."""
+
+FEW_COUNTS = 3.0
+"""Counts at once, as a rule, up to which a counter is coarse: its steps show in what is worked out
+from message to message. Chosen: 20 to 60 counts in a turn, one or two at a time, made a late
+clock into backlash where legs were cut at the counts; 100 counts, three at a time, did not."""

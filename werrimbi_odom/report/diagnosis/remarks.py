@@ -156,6 +156,18 @@ def not_shown(told: Told) -> list[str]:
     return lines
 
 
+def coarse_counters(diagnosis: Diagnosis) -> list[str]:
+    """Of counters whose steps show from message to message, what is not asked."""
+    if not any(run.counters.are_coarse for run in diagnosis.runs.runs):
+        return []
+    count = max(diagnosis.robot.left_tick, diagnosis.robot.right_tick)
+    return [
+        f"A count of a wheel is {error_words(count, 'm')}, and a message brings a few at "
+        "most: how hard the robot starts cannot be told from that, and effects of the acceleration "
+        "(coulomb_slip) are not looked for."
+    ]
+
+
 def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
     """Size of both wheels that is equivalent to a wheel base found from headings alone."""
     if not diagnosis.runs.headings_alone or "track_width" not in diagnosis.found:

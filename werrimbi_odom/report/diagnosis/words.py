@@ -34,6 +34,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
 from werrimbi_odom.report.diagnosis.remarks import (
     at_bounds_told,
     by_headings_alone,
+    coarse_counters,
     drowned,
     either_side,
     instead_of_held,
@@ -74,7 +75,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
-    left_out += without_events(told)
+    left_out += without_events(told) + coarse_counters(diagnosis)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out
