@@ -243,7 +243,7 @@ def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
     of_compare = " ".join(capsys.readouterr().out.split())
     added, compared = (json.loads(path.read_text()) for path in json_of_both)
     headline = of_compare.partition(" - ")[0]
-    assert "its errors are larger than it promises" in headline
+    assert "the errors are larger than the model promises" in headline
     assert added["explains"] is compared["verdict"]["good"] is False
     assert added["covariance"] == compared["verdict"]["covariance"] == "too small"
     assert "What remains is noise" not in said
