@@ -121,6 +121,11 @@ KINDS = {
         drives(5),
         replace(USUAL, left_ticks_per_revolution=60.0, right_ticks_per_revolution=60.0),
     ),
+    "coarsest": Kind(
+        "20 counts a turn (16 mm)",
+        drives(5),
+        replace(USUAL, left_ticks_per_revolution=20.0, right_ticks_per_revolution=20.0),
+    ),
     "tiny": Kind(
         "12 cm wide, 0.8 kg, 0.1 m/s",
         wandering(4, 60.0, 0.1, 1.5)
