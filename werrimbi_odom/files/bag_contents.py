@@ -212,9 +212,8 @@ def _frames_on_the_robot(edges: Sequence[Edge], references: Sequence[Measured]) 
     while more := {edge.child for edge in edges if edge.parent in found} - found:
         found |= more
     above = {"map", "world", "earth"}  # an IMU may be stamped so, and its plugin's default is
-    while more := {edge.parent for edge in edges if is_base(edge.child) or edge.child in above}:
-        if more <= above:
-            break
+    above |= {edge.parent for edge in edges if is_base(edge.child)}
+    while more := {edge.parent for edge in edges if edge.child in above} - above:
         above |= more
     return {
         name for name in found if is_base(name) or not (name in above or is_odometry_frame(name))

@@ -139,13 +139,16 @@ def search_round(
     found = scores(runs, point, turned, looked_at)
     ordered = best_of_each(found)
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
+
+    def fitted_from(start: Point, score: Score) -> Fitted:
+        numbers = (*before.numbers, *parameters_of_candidate(score.candidate))
+        return fitted(runs, start, (*before.names, score.candidate.name), numbers, given)
+
     tried = []
     chosen = worth_fitting(ordered)
     for score in ordered:
         if score not in chosen and (start := looked_for(runs, point, score)) is not None:
-            names = (*before.names, score.candidate.name)
-            numbers = (*before.numbers, *parameters_of_candidate(score.candidate))
-            fit = fitted(runs, start, names, numbers, given)
+            fit = fitted_from(start, score)
             tried += [fit] if fit.told else []
     for score in chosen:
         variants = [
@@ -160,11 +163,7 @@ def search_round(
             options.append((point, max(variants, key=lambda other: other.gain)))
         if score.candidate.name in instead:
             options.append((_as_given(point, given), instead[score.candidate.name]))
-        names = (*before.names, score.candidate.name)
-        fits = []
-        for begin, option in options:
-            numbers = (*before.numbers, *parameters_of_candidate(option.candidate))
-            fits.append(fitted(runs, started_with(runs, begin, option), names, numbers, given))
+        fits = [fitted_from(started_with(runs, begin, option), option) for begin, option in options]
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)

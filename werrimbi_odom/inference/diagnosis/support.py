@@ -68,7 +68,7 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
     instant: no gyro has a part in it, and its heading is not later than its place, unless a gyro's
     headings were put in.
     """
-    if any(run.counters.are_coarse for run in runs.runs):
+    if runs.has_coarse_counters:
         effects = _without(effects, ACCELERATIONS, runs.drive(robot))
     if not runs.own_axes or runs.has_gyro_headings:
         return tuple(effects)

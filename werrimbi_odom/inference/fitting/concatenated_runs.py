@@ -109,6 +109,11 @@ class Concatenated:
         return any(run.measured.gyro is not None for run in self.runs)
 
     @property
+    def has_coarse_counters(self) -> bool:
+        """Whether the steps of a counter show from node to node."""
+        return any(run.counters.are_coarse for run in self.runs)
+
+    @property
     def own_axes(self) -> bool:
         """Whether references start in axes of their own, so that runs share no direction."""
         return any(run.measured.own_axes for run in self.runs)

@@ -158,7 +158,7 @@ def not_shown(told: Told) -> list[str]:
 
 def coarse_counters(diagnosis: Diagnosis) -> list[str]:
     """Of counters whose steps show from message to message, what is not asked."""
-    if not any(run.counters.are_coarse for run in diagnosis.runs.runs):
+    if not diagnosis.runs.has_coarse_counters:
         return []
     count = max(diagnosis.robot.left_tick, diagnosis.robot.right_tick)
     return [
