@@ -20,6 +20,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
+from werrimbi_odom.inference.set_up.records import record_of
 
 LATE = 1.0
 LATE_ROBOT = replace(ROBOT, effects=(find("reference_delay").using(delay=LATE),))
@@ -27,7 +29,9 @@ LATE_ROBOT = replace(ROBOT, effects=(find("reference_delay").using(delay=LATE),)
 
 def later(run: Run, delay: float) -> Run:
     assert run.reference is not None
-    return replace(run, reference=replace(run.reference, time=run.reference.time + delay))
+    gone = tuple((begin + delay, end + delay) for begin, end in run.taken_out)
+    seen = replace(run.reference, time=run.reference.time + delay)
+    return replace(run, reference=seen, taken_out=gone)
 
 
 def test_a_late_gyros_bias_is_told_where_the_robot_stood() -> None:
@@ -43,11 +47,7 @@ def test_a_late_gyros_bias_is_told_where_the_robot_stood() -> None:
 def test_the_robot_files_delay_moves_no_leg() -> None:
     run = short_drive()
     run = replace(run, happened=((10.0, 10.2),), taken_out=((12.0, 12.5),))
-    moved = tuple(
-        tuple((begin + LATE, end + LATE) for begin, end in parts)
-        for parts in (run.happened, run.taken_out)
-    )
-    late = replace(later(run, LATE), happened=moved[0], taken_out=moved[1])
+    late = replace(later(run, LATE), happened=((10.0 + LATE, 10.2 + LATE),))
     (plain,) = match_for_fit([run], ROBOT, 0.5)
     (other,) = match_for_fit([late], LATE_ROBOT, 0.5)
     assert other.delay == LATE
@@ -91,3 +91,24 @@ def wavy(seed: int, curves: int = 40) -> Run:
     """Curves of one and a half seconds each, some sharper than others."""
     rates = np.random.default_rng(seed).normal(0.0, 0.6, curves).repeat(30)
     return by_gyro(np.full(rates.size, 0.3), rates, 1.0, 0.0, seed)
+
+
+@pytest.mark.parametrize("delay", [LATE, -2.0])
+def test_where_nothing_is_measured_no_motion_is_compared(delay: float) -> None:
+    """Headings drawn straight across what was put aside were a third of what no lag explains.
+
+    So a lag of 0.6 s was told that was not there, and what agrees was left out as carried.
+    """
+    (run,) = kept([later(wavy(1), delay)])
+    assert run.taken_out
+    lag, gain = _lag_in(run)
+    assert lag == pytest.approx(delay, abs=0.02)
+    assert gain > 30.0
+    silent = replace(run, taken_out=())
+    assert _lag_in(silent) == pytest.approx((lag, gain))
+
+
+def _lag_in(run: Run) -> tuple[float, float]:
+    record = record_of(run, ROBOT, None)
+    assert record is not None
+    return lag_of([record])

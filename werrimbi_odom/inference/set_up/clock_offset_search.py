@@ -29,6 +29,7 @@ from werrimbi_odom.inference.rules import (
     DELAY_UNEXPLAINED,
     DELAY_WINDOW,
     FEWEST_CUTS,
+    GAP_INTERVALS,
 )
 from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -58,12 +59,13 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
         left = _over(np.interp(grid, record.time, record.left))
         right = _over(np.interp(grid, record.time, record.right))
         products = np.stack([left**2, left * right, right**2])
+        unseen = [*record.not_driven, *record.taken_out, *_silences(record.seen)]
         for total, wheels, measured in (
             (sums[0], np.stack([left, right]), _turns(record, grid)),
             (sums[1], products, _squared_steps(record, grid)),
         ):
             if measured is not None:
-                measured[_in_any(touched(grid, record.not_driven))] = np.nan
+                measured[_in_any(touched(grid, unseen))] = np.nan
                 total.add(wheels, measured)
     used = [total for total in sums if total.rows > DELAY_ROWS]
     if not used:
@@ -85,14 +87,19 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
 
 
 class _Sums:
-    """Cross-correlations accumulated over all runs, at every lag."""
+    """Normal equations of the regression at every lag, accumulated over all runs.
+
+    At each lag exactly the windows count that were measured and have wheels: sums over more of
+    either would compare one part of a drive with another.
+    """
 
     def __init__(self, width: int, most: int) -> None:
         self.most = most
         self.rows = 0
-        self.square = 0.0
-        self.gram = np.zeros((width, width))
-        self.cross = np.zeros((width, 2 * most + 1))
+        lags = 2 * most + 1
+        self.square = np.zeros(lags)
+        self.gram = np.zeros((lags, width, width))
+        self.cross = np.zeros((lags, width))
 
     def add(self, wheels: Floats, measured: Floats) -> None:
         """Add a run: (p, n) of the wheels, (n,) measured on the same grid, NaN where unmeasured."""
@@ -102,22 +109,29 @@ class _Sums:
         scale = np.std(measured[known])
         if scale == 0.0:
             return
-        inputs = wheels - wheels.mean(axis=1, keepdims=True)
-        output = np.where(known, measured - measured[known].mean(), 0.0) / scale
+        inputs = wheels - wheels[:, known].mean(axis=1, keepdims=True)
+        output = (measured - measured[known].mean()) / scale
         self.rows += int(known.sum())
-        self.square += float(output @ output)
-        self.gram += inputs @ inputs.T
-        size = 1 << (output.size + 2 * self.most).bit_length()
-        of_output = np.fft.rfft(output, size)
-        for row, values in enumerate(inputs):
-            both = np.fft.irfft(of_output * np.conj(np.fft.rfft(values, size)), size)
-            self.cross[row] += np.concatenate([both[-self.most :], both[: self.most + 1]])
+        for number, lag in enumerate(range(-self.most, self.most + 1)):
+            first, last = max(lag, 0), min(output.size, output.size + lag)
+            both = known[first:last]
+            seen, driven = output[first:last][both], inputs[:, first - lag : last - lag][:, both]
+            self.square[number] += seen @ seen
+            self.gram[number] += driven @ driven.T
+            self.cross[number] += driven @ seen
 
     def residual_innovations(self) -> Floats:
         """Unexplained share of the variance at each lag."""
-        solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
-        explained = np.sum(self.cross * solved, axis=0) / self.square
+        inverse = np.linalg.pinv(self.gram, rcond=1e-9, hermitian=True)
+        explained = np.einsum("ki,kij,kj->k", self.cross, inverse, self.cross) / self.square
         return np.asarray(np.clip(1.0 - explained, DELAY_UNEXPLAINED, 1.0))
+
+
+def _silences(seen: Floats) -> list[tuple[float, float]]:
+    """Stretches in which the reference is silent and its motion unknown."""
+    duration = np.diff(seen)
+    usual = max(DELAY_WINDOW, GAP_INTERVALS * float(np.median(duration)))
+    return [(seen[row], seen[row + 1]) for row in np.flatnonzero(duration > usual)]
 
 
 def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
@@ -135,7 +149,7 @@ def _squared_steps(record: SetUpRecord, grid: Floats) -> Floats | None:
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
     )
-    return _winsorised(np.abs(_over(place)) ** 2)
+    return _winsorised(np.abs(_over(place))) ** 2
 
 
 def _over(values: NDArray[_Numbers]) -> NDArray[_Numbers]:

@@ -55,10 +55,13 @@ class SetUpRecord:
     """Measured heading, shape (m,); NaN where not measured [rad]."""
     not_driven: tuple[tuple[float, float], ...] = ()
     """Stretches in which the robot was held or carried: begin and end [s]."""
+    taken_out: tuple[tuple[float, float], ...] = ()
+    """Stretches without rows of the reference, on purpose, on the clock of `seen` [s]."""
 
     def delayed(self, delay: float) -> SetUpRecord:
         """Shift the reference, which is later by `delay` [s] than assumed."""
-        return replace(self, seen=self.seen - delay)
+        gone = tuple((begin - delay, end - delay) for begin, end in self.taken_out)
+        return replace(self, seen=self.seen - delay, taken_out=gone)
 
     def in_degrees(self) -> SetUpRecord:
         """Convert the recorded yaw from degrees."""
@@ -144,11 +147,12 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpReco
         time,
         summed(raw.left),
         summed(raw.right),
-        stamps[known] - view.delay,
+        stamps[known],
         ((reference.x + 1j * sign * np.asarray(reference.y)) / np.complex128(ways))[known],
         sign * np.asarray(reference.yaw)[known] / turns,
         tuple((part.begin, part.end) for part in run.no_driving or ()),
-    )
+        run.taken_out,
+    ).delayed(view.delay)
 
 
 def measured_by(records: Sequence[SetUpRecord]) -> Measure | None:
@@ -229,13 +233,23 @@ def _way(record: SetUpRecord) -> Floats:
     return summed(np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right))))
 
 
-def _gaps(record: SetUpRecord, gone: Floats, length: float) -> NDArray[np.bool_]:
-    """Reference intervals without driving, or with silence of reference or ticks."""
+def gaps_of(record: SetUpRecord, gone: Floats, length: float) -> NDArray[np.bool_]:
+    """Reference intervals without driving, or with silence of reference or ticks.
+
+    Parameters
+    ----------
+    record : SetUpRecord
+        With m rows of the reference within the ticks' time.
+    gone : ndarray, shape (m,)
+        Cumulative travel at each row [m].
+    length : float
+        Travel of a leg [m].
+    """
     inside = (record.time >= record.seen[0]) & (record.time <= record.seen[-1])
     time = record.time[inside]
     ticks = np.flatnonzero(gaps_in(time, _way(record)[inside] / length))
     silences = [(time[each], time[each + 1]) for each in ticks]
-    silent = touched(record.seen, [*silences, *record.not_driven])
+    silent = touched(record.seen, [*silences, *record.not_driven, *record.taken_out])
     return gaps_in(record.seen, gone / length) | silent
 
 
@@ -243,7 +257,7 @@ def _cut_run(
     record: SetUpRecord, length: float, point: complex, yaw: float, stretch: int, offset: int
 ) -> Cuts:
     gone = _progress(record)
-    gap = _gaps(record, gone, length)
+    gap = gaps_of(record, gone, length)
     chosen = leg_ends(gone, gap, length)
     at = record.seen[chosen]
     time = np.union1d(record.time, at)
