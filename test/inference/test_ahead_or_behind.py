@@ -10,11 +10,14 @@ import numpy as np
 import pytest
 
 from test.model.drives import ROBOT, read
-from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.adding.words import json_of as added_json
+from werrimbi_odom.report.adding.words import words_of as added_words
 from werrimbi_odom.report.diagnosis.tables import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
@@ -61,6 +64,18 @@ def test_circles_tell_the_distance_and_not_the_side() -> None:
     words = " ".join(as_text(words_of(Told(found, None, ()), NextSteps())).split())
     assert "may as well lie as far on the other side of the axle" in words
     assert json_of(found, None)["ahead_or_behind"] is True
+
+
+def test_add_tells_that_the_side_is_open() -> None:
+    """It wrote one sign, as certain as any."""
+    runs = [driven(parts, seed) for seed, parts in enumerate(CIRCLES)]
+    added = add_effects([find("reference_lever_arm")], runs, ROBOT)
+    assert abs(added.fitted["reference_lever_arm"]["x"].value or 0.0) == pytest.approx(
+        0.06, rel=0.1
+    )
+    words = " ".join(as_text(added_words(added)).split())
+    assert "may as well lie as far on the other side of the axle" in words
+    assert added_json(added)["ahead_or_behind"] is True
 
 
 def test_a_line_and_a_curve_in_one_drive_tell_the_side() -> None:

@@ -53,6 +53,17 @@ def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
     return [f"On {legs} the reference jumped; {they} left out."]
 
 
+def either_side(open_side: bool) -> list[str]:
+    """Of positions on one circle a drive, which do not tell on which side the point lies."""
+    if not open_side:
+        return []
+    return [
+        "But: the measured point may as well lie as far on the other side of the axle, with x of "
+        "the other sign: positions alone do not tell ahead from behind where each drive keeps to "
+        "one circle. A line and a curve in one drive do, or a look at the robot."
+    ]
+
+
 def left_out_json(parts: Sequence[LeftOut]) -> list[dict[str, Any]]:
     """Fields of each stretch; times in the run's own clock [s]."""
     return [picked(part, "run from_s:begin to_s:end why words") for part in parts]

@@ -109,6 +109,8 @@ class Added:
     """Significant dependences that remain."""
     misfit: Misfit | None
     """The law of slightly wrong form, if that is what remains."""
+    ahead_or_behind: bool
+    """Whether the measured point may as well lie on the other side of the axle."""
     set_up: SetUp
     per_run: tuple[str, ...]
     """Per-run parameters; the file leaves them out."""

@@ -36,6 +36,7 @@ from werrimbi_odom.inference.calibration_parametrisation import base_name, robot
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.calibration_selection import (
     FreeSizes,
     sizes_needed,
@@ -182,6 +183,7 @@ def add_effects(
         explained=explained,
         remaining=remaining,
         misfit=misfit,
+        ahead_or_behind=ahead_or_behind(drives.laid, written, robot),
         set_up=set_up,
         per_run=per_run,
         chances=chances,

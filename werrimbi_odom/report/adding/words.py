@@ -15,7 +15,13 @@ from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_wor
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.report.number_format import listed, picked, quantity, scaled_with_std
-from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
+from werrimbi_odom.report.phrases import (
+    either_side,
+    jumps_words,
+    left_out_json,
+    left_out_words,
+    sizes_words,
+)
 
 
 def words_of(added: Added) -> list[Part]:
@@ -131,7 +137,7 @@ def _errors(added: Added) -> Table:
 
 
 def _remarks(added: Added) -> list[str]:
-    texts = [_rest(added), _noise(added)]
+    texts = [*either_side(added.ahead_or_behind), _rest(added), _noise(added)]
     if added.set_aside:
         judged = listed(list(dict.fromkeys(added.set_aside)))
         texts.append(
@@ -246,6 +252,7 @@ def json_of(added: Added) -> dict[str, Any]:
         "remaining": [picked(cell, "channel variable:name p_value") for cell in added.remaining],
         "p_value": max((p for p in added.chances.values() if p is not None), default=None),
         **picked(added, "p_values:chances objection objections covariance explains:verdict.good"),
+        "ahead_or_behind": added.ahead_or_behind,
         "left_out": left_out_json(added.left_out),
         "events": events_json(added.happened, added.robot.track),
     }

@@ -211,17 +211,6 @@ def outdated_told(told: Told) -> list[str]:
     return lines
 
 
-def either_side(diagnosis: Diagnosis) -> list[str]:
-    """Of positions on one circle a drive, which do not tell on which side the point lies."""
-    if not diagnosis.ahead_or_behind:
-        return []
-    return [
-        "But: the measured point may as well lie as far on the other side of the axle, with x of "
-        "the other sign: positions alone do not tell ahead from behind where each drive keeps to "
-        "one circle. A line and a curve in one drive do, or a look at the robot."
-    ]
-
-
 def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
     """Sentences on the effects of `at_bounds_words`."""
     return [

@@ -36,7 +36,6 @@ from werrimbi_odom.report.diagnosis.remarks import (
     by_headings_alone,
     coarse_counters,
     drowned,
-    either_side,
     instead_of_held,
     law,
     nearest,
@@ -50,7 +49,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.number_format import chance_words, error_words, listed
-from werrimbi_odom.report.phrases import jumps_words, left_out_words, remark_words
+from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     diagnosis = told.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
-    suspect = either_side(diagnosis) + wandering(diagnosis)
+    suspect = either_side(diagnosis.ahead_or_behind) + wandering(diagnosis)
     suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
