@@ -106,7 +106,7 @@ class PreparedRuns:
         """Excluded stretches, run by run: gaps, and legs on which the reference jumped.
 
         To exclude a stretch for another reason, add it to the record of the run
-        (`legs.cutting.Record.left_out`); it is then cut out and reported like these.
+        (`legs.matched_run.AlignedRun.left_out`); it is then cut out and reported like these.
         """
         found: list[list[LeftOut]] = [[] for _ in self.runs]
         for group, legs in zip(self.groups, self.cuts[self.options.leg], strict=True):

@@ -141,7 +141,7 @@ def information_limits(
     options : EvaluationOptions
         With the reference's noise [m, rad], which must be known.
     tried : int
-        Number of candidates of the diagnosis (`search.Round.number`).
+        Number of candidates of the diagnosis (`forward_selection.Round.number`).
     power : float
         Probability of detection at the limit.
 
