@@ -27,7 +27,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ruamel.yaml import YAML
 from visualization_msgs.msg import Marker, MarkerArray
 
-from werrimbi_odom.demo.stage import Stage
+from werrimbi_odom.demo.node_processes import Stage
 
 ROOT = Path(__file__).parents[1]
 DISPLAYS = ROOT / "rviz" / "simulated.rviz"

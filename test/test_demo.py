@@ -21,8 +21,8 @@ from rclpy.time import Time
 
 import werrimbi_odom as wo
 from test.recorded_robots import ROBOTS, with_recordings
-from werrimbi_odom.demo.second_act import drive_of, error_figure
-from werrimbi_odom.demo.stage import save_and_tell
+from werrimbi_odom.demo.node_processes import save_and_tell
+from werrimbi_odom.demo.simulated_procedure import drive_of, error_figure
 
 ROOT = Path(__file__).parents[1]
 OPTITRACK = ROBOTS / "optitrack_robot"

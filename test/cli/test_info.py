@@ -15,7 +15,7 @@ import pytest
 import werrimbi_odom as wo
 from test.files.conftest import Messages
 from test.inference.driven import run_of
-from test.inference.test_no_driving import held
+from test.inference.test_held_or_carried import held
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.controller_wheels import of_controller

@@ -21,22 +21,22 @@ from typing import Any
 
 from test.hidden import (
     coverage,
+    evidence_tables,
     field,
     field_table,
     history,
-    judge,
     margins,
     plan,
+    set_judging,
     smallest,
     survive,
-    table,
 )
-from test.hidden.judged import Judged, judgement
 from test.hidden.page import draw, page
 from test.hidden.plan import ALL, SAMPLE, Sizes
+from test.hidden.result_line import Judged, judgement
+from test.hidden.resumable_jobs import Line, done, kept, mark, results_of
 from test.hidden.sets import ROOT, HiddenSet, make_all
-from test.hidden.tables import Table, show
-from test.hidden.work import Line, done, kept, mark, results_of
+from test.hidden.table_layout import Table, show
 
 PARTS = (
     "make",
@@ -114,7 +114,7 @@ def works(
 ) -> dict[str, Work]:
     """All parts but making and telling; of tasks those whose key holds a word."""
     all_of_it = {
-        "judge": Work({each.name: each for each in wanted}, judge.work),
+        "judge": Work({each.name: each for each in wanted}, set_judging.work),
         "field": Work({each.name: each for each in field.sets(start, *extent.field)}, field.work),
         "scans": Work(
             {each.name: each for each in field.sets(start + SCANS, *extent.scans)}, field.by_scans
@@ -170,7 +170,7 @@ def all_tables(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> list[T
     own = {name: _own(name, part) for name, part in there.items()}
     scores = coverage.scores(lines, wanted, own["coverage"])
     made = [
-        *table.tables(lines),
+        *evidence_tables.tables(lines),
         *field_table.tables(own["field"]),
         *field_table.tables_by_scans(own["scans"]),
         *survive.tables(lines, own["survive"]),

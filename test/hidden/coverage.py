@@ -19,14 +19,14 @@ from pathlib import Path
 from statistics import NormalDist, fmean, stdev
 
 from test.hidden.follow import run
+from test.hidden.followed_to_rest import at_the_truth
 from test.hidden.intervals import between
-from test.hidden.judge import options_of
-from test.hidden.judged import Judged
-from test.hidden.rest import at_the_truth
+from test.hidden.result_line import Judged
+from test.hidden.resumable_jobs import Line
+from test.hidden.set_judging import options_of
 from test.hidden.sets import HiddenSet, make, runs_of
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 from test.hidden.true_values import GIVES_WAY, multipliers_of, noises_of, values_of
-from test.hidden.work import Line
 
 WIDE = 1.96
 """Standard deviations."""

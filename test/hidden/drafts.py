@@ -7,8 +7,8 @@ python -m test.hidden.drafts prints the table of docs/draft.md.
 
 from __future__ import annotations
 
-from test.hidden.judge import floor_of
 from test.hidden.plan import OUTSIDERS
+from test.hidden.set_judging import floor_of
 from test.hidden.sets import HiddenSet, make, runs_of
 from werrimbi_odom.api.draft import draft
 from werrimbi_odom.errors import InputError

@@ -21,8 +21,8 @@ import numpy as np
 
 from test.hidden.follow import run
 from test.hidden.plan import EFFECTS, evenly
+from test.hidden.resumable_jobs import Line, commit_now
 from test.hidden.sets import HiddenSet, runs_of
-from test.hidden.work import Line, commit_now
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from test.hidden.field import SEEN, could_be_seen, how
 from test.hidden.intervals import between
 from test.hidden.plan import EFFECTS
-from test.hidden.tables import Table
-from test.hidden.work import Line
+from test.hidden.resumable_jobs import Line
+from test.hidden.table_layout import Table
 
 WORDS = (
     "Sets made by `werrimbi simulate --like field`: wheels at 20 Hz with stamps that jitter, a "

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from test.hidden.right_laws import RIGHT_LAWS
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of

@@ -14,10 +14,10 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from test.hidden.judged import Judged
+from test.hidden.result_line import Judged
 from test.hidden.rules import RULES
 from test.hidden.sets import ROOT
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 
 FILE = ROOT / "docs" / "evidence_history.jsonl"
 

@@ -20,15 +20,15 @@ from itertools import pairwise
 from pkgutil import walk_packages
 from typing import cast
 
-from test.hidden.judge import judged, options_of
-from test.hidden.judged import Judged, is_right, judgement
 from test.hidden.plan import CALIBRATION, evenly
+from test.hidden.result_line import Judged, is_right, judgement
+from test.hidden.resumable_jobs import Line
+from test.hidden.set_judging import judged, options_of
 from test.hidden.sets import HiddenSet, make, runs_of
-from test.hidden.tables import Table
-from test.hidden.work import Line
+from test.hidden.table_layout import Table
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 
 WHERE = "werrimbi_odom.inference.rules"

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from test.hidden.coverage import RANKS, Scores, ranks
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 
 HEAD = """# Evidence: effects hidden by a physics engine, and what the diagnosis made of them
 

@@ -30,8 +30,8 @@ import numpy as np
 from test.hidden.floors import LEG, Floor
 from test.hidden.learners import CHOICES, Legs, learnt
 from test.hidden.plan import CALIBRATION, EFFECTS, OUTSIDERS
+from test.hidden.resumable_jobs import Line, done, kept, results_of
 from test.hidden.sets import ROOT, HiddenSet, make, make_all, runs_of
-from test.hidden.work import Line, done, kept, results_of
 from werrimbi_odom.api.draft import draft
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.errors import InputError

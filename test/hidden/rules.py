@@ -7,8 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from test.hidden import rest
-from test.hidden.judged import (
+from test.hidden import followed_to_rest
+from test.hidden.plan import CALIBRATION
+from test.hidden.result_line import (
     NEAR_THE_FLOOR,
     Judged,
     both_matter,
@@ -16,7 +17,6 @@ from test.hidden.judged import (
     judgement,
     matters,
 )
-from test.hidden.plan import CALIBRATION
 from test.hidden.right_laws import DEPENDS_ON
 from werrimbi_odom.effects import find
 
@@ -215,14 +215,14 @@ RULES = (
         "rest",
         0.95,
         lambda line: bool(line.verdicts),
-        rest.at_rest,
+        followed_to_rest.at_rest,
     ),
     Rule(
         "... at the truth, where it matters, in no more steps than effects",
         "truth",
         0.95,
-        rest.counts,
-        lambda line: rest.at_the_truth(line) and rest.without_detour(line),
+        followed_to_rest.counts,
+        lambda line: followed_to_rest.at_the_truth(line) and followed_to_rest.without_detour(line),
     ),
     Rule(
         "at rest at none, compare finds nothing systematic either",

@@ -18,13 +18,13 @@ from scipy.optimize import minimize
 
 from test.hidden.fisher import bound, detectable
 from test.hidden.follow import follow
-from test.hidden.judge import judged
-from test.hidden.judged import is_right, judgement
 from test.hidden.plan import EFFECTS
+from test.hidden.result_line import is_right, judgement
+from test.hidden.resumable_jobs import Line
+from test.hidden.set_judging import judged
 from test.hidden.sets import HiddenSet, make
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 from test.hidden.true_values import values_of
-from test.hidden.work import Line
 from werrimbi_odom.effects import find as in_library
 from werrimbi_odom.simulation import hide
 from werrimbi_odom.simulation.hidden import find

@@ -16,12 +16,12 @@ from pathlib import Path
 
 from test.hidden.follow import follow
 from test.hidden.intervals import rate
-from test.hidden.judge import options_of
-from test.hidden.judged import Judged
 from test.hidden.plan import evenly
+from test.hidden.result_line import Judged
+from test.hidden.resumable_jobs import Line
+from test.hidden.set_judging import options_of
 from test.hidden.sets import HiddenSet, make, runs_of
-from test.hidden.tables import Table
-from test.hidden.work import Line
+from test.hidden.table_layout import Table
 
 ROWS = {"odd rows": slice(1, None, 2), "even rows": slice(0, None, 2)}
 """Of the reference: half its rate, and noise that the two do not share."""

@@ -11,10 +11,10 @@ import pytest
 
 from test.hidden import field_table, plan
 from test.hidden.__main__ import extent_wanted, judged_lines, works
-from test.hidden.judged import Judged
+from test.hidden.result_line import Judged
+from test.hidden.resumable_jobs import done, kept, mark, results_of
 from test.hidden.rules import RULES, Rule
 from test.hidden.sets import make_all
-from test.hidden.work import done, kept, mark, results_of
 
 pytestmark = pytest.mark.evidence
 

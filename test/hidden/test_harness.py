@@ -23,20 +23,20 @@ from test.hidden import (
     history,
     margins,
     plan,
+    resumable_jobs,
     smallest,
     survive,
-    work,
 )
 from test.hidden.__main__ import SCANS
+from test.hidden.evidence_tables import tables
 from test.hidden.follow import commands, follow, typed
+from test.hidden.followed_to_rest import at_the_truth, without_detour
 from test.hidden.intervals import clopper_pearson
-from test.hidden.judged import Judged
 from test.hidden.page import page
-from test.hidden.rest import at_the_truth, without_detour
+from test.hidden.result_line import Judged
 from test.hidden.rules import RULES
 from test.hidden.sets import HiddenSet
-from test.hidden.table import tables
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 from test.hidden.true_values import multipliers_of, noises_of, values_of
 
 LINE = Judged(
@@ -206,7 +206,7 @@ def test_a_detour_is_more_steps_than_effects() -> None:
 # ------------------------------------------------------------------ work that can be stopped
 
 
-def _square(number: int) -> work.Line:
+def _square(number: int) -> resumable_jobs.Line:
     if number < 0:
         raise ValueError(number)
     return {"square": number * number}
@@ -215,13 +215,13 @@ def _square(number: int) -> work.Line:
 @pytest.mark.evidence
 def test_work_goes_on_where_it_was_stopped_and_one_failure_is_not_the_end(tmp_path: Path) -> None:
     file = tmp_path / "results" / "part.jsonl"
-    first = dict(work.done(file, {"two": 2, "bad": -1}, _square, 1))
+    first = dict(resumable_jobs.done(file, {"two": 2, "bad": -1}, _square, 1))
     assert first == {"two": {"square": 4}}
     with file.open("a", encoding="utf-8") as out:
         out.write('{"key": "cut')
-    assert work.kept(file) == {"two": {"square": 4}}
+    assert resumable_jobs.kept(file) == {"two": {"square": 4}}
     file.write_text(file.read_text().rsplit("\n", 1)[0] + "\n")
-    second = dict(work.done(file, {"two": 2, "three": 3}, _square, 1))
+    second = dict(resumable_jobs.done(file, {"two": 2, "three": 3}, _square, 1))
     assert second == {"three": {"square": 9}}, "what is known is not done again"
 
 
@@ -229,7 +229,7 @@ def test_work_goes_on_where_it_was_stopped_and_one_failure_is_not_the_end(tmp_pa
 
 
 def test_agreement_tells_less_sure_from_changed() -> None:
-    def now(verdict: str, *names: str) -> work.Line:
+    def now(verdict: str, *names: str) -> resumable_jobs.Line:
         rivals = list(names) if verdict == "ambiguous" else []
         return {"verdict": verdict, "effect": names[0] if names else None, "found": list(names),
                 "rivals": rivals}  # fmt: skip
@@ -279,7 +279,9 @@ def test_another_split_holds_out_as_many_other_drives(folder: Path) -> None:
 # ------------------------------------------------------------------ as people record
 
 
-def said(verdict: str, *found: str, rivals: tuple[str, ...] = (), **more: object) -> work.Line:
+def said(
+    verdict: str, *found: str, rivals: tuple[str, ...] = (), **more: object
+) -> resumable_jobs.Line:
     return {"verdict": verdict, "found": list(found), "rivals": list(rivals), **more}
 
 
@@ -317,7 +319,7 @@ SCALE = ("track_width", "reference_scale")
     ],
 )  # fmt: skip
 def test_what_a_verdict_by_an_ordinary_reference_is_worth(
-    hidden: list[str], by: str, line: work.Line, worth: str
+    hidden: list[str], by: str, line: resumable_jobs.Line, worth: str
 ) -> None:
     assert field.how(hidden, by, line) == worth
 

@@ -12,10 +12,10 @@ from functools import cache, partial
 
 import pytest
 
-from test.hidden.judge import judged
-from test.hidden.judged import Judged
-from test.hidden.rest import at_the_truth, without_detour
+from test.hidden.followed_to_rest import at_the_truth, without_detour
+from test.hidden.result_line import Judged
 from test.hidden.rules import named_mistake, plainly_calibration
+from test.hidden.set_judging import judged
 from test.hidden.sets import HiddenSet
 
 pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip install mujoco)")

@@ -15,7 +15,7 @@ import numpy as np
 
 from test.white_noise_robot import wandering
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of

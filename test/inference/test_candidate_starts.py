@@ -13,7 +13,7 @@ from test.inference.driven import run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY, find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated

@@ -21,9 +21,9 @@ from werrimbi_odom.inference.changes.between_drives import (
     changes_between,
     is_within,
 )
+from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import groups_of
-from werrimbi_odom.inference.changes.search import ChangePoints, find_changes
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS

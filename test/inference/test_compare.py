@@ -14,7 +14,7 @@ import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare, judged
 from werrimbi_odom.inference.comparison.prepared import prepare

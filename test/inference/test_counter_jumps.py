@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.legs.aligned_run import record_of

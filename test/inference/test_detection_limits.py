@@ -12,7 +12,7 @@ import pytest
 from test.inference.driven import NOISE_XY, NOISE_YAW, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.distributions import chi2_survival, noncentrality
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated

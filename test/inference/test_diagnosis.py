@@ -14,11 +14,11 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import summed_over_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount, step_jacobians
-from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting import caches
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point

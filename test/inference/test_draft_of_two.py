@@ -30,8 +30,8 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount
+from werrimbi_odom.inference.drafting.candidate_law import keeps_laws, loaded
 from werrimbi_odom.inference.drafting.draft import Draft
-from werrimbi_odom.inference.drafting.plan import keeps_laws, loaded
 from werrimbi_odom.inference.drafting.regression import selections
 from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.drafting.terms import terms_of, unit_of_coefficient

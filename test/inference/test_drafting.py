@@ -12,8 +12,8 @@ from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount
 from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells
+from werrimbi_odom.inference.drafting.candidate_law import keeps_laws, loaded
 from werrimbi_odom.inference.drafting.law_forms import Seen, forms_of, spot_form
-from werrimbi_odom.inference.drafting.plan import keeps_laws, loaded
 from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.report.diagnosis.dependence import dependence_words

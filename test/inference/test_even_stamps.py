@@ -12,7 +12,7 @@ import pytest
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.even_stamps import with_even_scan_stamps, with_even_stamps
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.model.robot import Robot
 
 PERIOD = 0.2

@@ -10,7 +10,7 @@ import pytest
 
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects import LIBRARY, find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.leg_errors import (
     LegErrors,

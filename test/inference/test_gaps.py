@@ -12,7 +12,7 @@ import pytest
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.prepared import prepare

@@ -12,11 +12,11 @@ import pytest
 
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory

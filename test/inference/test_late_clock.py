@@ -19,7 +19,7 @@ from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.records import record_of
 

@@ -19,7 +19,7 @@ from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.lookup import all_effects, find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run

@@ -14,7 +14,7 @@ from test.inference.driven import run_of, runs_of
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.lookup import load_file
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics

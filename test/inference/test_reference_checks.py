@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder

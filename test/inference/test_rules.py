@@ -32,7 +32,7 @@ ELSEWHERE = {
     },
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
     "changes/scatter.py": {"_MEDIAN_CHI2_1": "a quantile"},
-    "changes/search.py": {"_FEW": "time that it takes"},
+    "changes/change_points.py": {"_FEW": "time that it takes"},
     "distributions.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
     "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
@@ -107,7 +107,7 @@ ELSEWHERE = {
         "_PARALLEL": "a rank",
         "_CLEARLY": "what is too small to be divided by",
     },
-    "legs/no_driving.py": {"_GRID": "of times"},
+    "legs/held_or_carried.py": {"_GRID": "of times"},
     "legs/motion_states.py": {"_GRID": "of times"},
     "legs/windows.py": {
         "_GRID": "of times",

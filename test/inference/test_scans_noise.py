@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point

@@ -32,8 +32,8 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.leg_errors import leg_errors, statistics
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
+from werrimbi_odom.inference.drafting.candidate_law import loaded
 from werrimbi_odom.inference.drafting.law_forms import Seen, spot_form
-from werrimbi_odom.inference.drafting.plan import loaded
 from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.search import SetUp, SetUpFinding, look_for_mistakes

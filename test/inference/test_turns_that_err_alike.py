@@ -14,7 +14,7 @@ import pytest
 
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 

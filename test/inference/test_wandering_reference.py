@@ -13,7 +13,7 @@ from test.inference.test_homogeneity import ROBOT, driven, nothing
 from test.inference.test_local_map_errors import TRUE, WALK, session
 from werrimbi_odom.api.verbs import as_judged
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import Told

@@ -13,7 +13,7 @@ import pytest
 from conftest import AMPLITUDE, PLAIN, eccentric_run
 
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along

@@ -41,7 +41,7 @@ import werrimbi_odom as wo
 from test.driving.in_engine import InEngine
 from test.driving.test_watched_hours import TRUTH, patrol
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.demo.stage import private_domain
+from werrimbi_odom.demo.node_processes import private_domain
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, Pose, compose, inverse

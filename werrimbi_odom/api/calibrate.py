@@ -25,8 +25,8 @@ from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
-from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.calibration.document import calibration_document, leg_figure, noise_figure
 from werrimbi_odom.report.calibration.fit_words import fit_in_words, fit_json

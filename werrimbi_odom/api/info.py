@@ -37,8 +37,8 @@ from werrimbi_odom.files.wheel_joints import (
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.motion_states import driven
-from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.recording_info import Held, Info
 from werrimbi_odom.inference.rules import FEW_POSES
 from werrimbi_odom.report.info import document_of, info_json

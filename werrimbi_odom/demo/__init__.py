@@ -2,5 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make demo`: recorded ticks through the real node, then the whole procedure in simulation.
 
-Reading order: `through_node` (first act), `second_act`, `stage` (node processes and ROS domain).
+Reading order: `through_node` (first act), `simulated_procedure` (second act), `node_processes`
+(node processes and ROS domain).
 """

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from werrimbi_odom.cli.packages import refuse_without
-from werrimbi_odom.demo.second_act import second_act
+from werrimbi_odom.demo.simulated_procedure import second_act
 from werrimbi_odom.demo.through_node import RECORDING, first_act
 from werrimbi_odom.errors import InputError
 

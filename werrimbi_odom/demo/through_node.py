@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.demo.stage import end, private_domain, save_and_tell
+from werrimbi_odom.demo.node_processes import end, private_domain, save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file

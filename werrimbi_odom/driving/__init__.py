@@ -3,6 +3,6 @@
 """Drive a manoeuvre within limits: plain functions and objects, without ROS and without a clock.
 
 Reading order: `limits` (limits set by the user), `plan` (the moves), `manoeuvres` (the library),
-`path_following` (the controller), `watch` (checks while driving), `driver` (when the robot moves
-and stops). `werrimbi_odom.ros.drive_node` is the node around it.
+`path_following` (the controller), `stop_conditions` (checks while driving), `driver` (when the
+robot moves and stops). `werrimbi_odom.ros.drive_node` is the node around it.
 """

@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of odometry, scan and gyro that stop a drive."""
+"""Limits of what stops a drive, and faults between two odometry messages.
+
+`driver.Driver` checks the rest of them against what it follows: silence, the area, what is near, a
+robot that does not follow, and wheels that slip.
+"""
 
 from __future__ import annotations
 

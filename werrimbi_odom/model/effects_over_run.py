@@ -108,14 +108,14 @@ def after_effects(
 def driven(
     robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose
 ) -> AfterEffects:
-    """Compute a whole run after the effects; the same as `driving.Driving` step by step.
+    """Compute a whole run after the effects; the same as `driven_motion.Driving` step by step.
 
     Parameters
     ----------
     raw : WheelTravel
         Travel before the effects, shape (n,).
     drive : Drive
-        Drive of the run (`driving.features`).
+        Drive of the run (`driven_motion.features`).
     start : Pose
         Pose of the robot before the first step.
     """

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of one counter reading: reset, too fast, or accepted; `encoder.Encoder` applies them.
+"""Checks of one counter reading: reset, too fast, or accepted.
 
-Plain functions of numbers, which numba compiles for recorded runs.
+Plain functions of numbers, which `encoder_online.Encoder` applies, and numba compiles for recorded
+runs.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
 
 They do what `Odometer` does at each message, by the same functions, so results agree to the last
 bit. In plain Python they would be as slow as the odometer; for that case `pieces_recorded` and
-`course` have array operations.
+`recorded_propagation` have array operations.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ def march(
 
 
 def follow(motion: BodyMotion[Floats], position: Floats, yaw: Floats) -> None:
-    """Integrate the steps of a run; see `course.followed`.
+    """Integrate the steps of a run; see `recorded_propagation.followed`.
 
     Parameters
     ----------

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.model.pose import Pose, wrap
+from werrimbi_odom.report.dead_reckoning_summary import EndError, Reckoning
 from werrimbi_odom.report.document import Document, Shown, Table
 from werrimbi_odom.report.number_format import counted, picked
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure, spread_along_path
-from werrimbi_odom.report.reckoning import EndError, Reckoning
 
 
 def json_of(found: Reckoning) -> dict[str, Any]:

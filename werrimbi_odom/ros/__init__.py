@@ -4,7 +4,7 @@
 
 `odom_node.OdomNode` is the main node. `counter_inputs` and `wheel_side` convert any input to two
 counters. `odometry_messages`, `markers` and `estimate_status` convert an estimate to messages;
-`health` counts for /diagnostics. `odom_parameters` reads the robot file, and `parameter_trial`
-tests its values. `topics` publishes and subscribes, `planar` checks incoming poses, `graph` finds
-other nodes, `slip` and `learning` use a gyro.
+`input_health` counts for /diagnostics. `odom_parameters` reads the robot file, and
+`parameter_trial` tests its values. `topics` publishes and subscribes, `planar` checks incoming
+poses, `graph` finds other nodes, `slip` and `phase_learning` use a gyro.
 """

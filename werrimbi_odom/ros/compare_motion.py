@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the robot currently moves as its wheels turn, or is held, carried, or slips.
 
-A recording is classified with hindsight (`inference.legs.no_driving`). Here the state is derived
-from the last second, and reported once it has lasted.
+A recording is classified with hindsight (`inference.legs.held_or_carried`). Here the state is
+derived from the last second, and reported once it has lasted.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.node_parameter import Value
 from werrimbi_odom.files.parameters import robot_of
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.ros.health import Health
+from werrimbi_odom.ros.input_health import Health
 from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.wheel_side import COUNTER_LIMIT, WheelSide
 

@@ -15,8 +15,8 @@ from sensor_msgs.msg import Imu
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import counter_inputs
-from werrimbi_odom.ros.learning import FASTEST
 from werrimbi_odom.ros.live_odometer import LiveOdometer
+from werrimbi_odom.ros.phase_learning import FASTEST
 from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 

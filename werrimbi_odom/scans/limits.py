@@ -38,7 +38,7 @@ FEWEST_POSES = 20
 FLOOR = 2e-4
 """Least standard deviation of a match [m, rad]: walls are not straighter. Of the simulated rooms
 only a corridor's heading with 681 beams comes below it (docs/scans.md). Further errors of a real
-lidar are estimated from each drive (`path.common_noise`)."""
+lidar are estimated from each drive (`two_pass_odometry.common_noise`)."""
 
 COMMON = 1.5
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above

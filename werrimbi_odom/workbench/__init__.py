@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The workbench: compare, diagnose, add and save on one local page.
 
-The input (`opened`) is read once and shared by all browser tabs. The history of a tab (`undo`) is
-an immutable value. Long work (`worker_tasks`) runs in another process (`job`, `worker`), so that it
-can be cancelled. `page` and `views` show it all; `server` accepts requests of this machine only.
+The input (`loaded_input`) is read once and shared by all browser tabs. The history of a tab
+(`session`) is an immutable value. Long work (`worker_tasks`) runs in another process (`job`,
+`worker`), so that it can be cancelled. `page` and `views` show it all; `server` accepts requests of
+this machine only.
 """

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def begin(asked: Connection) -> None:
-    """Entry point of the process; see `work.work`."""
+    """Entry point of the process; see `worker.work`."""
     from werrimbi_odom.workbench.worker import work
 
     work(asked)

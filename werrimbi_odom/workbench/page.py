@@ -17,8 +17,8 @@ from werrimbi_odom.workbench.tab import Opening, Shared, Tab, new_tab
 from werrimbi_odom.workbench.views.add import add_view
 from werrimbi_odom.workbench.views.compare import compare_view
 from werrimbi_odom.workbench.views.diagnose import diagnose_view
+from werrimbi_odom.workbench.views.header import failed_view, opening_view, strip, under_way
 from werrimbi_odom.workbench.views.save import save_view
-from werrimbi_odom.workbench.views.strip import failed_view, opening_view, strip, under_way
 
 STYLE = Path(__file__).with_name("page.css")
 VIEW = {

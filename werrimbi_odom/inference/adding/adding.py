@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes between drives: which parameter changed, when, by how much, and how significant that is.
 
-Reading order: `numbers` (what may change), `drives` (the information of each drive), `shapes` (a
-step, one drive alone, a trend, and the gain of each), `search` (selection of change points),
-`between_drives` (changes within one diagnosis), `history` (drives over months).
+Reading order: `parameter_groups` (what may change), `drives` (the information of each drive),
+`shapes` (a step, one drive alone, a trend, and the gain of each), `change_points` (their
+selection), `between_drives` (changes within one diagnosis), `history` (drives over months).
 """

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes between the drives of one diagnosis, beside everything that it found.
 
-A change is reported if it passes four tests: the drives need it (`search`); the parts of the drives
-before it agree with each other, as do those after it (`homogeneity`); no other effect explains as
-much; and it remains significant beside other dependences of the errors. Held-out drives have no
-part in it.
+A change is reported if it passes four tests: the drives need it (`change_points`); the parts of the
+drives before it agree with each other, as do those after it (`homogeneity`); no other effect
+explains as much; and it remains significant beside other dependences of the errors. Held-out drives
+have no part in it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
 from werrimbi_odom.inference.changes.drives import DriveNumbers, information_of_drives
 from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
@@ -27,7 +28,6 @@ from werrimbi_odom.inference.changes.parameter_groups import (
     numbers_of,
     value_at,
 )
-from werrimbi_odom.inference.changes.search import ChangePoints, GroupChange, find_changes
 from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence

@@ -21,9 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
+from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
@@ -32,7 +33,6 @@ from werrimbi_odom.inference.changes.parameter_groups import (
     value_at,
 )
 from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
-from werrimbi_odom.inference.changes.search import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.distributions import chi2_survival
@@ -40,7 +40,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.rules import (
     CALIBRATE_AGAIN,
     MOST_CHANGES,

@@ -15,7 +15,7 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.reference_noise_source import (
@@ -35,9 +35,9 @@ from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, leg_ends, match_for_fit
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
-from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     LEG_LENGTHS,
     LEGS_OF_A_LENGTH,
@@ -106,7 +106,7 @@ class PreparedRuns:
         """Excluded stretches, run by run: gaps, and legs on which the reference jumped.
 
         To exclude a stretch for another reason, add it to the record of the run
-        (`legs.cutting.Record.left_out`); it is then cut out and reported like these.
+        (`legs.matched_run.AlignedRun.left_out`); it is then cut out and reported like these.
         """
         found: list[list[LeftOut]] = [[] for _ in self.runs]
         for group, legs in zip(self.groups, self.cuts[self.options.leg], strict=True):

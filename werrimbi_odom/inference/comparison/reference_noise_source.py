@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.comparison.local_map_errors import wandering_of
 from werrimbi_odom.inference.comparison.reference_noise import reference_noise, stamp_noise
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual

@@ -3,8 +3,8 @@
 """Diagnosis: which physical effect is missing from the model.
 
 It consists of the set-up search, the evidence map, score tests, forward selection and the verdict.
-Reading order: `diagnosis` (the whole of it), `search` (forward selection), `evidence` (the map)
-with `step_jacobians`, `selection` (model selection by penalised likelihood), `cross_validation`,
-`homogeneity`, `rivals`.
+Reading order: `diagnosis` (the whole of it), `forward_selection`, `evidence` (the map) with
+`step_jacobians`, `penalised_likelihood` (selection of models), `cross_validation`, `homogeneity`,
+`rivals`.
 The statistics are in docs/method.md, section 4.
 """

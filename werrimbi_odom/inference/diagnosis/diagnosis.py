@@ -19,11 +19,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_parametrisation import robot_for_cutting
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
+from werrimbi_odom.inference.diagnosis.effect_support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
@@ -39,7 +40,6 @@ from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals_of_robot_file import rivals_of_held
-from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.values_of_robot_file import outdated
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by, prepare
@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_runs
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 

@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from werrimbi_odom.inference.diagnosis.effect_support import Support, support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, wald_statistic
-from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all

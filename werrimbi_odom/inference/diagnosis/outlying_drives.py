@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, summed_over_legs
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount, step_jacobians
-from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter, Model

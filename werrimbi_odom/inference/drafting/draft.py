@@ -22,9 +22,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
-from werrimbi_odom.inference.drafting.formula import factor_of, in_a_line
-from werrimbi_odom.inference.drafting.law_forms import Form, Seen, forms_of, spot_form
-from werrimbi_odom.inference.drafting.plan import (
+from werrimbi_odom.inference.drafting.candidate_law import (
     Claim,
     LawForm,
     Option,
@@ -35,6 +33,8 @@ from werrimbi_odom.inference.drafting.plan import (
     value_of,
     with_values,
 )
+from werrimbi_odom.inference.drafting.formula import factor_of, in_a_line
+from werrimbi_odom.inference.drafting.law_forms import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.drafting.variable_source import rounded, seen_as
 from werrimbi_odom.inference.rules import (
     DRAFTED_TOO,

@@ -26,8 +26,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
-from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
-from werrimbi_odom.inference.drafting.plan import (
+from werrimbi_odom.inference.drafting.candidate_law import (
     Claim,
     Option,
     by_score,
@@ -37,8 +36,9 @@ from werrimbi_odom.inference.drafting.plan import (
     value_of,
     with_values,
 )
+from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
+from werrimbi_odom.inference.drafting.normal_equations import Sums, sums_of
 from werrimbi_odom.inference.drafting.regression import selections
-from werrimbi_odom.inference.drafting.sums import Sums, sums_of
 from werrimbi_odom.inference.drafting.terms import is_of_two, terms_of
 from werrimbi_odom.inference.drafting.two_variable_law import LawOfTwo
 from werrimbi_odom.inference.drafting.variable_source import signals_of

@@ -143,7 +143,10 @@ class Model:
 
     @property
     def nuisance_parameters(self) -> list[FreeParameter]:
-        """Nuisance parameters of the references; `design.stacked` adds start headings itself."""
+        """Nuisance parameters of the references, but for the start headings.
+
+        `whitened_innovations.stacked` adds those itself.
+        """
         return [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in self.own) else []
 
     def without_nuisances(self) -> Model:

@@ -32,7 +32,7 @@ class Loop(NamedTuple):
     spread: Floats
     """Covariance of the start poses, (g, j, 3, 3)."""
     relative: Floats
-    """Of the legs in their own order, as in `filtering.Legs`: (m, 3) ..."""
+    """Of the legs in their own order, as in `filtering.FilterInput`: (m, 3) ..."""
     noise: Floats
     """... (g, m, 3, 3) ..."""
     finish: Floats

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.distributions import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
 from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum

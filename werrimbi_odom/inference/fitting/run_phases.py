@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated

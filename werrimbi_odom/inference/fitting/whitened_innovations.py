@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.free_parameters import (
     HEADING_AT_START,

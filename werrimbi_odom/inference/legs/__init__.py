@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recorded drives cut into legs: one clock for ticks and reference, gaps, ends of legs.
 
-Reading order: `cutting` (the legs) with `aligned_run` and `matched_run`, `gaps`, `no_driving` (held
-and carried robots) with `measured_motion`, `even_stamps` (stamps of arrival put right),
+Reading order: `cutting` (the legs) with `aligned_run` and `matched_run`, `gaps`, `held_or_carried`
+(held and carried robots) with `measured_motion`, `even_stamps` (stamps of arrival put right),
 `counter_jumps` (counters that leap).
 """

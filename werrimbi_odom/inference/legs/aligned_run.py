@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Run
-from werrimbi_odom.inference.legs.clock_offset import clock_offset
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.rules import (
     FEW_POSES,
     MOMENT,

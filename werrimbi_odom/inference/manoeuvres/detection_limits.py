@@ -20,12 +20,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_parametrisation import base_name, name_of_base
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.effect_support import able, askable
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.support import able, askable
 from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -141,7 +141,7 @@ def information_limits(
     options : EvaluationOptions
         With the reference's noise [m, rad], which must be known.
     tried : int
-        Number of candidates of the diagnosis (`search.Round.number`).
+        Number of candidates of the diagnosis (`forward_selection.Round.number`).
     power : float
         Probability of detection at the limit.
 

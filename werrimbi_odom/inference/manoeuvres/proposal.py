@@ -3,8 +3,9 @@
 """What to drive next, or to remount: the simplest thing that tells apart what these drives cannot.
 
 For rivals the manoeuvres of the library are weighed by what they would show in a minute
-(`manoeuvre_rivals`). For twins no drive can tell, and the mount or a hand has to. For an error that
-no effect explains, a drive that varies what the error depends on, and holds the rest.
+(`expected_evidence`). For twins no drive can tell, and the mount or a hand has to (`by_hand`). For
+an error that no effect explains, a drive that varies what the error depends on, and holds the rest
+(`for_unexplained_errors`).
 """
 
 from __future__ import annotations

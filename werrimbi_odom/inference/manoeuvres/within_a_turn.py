@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.support import support_of
+from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.rules import LEGS_A_TURN
 
 WHEELS_ANGLE = frozenset({"left_angle", "right_angle"})

@@ -13,8 +13,8 @@ from werrimbi_odom.inference.rules.changes import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.comparison import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.events import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.gaps import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.held_or_carried import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.jumps import *  # noqa: F401, F403
-from werrimbi_odom.inference.rules.no_driving import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.priors import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.records import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.reference_checks import *  # noqa: F401, F403

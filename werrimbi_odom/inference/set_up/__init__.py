@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The global search for set-up mistakes, which are too large to be found from a derivative.
 
-Reading order: `search`, `delay` (the clock), `records` (cuts that need no scale), `regression`
+Reading order: `search`, `clock_offset_search`, `records` (cuts that need no scale), `regression`
 (wheels, base and mount in closed form), `explanation` and `factors` (the simplest mistake).
 """

@@ -16,10 +16,10 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.rules import (
     FEWEST_CUTS,
     MILLIMETRES_FROM,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Effects hidden in a simulated robot, as test data for the diagnosis.
 
-`peculiarity` defines where in a simulated drive an effect can act, `catalogue` lists all effects
+`hidden_effect` defines where in a simulated drive an effect can act, `catalogue` lists all effects
 with units and realistic strengths, and `hiding` draws from them; each other file has one family.
 """
 

@@ -9,13 +9,13 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from statistics import median
 
-from test.hidden import rest
+from test.hidden import followed_to_rest
 from test.hidden.intervals import between
-from test.hidden.judged import Judged, is_right, judgement, matters
 from test.hidden.plan import EFFECTS, OUTSIDERS
 from test.hidden.poorer import POORER
+from test.hidden.result_line import Judged, is_right, judgement, matters
 from test.hidden.rules import RULES, both_found, halfway, right_variable
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 from werrimbi_odom.simulation.hidden import find as hideable
 
 
@@ -23,7 +23,7 @@ def tables(lines: Sequence[Judged]) -> list[Table]:
     """All tables that there are lines for."""
     made = [
         rules(lines),
-        rest.table(lines),
+        followed_to_rest.table(lines),
         of_effects("Each effect of the vocabulary", lines, "effect"),
         of_others(lines),
         of_outsiders(lines),
@@ -31,7 +31,7 @@ def tables(lines: Sequence[Judged]) -> list[Table]:
         of_effects("Another engine set-up", lines, "other"),
         of_poorer(lines),
         wrong(lines),
-        rest.astray(lines),
+        followed_to_rest.astray(lines),
     ]
     return [table for table in made if table.rows]
 

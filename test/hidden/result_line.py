@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from test.hidden.work import Line
+from test.hidden.resumable_jobs import Line
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 

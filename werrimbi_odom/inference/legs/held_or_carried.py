@@ -18,11 +18,11 @@ from scipy.ndimage import median_filter
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
-from werrimbi_odom.inference.legs.clock_offset import clock_offset
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
+from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.motion_states import LOST, driven
 from werrimbi_odom.inference.legs.stuck_reference import as_stuck
 from werrimbi_odom.inference.legs.windows import Windows, windows_of

@@ -7,7 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from test.hidden.intervals import rate
-from test.hidden.judged import (
+from test.hidden.plan import CALIBRATION
+from test.hidden.result_line import (
     IN_LIBRARY,
     NEAR_THE_FLOOR,
     Judged,
@@ -15,8 +16,7 @@ from test.hidden.judged import (
     expected_names,
     matters,
 )
-from test.hidden.plan import CALIBRATION
-from test.hidden.tables import Table
+from test.hidden.table_layout import Table
 from werrimbi_odom.effects import find
 
 GROUPS = {

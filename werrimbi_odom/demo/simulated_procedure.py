@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.demo.stage import Stage, save_and_tell
+from werrimbi_odom.demo.node_processes import Stage, save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.path_figure import CHI2_95_OF_2

@@ -16,11 +16,11 @@ from typing import Any
 
 from test.hidden.floors import Floor
 from test.hidden.follow import MOST, Followed, follow, run
-from test.hidden.judged import IN_LIBRARY, Judged
 from test.hidden.poorer import POORER
+from test.hidden.result_line import IN_LIBRARY, Judged
+from test.hidden.resumable_jobs import Line, commit_now
 from test.hidden.right_laws import RIGHT_LAWS
 from test.hidden.sets import HiddenSet, make, runs_of
-from test.hidden.work import Line, commit_now
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 
