@@ -148,14 +148,14 @@ def _of_one_height(by_run: Floats, rest: Floats) -> float:
 
     A wheel's shape is the robot's; only the zero of its counter is another one in each run.
     """
-    height, known = [], []
+    heights, sizes = [], []
     for run in range(by_run.shape[1]):
-        waves = by_run[:, run]
-        wave = np.linalg.lstsq(waves, rest, rcond=None)[0]
-        square = float(wave @ wave)
-        height.append(np.sqrt(square))
-        known.append(float(np.sum((waves @ wave) ** 2)) / square if square > 0.0 else 0.0)
-    return float(np.dot(height, known) ** 2 / max(np.sum(known), 1e-300))
+        wave = np.linalg.lstsq(by_run[:, run], rest, rcond=None)[0]
+        heights.append(np.linalg.norm(wave))
+        sizes.append(np.linalg.norm(by_run[:, run] @ wave))
+    # Each run knows its own height h by (size / h)^2: the mean, weighted by that.
+    known = np.divide(sizes, heights, out=np.zeros(len(sizes)), where=np.array(heights) > 0.0) ** 2
+    return float((known @ heights) ** 2 / np.sum(known)) if known.any() else 0.0
 
 
 def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats) -> int | None:
@@ -182,7 +182,8 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats
     explained = scaled @ np.linalg.lstsq(scaled, rest, rcond=None)[0]
     first = int(np.argmax(np.bincount(run, rest**2 - (rest - explained) ** 2)))
     others = run != first
-    unit = seen / np.maximum(np.sqrt(np.sum(seen**2, axis=0)), 1e-300)
+    size = np.sqrt(np.sum(seen**2, axis=0))
+    unit = seen[:, size > 0.0] / size[size > 0.0]
     # Functions weigh as what that drive shows by them: of a floor, the places where it errs.
     weight = (unit[~others].T @ rest[~others]) ** 2
     if weight @ np.sum(unit[others] ** 2, axis=0) < OTHER_DRIVES * np.sum(weight):

@@ -72,7 +72,8 @@ DRIVES_TO_LEAVE_ONE = 3
 
 OTHER_DRIVES = 0.5
 """Share of a pattern's norm that the other drives must have, for its absence in them to be
-evidence. Of a barely significant dependence (chi-squared of 60 for 14 parameters) they then show 37
+evidence: of the functions by which the one drive shows it (of a floor, the places where that drive
+errs). Of a barely significant dependence (chi-squared of 60 for 14 parameters) they then show 37
 for 12, once in 5000 by chance, and are tested at a hundredth (`SURE_WHEN_ASKED`)."""
 
 CELLS_ASKED = 20
