@@ -213,7 +213,8 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
     lasts = _beyond_the_library(this, None, runs)
     if lasts is None or best is None or disagreeing(best, best.names[-1]):
         return None, lasts
-    if misfit_of_held_law(this, None, lasts, runs) is not None:
+    rest = misfit_of_held_law(this, None, lasts, runs)
+    if rest is not None and rest.effect is not None:
         return None, lasts
     beyond = _beyond_the_library(this, best, runs)
     return (best, None) if beyond is None else (None, beyond)
