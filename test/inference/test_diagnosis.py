@@ -19,12 +19,13 @@ from werrimbi_odom.inference.diagnosis.evidence import summed_over_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount, step_jacobians
+from werrimbi_odom.inference.diagnosis.variables import variables_of
 from werrimbi_odom.inference.fitting import caches
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict, predict_all, predicted_legs
-from werrimbi_odom.inference.fitting.score_tests import candidates, scores
+from werrimbi_odom.inference.fitting.score_tests import Candidate, candidates, scores
 from werrimbi_odom.inference.fitting.whitened_innovations import jacobian_of
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats
@@ -175,6 +176,13 @@ def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Concate
     missed = support_of(by_name["left_missed_ticks"], steps)
     assert missed.outputs <= {"left"}
     assert "left_speed" in missed.inputs
+
+
+def test_what_goes_with_the_acceleration_is_a_matter_of_a_law_of_it(laid: Concatenated) -> None:
+    slip = Candidate(find("coulomb_slip"), {"above": 0.5})
+    own = support_of(slip, laid.drive(ROBOT)).inputs
+    variables = {each.name: each for each in variables_of(laid, start_point(laid, ROBOT).model)}
+    assert own & set(variables["acceleration"].looks_at)
 
 
 def test_what_is_set_aside_is_not_fitted_on() -> None:

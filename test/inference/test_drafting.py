@@ -109,3 +109,19 @@ def test_a_place_is_told_finer_than_the_floors_cells() -> None:
     at_x, at_y = place_of(cell)
     assert np.hypot(at_x - 0.45, at_y - 0.15) < 0.12
     assert f"about x {at_x:.1f} m, y {at_y:.1f} m" in dependence_words(cell)
+
+
+def test_an_error_per_turn_is_where_the_robot_turned() -> None:
+    """Where it drove straight the error per radian is anything: that was told as its place."""
+    random = np.random.default_rng(4)
+    x, y = random.uniform(-1.5, 1.5, (2, 20_000))
+    turned = np.where((x > 0.0) & (y > 0.0), 1e-6, 0.05)
+    cells = floor_cells(x, y)
+    known = cells.T @ turned**2
+    lost = cells.T @ np.where(np.hypot(x + 0.75, y + 0.75) < 0.3, -0.1, 0.0) / cells.sum(axis=0)
+    coefficients = lost + np.sqrt(1e-6 / known) * random.standard_normal(known.size)
+    variable = Variable("position", "m", x, y, "place", ("x", "y"))
+    amount = Amount("along", "turn")
+    cell = Dependence(amount, variable, "place", coefficients, 1.0, 1, 0.0, shares=(turned, turned))
+    at_x, at_y = place_of(cell)
+    assert np.hypot(at_x + 0.75, at_y + 0.75) < 0.25

@@ -11,23 +11,32 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import run_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
-from werrimbi_odom.inference.diagnosis.homogeneity import _chance, homogeneity_of_effect, lasting
+from werrimbi_odom.inference.diagnosis.homogeneity import (
+    Lasting,
+    _chance,
+    homogeneity_of_effect,
+    lasting,
+)
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
+from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.remarks import not_shown
 
 TRUE = WhiteNoiseRobot()
 ROBOT = TRUE.entered(0.05)
+PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 LASTING = 5.0
 """For how long the wandering reference errs alike [s]."""
 
@@ -127,6 +136,45 @@ def test_what_every_drive_shows_is_told_of_the_robot() -> None:
     hot = [driven(seed, nothing, f"drive_{seed}", hotter=0.01) for seed in range(80, 84)]
     found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(85, nothing, "apart", hotter=0.01)])
     assert (found.verdict, found.depends_on[0].variable.name) == ("unknown", "warmth")
+
+
+def lasts(runs: list[Run], of: str) -> Lasting:
+    """The most certain dependence on a variable, and whether it lasts."""
+    laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
+    point = start_point(laid, PLAIN)
+    cells = [each for each in dependences(laid, point, CALIBRATION) if each.variable.name == of]
+    assert cells[0].p_value < 1e-5
+    return next(lasting(laid, point, CALIBRATION, cells[:1]))
+
+
+@pytest.mark.parametrize("everywhere", [True, False])
+def test_a_wheels_wave_has_one_height_in_all_drives(everywhere: bool) -> None:
+    """What two drives show of seven and the others do not, was told as the shape of a wheel."""
+    wheel = find("eccentric_right_wheel")
+    heights = [1e-3] * 7 if everywhere else [3e-3] * 2 + [0.0] * 5
+    runs = [
+        run_of(replace(PLAIN, effects=(wheel.using(amplitude=height, phase=seed - 3.0),)), seed, 40)
+        for seed, height in enumerate(heights)
+    ]
+    assert (lasts(runs, "right_wheel_angle").p_value < 1e-3) is everywhere
+
+
+def test_of_a_place_where_one_drive_alone_was_the_others_tell_nothing() -> None:
+    """They drove much, but elsewhere: "they hold as much, and do not show it", it was said."""
+    runs = [run_of(PLAIN, seed, 40) for seed in range(6)]
+    steps = 50 * 80
+    lap = (np.full(steps, 0.4), np.full(steps, 0.4))
+    true = WhiteNoiseRobot(0.35, 0.05, 0.05, 4e-4, 4e-4)
+    laps = drive(true, lap, np.random.default_rng(5), every=10)
+    seen = laps.reference
+    path = seen.x + 1j * seen.y
+    slips = path[0] + np.cumsum(
+        np.diff(path, prepend=path[0]) * (1.0 - 0.004 * (np.abs(path - path[0]) < 0.4))
+    )
+    moved = replace(seen, x=slips.real + 5.0, y=slips.imag + 5.0)
+    found = lasts([*runs, replace(laps, reference=moved)], "position")
+    assert found.only_in is None
+    assert found.p_value < 1e-3
 
 
 @pytest.mark.parametrize("drives", [7, 25, 60, 200])

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figu
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
-from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
@@ -84,6 +84,17 @@ def test_an_error_that_no_noise_makes_is_told_from_one_that_noise_makes() -> Non
     right = replace(NOMINAL, wheel_separation_multiplier=1.0 / 0.83)
     assert far_above_noise(prepared, Model(NOMINAL, ({},)))
     assert not far_above_noise(prepared, Model(right, ({},)))
+
+
+def test_the_drift_of_a_gyro_that_a_fit_knows_is_no_error_of_the_robot() -> None:
+    """Of a fit that holds it, it was left in the errors: far above any noise, and so *unknown*."""
+    run = runs_of(NOMINAL, [4], 60)[0]
+    seen = run.reference
+    nothing = np.full(seen.x.size, np.nan)
+    reference = replace(seen, x=nothing, y=nothing, yaw=seen.yaw + 0.05 * seen.time)
+    prepared = prepare([replace(run, reference=reference)], NOMINAL)
+    assert not far_above_noise(prepared, Model(NOMINAL, ({},)))
+    assert not far_above_noise(prepared, Model(NOMINAL, ({YAW_DRIFT: 0.05},)))
 
 
 TOY = Robot(0.155, 0.02, 360.0, 360.0, left_wheel_noise=4e-4, right_wheel_noise=5.8e-4)

@@ -255,7 +255,7 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     noise, and the reference noise from its own small differences. The limit is the median variance,
     as that of a first leg with an unknown heading is arbitrary.
     """
-    legs = judged_legs(prepared, model, prepared.options.leg).quiet
+    legs = judged_legs(prepared, in_runs(prepared, model), prepared.options.leg).quiet
     kept = legs.errors.chosen(~legs.outlier)
     places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)

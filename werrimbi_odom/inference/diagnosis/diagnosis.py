@@ -204,13 +204,17 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
 
     Few parts of the drives may show an effect: of a late clock on one long circle, those with
     starts and stops. So few cannot prove it alone, even if they agree. But if a dependence lasts,
-    something is missing, and the effect competes for it.
+    something is missing, and the effect competes for it. What a law of the model leaves in its own
+    variables is no such sign.
     """
     best = _significant(this)
     if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < SURE:
         return best, _beyond_the_library(this, best, runs)
     lasts = _beyond_the_library(this, None, runs)
     if lasts is None or best is None or disagreeing(best, best.names[-1]):
+        return None, lasts
+    rest = misfit_of_held_law(this, None, lasts, runs)
+    if rest is not None and rest.effect is not None:
         return None, lasts
     beyond = _beyond_the_library(this, best, runs)
     return (best, None) if beyond is None else (None, beyond)

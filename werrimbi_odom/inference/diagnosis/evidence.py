@@ -89,7 +89,7 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     cells = floor_cells(x, y)
     steps = cells.sum(axis=0)
     middle = np.stack([cells.T @ x, cells.T @ y], axis=-1) / steps[:, None]
-    certain = cell.coefficients**2 * steps
+    certain = certainty_of_places(cell)
     first = int(np.argmax(certain))
     area = np.ptp(x) * np.ptp(y) / steps.size
     near = np.hypot(*(middle - middle[first]).T) < NEIGHBOUR * max(np.sqrt(area), FLOOR_CELL)
@@ -97,6 +97,17 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     weight = certain * (near & same)
     px, py = weight @ middle / weight.sum()
     return float(px), float(py)
+
+
+def certainty_of_places(cell: Dependence) -> Floats:
+    """Certainty of the error in each floor cell, (cells,).
+
+    An error per radian is known where the robot turned, and hardly where it drove straight.
+    """
+    cells = floor_cells(cell.variable.left, cell.variable.right)
+    sides = [side**2 for side in cell.shares or () if side.size]
+    known = cells.T @ sum(sides) if sides else cells.sum(axis=0)
+    return np.asarray(cell.coefficients**2 * known)
 
 
 def dependences(

@@ -103,8 +103,10 @@ def lasting(
         return
     for cell in cells:
         free = frame.residual(pattern_of(runs, point, cell))
-        p_value = _chance(cell.gain, cell.degrees, free, rest, parts, noise_known(runs, parts))
-        alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3))
+        by_run = free.reshape(rest.size, len(runs.runs) if cell.variable.per_run else 1, -1)
+        gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
+        p_value = _chance(gain, cell.degrees, free, rest, parts, noise_known(runs, parts))
+        alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), by_run.sum(axis=1))
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
@@ -141,7 +143,22 @@ def lasting_columns(
     return _chance(gain, degrees, free, rest, parts, noise_known(runs, parts))
 
 
-def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | None:
+def _of_one_height(by_run: Floats, rest: Floats) -> float:
+    """Gain of waves (n, runs, 2) with a phase of their own in each run, and one height in all.
+
+    A wheel's shape is the robot's; only the zero of its counter is another one in each run.
+    """
+    heights, sizes = [], []
+    for run in range(by_run.shape[1]):
+        wave = np.linalg.lstsq(by_run[:, run], rest, rcond=None)[0]
+        heights.append(np.linalg.norm(wave))
+        sizes.append(np.linalg.norm(by_run[:, run] @ wave))
+    # Each run knows its own height h by (size / h)^2: the mean, weighted by that.
+    known = np.divide(sizes, heights, out=np.zeros(len(sizes)), where=np.array(heights) > 0.0) ** 2
+    return float((known @ heights) ** 2 / np.sum(known)) if known.any() else 0.0
+
+
+def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats) -> int | None:
     """Index of the drive without which a pattern vanishes, though the others could show it.
 
     A law belongs to the robot, so it must remain when any one drive is left out (a jackknife over
@@ -155,6 +172,8 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | Non
         Whitened innovations with the nuisances projected out.
     run : ndarray, shape (n,)
         Drive of each innovation.
+    seen : ndarray, shape (n, p)
+        The pattern's functions, of all drives alike.
     """
     if np.unique(run).size < DRIVES_TO_LEAVE_ONE:
         return None
@@ -163,7 +182,11 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | Non
     explained = scaled @ np.linalg.lstsq(scaled, rest, rcond=None)[0]
     first = int(np.argmax(np.bincount(run, rest**2 - (rest - explained) ** 2)))
     others = run != first
-    if np.sum(scaled[others] ** 2) < OTHER_DRIVES * scaled.shape[1]:
+    size = np.sqrt(np.sum(seen**2, axis=0))
+    unit = seen[:, size > 0.0] / size[size > 0.0]
+    # Functions weigh as what that drive shows by them: of a floor, the places where it errs.
+    weight = (unit[~others].T @ rest[~others]) ** 2
+    if weight @ np.sum(unit[others] ** 2, axis=0) < OTHER_DRIVES * np.sum(weight):
         return None
     basis, values, _ = np.linalg.svd(scaled[others], full_matrices=False)
     own = basis[:, values > LASTING_HEARD]

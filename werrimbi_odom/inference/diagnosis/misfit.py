@@ -6,7 +6,9 @@ An effect in the robot file (the library's, a user's, a draft) has a law of some
 law may differ slightly. The remainder then depends on the effect's own variables and acts on the
 same channels. It is small against what the law explains, and a freer form of the law (a curve over
 one of its variables) removes it. Some other effect may fit a part of it, but naming that one would
-mislead the user.
+mislead the user. Where a law's memory is wrong (a wheel that coasts through its play as it brakes),
+the remainder may show in anything that the drives have in common with it. If it is little of what
+the law explains, and of the errors, it is reported, and is no missing effect either.
 """
 
 from __future__ import annotations
@@ -31,7 +33,13 @@ from werrimbi_odom.inference.fitting.score_tests import (
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
+from werrimbi_odom.inference.rules import (
+    LEFT_ASKED,
+    LITTLE_OF_A_LAW,
+    LITTLE_OF_ERRORS,
+    REST_EXPLAINED,
+    SURE,
+)
 from werrimbi_odom.model.effect import AppliedEffect
 
 
@@ -45,7 +53,7 @@ class Misfit:
     cell: Dependence
     """What the errors still depend on."""
     share: float | None
-    """The remainder as a share of what the law explains."""
+    """The remainder as a share of what the law explains; without a law, of the squared errors."""
     only_in: str | None = None
     """The one drive that shows it; None where all do."""
 
@@ -63,12 +71,16 @@ def misfit_of_held_law(
         Dependence that no effect explains, which would end the search.
     """
     before = this.before
+    little = beyond is not None and beyond.gain < LITTLE_OF_ERRORS * runs.data
+    rest: Misfit | None = None
     for law, support, explained in _laws(before, runs):
         own = (cell for cell in this.dependences if _shares(support, cell))
         if beyond is not None:
             share = beyond.gain / explained
             if _shares(support, beyond) and share < LITTLE_OF_A_LAW:
                 return Misfit(law.name, beyond, share)
+            if little and share < LITTLE_OF_A_LAW:
+                rest = Misfit(None, beyond, beyond.gain / runs.data)
             continue
         if best is None:
             return None
@@ -81,7 +93,7 @@ def misfit_of_held_law(
         left = _gain_beside(runs, before.point, numbers, score, cell)
         if left < (1.0 - REST_EXPLAINED) * score.gain:
             return Misfit(law.name, cell, share)
-    return None
+    return rest
 
 
 def misfit_of_found(

@@ -92,7 +92,16 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
             "speed",
         ),
         robots("direction", "", np.sign(drive.speed.end), "speed", "direction"),
-        robots("acceleration", "m/s^2", acceleration, "speed", "left_speed", "right_speed"),
+        robots(
+            "acceleration",
+            "m/s^2",
+            acceleration,
+            "speed",
+            "left_speed",
+            "right_speed",
+            "left_acceleration",
+            "right_acceleration",
+        ),
         robots("yaw_rate", "rad/s", drive.yaw_rate.end, "yaw_rate", "left_speed", "right_speed"),
         robots(
             "yaw_rate_size",

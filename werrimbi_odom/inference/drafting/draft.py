@@ -18,7 +18,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, certainty_of_places, place_of
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
@@ -197,6 +197,6 @@ def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
     x, y = place_of(cell)
     offsets = (-SPOT_OFF, 0.0, SPOT_OFF)
     places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]
-    size = rounded(float(cell.coefficients[np.argmax(np.abs(cell.coefficients))]))
+    size = rounded(float(cell.coefficients[np.argmax(certainty_of_places(cell))]))
     half = 0.5 * diagnosis.given.track
     return spot_form(places, SPOT_RADII, size, half)

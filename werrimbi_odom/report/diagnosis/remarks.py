@@ -10,6 +10,7 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
+from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
@@ -41,12 +42,22 @@ def law(told: Told) -> list[str]:
             f"{_or_a_held_law(told)}."
         ]
     if misfit.effect is None:
-        return [f"But: something is left. With everything found put in, {cell}."]
+        return [f"But: something is left. With everything found put in, {cell}.{_little(misfit)}"]
     share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
     return [
         f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
         f"looks at: {cell}. That is a matter of the law's form, and no other effect."
     ]
+
+
+def _little(misfit: Misfit) -> str:
+    """How little of the errors a remainder without a law is, where it is that little."""
+    if misfit.share is None:
+        return ""
+    return (
+        f" That is {100.0 * misfit.share:.2g} % of the squared errors, and what the robot file "
+        "holds explains more than ten times as much: a law of it may not quite fit."
+    )
 
 
 def wandering(diagnosis: Diagnosis) -> list[str]:
