@@ -237,5 +237,5 @@ def _course(seen: deque[_Seen], at: int) -> SweepMotion:
     motions = np.array([motion_between(seen[at].pose, each.pose) for each in about])
     powers = np.column_stack([t**power for power in range(degree + 1)])
     fitted = np.linalg.lstsq(powers, motions, rcond=None)[0]
-    fitted = np.vstack([fitted, np.zeros((2, 3))])  # the cube of half a turn of the lidar is nothing
+    fitted = np.vstack([fitted, np.zeros((2, 3))])  # the cube of half a turn is nothing
     return SweepMotion(tuple(fitted[1].tolist()), tuple(fitted[2].tolist()))
