@@ -41,7 +41,20 @@ def run_of(
     turning = random.uniform(-1.2, 1.2, count) * (random.random(count) > 0.3)
     smooth = np.ones(8) / 8.0
     driven = [np.convolve(np.repeat(part, each), smooth, "same") for part in (speed, turning)]
-    ticks = read(ROBOT, float(rate), *driven)
+    return run_by(truth, *driven, seed=random, name=f"run_{seed}", channels=channels)
+
+
+def run_by(
+    truth: Robot,
+    speed: np.ndarray,
+    turning: np.ndarray,
+    seed: int | np.random.Generator = 0,
+    name: str = "run",
+    channels: Mapping[str, np.ndarray] | None = None,
+) -> Run:
+    """A drive by its speeds [m/s] and yaw rates [rad/s], 20 of each a second."""
+    random = np.random.default_rng(seed)
+    ticks = read(ROBOT, 20.0, speed, turning)
     path = trajectory(truth, *ticks, channels=channels)
     shown = slice(None, None, 4)
     count = path.x[shown].size
@@ -55,7 +68,7 @@ def run_of(
     record = Ticks(
         ticks.time, ticks.left.astype(float), ticks.right.astype(float), dict(channels or {})
     )
-    return Run(f"run_{seed}", Path(f"run_{seed}"), record, reference)
+    return Run(name, Path(name), record, reference)
 
 
 def record_of(name: str, drive: Recording) -> SquareRecording:

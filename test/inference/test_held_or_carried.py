@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import NOISE_XY, NOISE_YAW, run_of
+from test.inference.driven import NOISE_XY, NOISE_YAW, run_by, run_of
 from test.inference.test_gaps import parts
 from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
@@ -126,6 +126,17 @@ def test_nobody_holds_a_robot_whose_heading_follows_its_wheels(seed: int, share:
     short = replace(run.reference, x=way.real, y=way.imag)
     found = looked_at(replace(run, reference=short), ROBOT).no_driving
     assert found == ()
+
+
+def test_a_robot_that_is_held_on_a_line_and_turns_when_let_go_is_found() -> None:
+    """All that it turns is in windows at the end, half driven: it says nothing of the hold."""
+    time = 0.05 * np.arange(1200)
+    on_a_line = (time > 26.0) & (time < 36.2)
+    turning = np.where(on_a_line, 0.0, 1.2 * np.sign(np.sin(0.5 * time)))
+    run, begin, end = held(run_by(ROBOT, np.full(time.size, 0.4), turning), 30.0, 36.0)
+    found = span(run)
+    assert found[:2] == pytest.approx((begin, end), abs=NEAR)
+    assert found[2] == {"held"}
 
 
 @pytest.mark.parametrize("seed", range(3))

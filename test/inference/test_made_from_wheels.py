@@ -61,6 +61,21 @@ def test_odometry_is_refused_by_its_numbers_alone(seed: int, robot: Robot) -> No
         require_independent(circle, ROBOT)
 
 
+@pytest.mark.parametrize("per_second", [5.0, 10.0])
+def test_odometry_that_goes_along_chords_is_refused_too(per_second: float) -> None:
+    """Many drivers add to x and y by the heading between two messages, whatever the turn."""
+    run, _ = recorded(0, per_second)
+    left, right = (
+        np.diff(counts) * ROBOT.left_tick for counts in (run.ticks.left, run.ticks.right)
+    )
+    yaw = np.concatenate([[0.0], np.cumsum((right - left) / ROBOT.track)])
+    way = 0.5 * (left + right) * np.exp(0.5j * (yaw[1:] + yaw[:-1]))
+    place = np.concatenate([[0j], np.cumsum(way)])
+    circle = replace(run, reference=Reference(run.ticks.time, place.real, place.imag, yaw))
+    with pytest.raises(InputError, match="it was made from the same counts"):
+        require_independent(circle, ROBOT)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_odometry_has_the_stamps_of_its_wheels_right_or_wrong(seed: int) -> None:
     """Wheels whose stamps scatter by 4 ms are put right for a measurement, and not for this."""

@@ -131,7 +131,8 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     rows = _rows(reference, counters, robot)
     if rows.size <= CIRCLE_FEWEST:
         return None
-    ways, known = _ways(reference, rows)
+    # Odometry goes along the arc of each message, or along its chord: both are tried.
+    (ways, known), (chords, _) = (_ways(reference, rows, arcs=arcs) for arcs in (True, False))
     turns = np.diff(np.unwrap(reference.yaw[rows]))
     turning = np.isfinite(turns)
     best = turned = np.inf
@@ -141,6 +142,7 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
         if not known:  # the sign of the motion is taken from the wheels
             ways = np.abs(ways) * np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
         best = min(best, _typical(ways, wheels))
+        best = min(best, _typical(chords, wheels)) if known else best
         if turning.sum() > CIRCLE_FEWEST:
             turned = min(turned, _typical(turns[turning], wheels[turning]))
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
@@ -166,8 +168,11 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
     return np.asarray(rows[new])
 
 
-def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[Floats, bool]:
-    """Path length from each row to the next through all poses between, and whether it is signed."""
+def _ways(reference: Reference, rows: NDArray[np.intp], *, arcs: bool) -> tuple[Floats, bool]:
+    """Path length from each row to the next through all poses between, and whether it is signed.
+
+    Where headings are known, poses are joined by arcs, or else by their chords.
+    """
     every = np.flatnonzero(reference.has_position)
     x, y, yaw = (part[every] for part in (reference.x, reference.y, reference.yaw))
     steps = np.diff(x) + 1j * np.diff(y)
@@ -176,7 +181,8 @@ def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[Floats, bool]:
     if known:
         turns = np.angle(np.exp(1j * np.diff(yaw)))
         ahead = (steps * np.exp(-1j * (yaw[:-1] + 0.5 * turns))).real
-        chord = np.where(ahead < 0.0, -chord, chord) / np.sinc(0.5 * turns / np.pi)
+        chord = np.where(ahead < 0.0, -chord, chord)
+        chord = chord / np.sinc(0.5 * turns / np.pi) if arcs else chord
     sums = np.concatenate([[0.0], np.cumsum(chord)])
     return np.diff(sums[np.searchsorted(every, rows)]), known
 
