@@ -71,7 +71,6 @@ def misfit_of_held_law(
         Dependence that no effect explains, which would end the search.
     """
     before = this.before
-    little = beyond is not None and beyond.gain < LITTLE_OF_ERRORS * runs.data
     rest: Misfit | None = None
     for law, support, explained in _laws(before, runs):
         own = (cell for cell in this.dependences if _shares(support, cell))
@@ -79,7 +78,7 @@ def misfit_of_held_law(
             share = beyond.gain / explained
             if _shares(support, beyond) and share < LITTLE_OF_A_LAW:
                 return Misfit(law.name, beyond, share)
-            if little and share < LITTLE_OF_A_LAW:
+            if _is_little(beyond, explained, runs):
                 rest = Misfit(None, beyond, beyond.gain / runs.data)
             continue
         if best is None:
@@ -111,11 +110,18 @@ def misfit_of_found(
     for cell, p_value, only_in in lasting(runs, fit.point, numbers, worth[:LEFT_ASKED]):
         dear = cell.gain <= cell.degrees * fit.penalty_of_one  # does not pay its penalty as a law
         if only_in or (p_value < SURE and not dear):
-            for law, support, explained in _laws(fit, runs):
+            laws = list(_laws(fit, runs))
+            for law, support, explained in laws:
                 if _shares(support, cell):
                     return Misfit(law.name, cell, cell.gain / explained, only_in)
-            return Misfit(None, cell, None, only_in)
+            little = any(_is_little(cell, explained, runs) for _, _, explained in laws)
+            return Misfit(None, cell, cell.gain / runs.data if little else None, only_in)
     return None
+
+
+def _is_little(cell: Dependence, explained: float, runs: Concatenated) -> bool:
+    """Whether a dependence is little of the errors, and of what a law explains."""
+    return cell.gain < min(LITTLE_OF_ERRORS * runs.data, LITTLE_OF_A_LAW * explained)
 
 
 def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Support, float]]:

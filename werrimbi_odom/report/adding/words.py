@@ -12,6 +12,7 @@ from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
 from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_words
+from werrimbi_odom.report.diagnosis.remarks import little_words
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.report.number_format import listed, picked, quantity, scaled_with_std
@@ -183,9 +184,10 @@ def _rest(added: Added) -> str:
             f"goes with {variable_words(first)}, {share:.2g} % of what the law explains "
             f"(NEES {nees:.2f}, honest is 1)."
         )
+    what = "Something is still missing" if misfit.share is None else "Something is left"
     return (
-        f"Something is still missing: {amount_words(first)} goes with {variable_words(first)} "
-        f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1)."
+        f"{what}: {amount_words(first)} goes with {variable_words(first)} "
+        f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1).{little_words(misfit)}"
     )
 
 

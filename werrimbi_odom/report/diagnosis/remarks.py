@@ -42,7 +42,9 @@ def law(told: Told) -> list[str]:
             f"{_or_a_held_law(told)}."
         ]
     if misfit.effect is None:
-        return [f"But: something is left. With everything found put in, {cell}.{_little(misfit)}"]
+        return [
+            f"But: something is left. With everything found put in, {cell}.{little_words(misfit)}"
+        ]
     share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
     return [
         f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
@@ -50,7 +52,7 @@ def law(told: Told) -> list[str]:
     ]
 
 
-def _little(misfit: Misfit) -> str:
+def little_words(misfit: Misfit) -> str:
     """How little of the errors a remainder without a law is, where it is that little."""
     if misfit.share is None:
         return ""
