@@ -114,6 +114,20 @@ def test_increments_and_speeds_are_no_totals(seed: int) -> None:
                 refuse_wrong_columns(wrong)
 
 
+def test_totals_of_a_robot_that_is_turned_by_hand_once_are_totals() -> None:
+    """It drives straight to and fro, by a gyro: one window alone made the correlation."""
+    time = np.arange(0.0, 60.0, 0.05)
+    left = np.rint(500.0 * np.sin(0.3 * time))
+    by_hand = (time >= 30.1) & (time < 30.4)
+    random = np.random.default_rng(3)
+    yaw = np.where(time < 30.2, 0.0, 1.5) + 1e-3 * random.standard_normal(time.size)
+    nowhere = np.full(time.size, np.nan)
+    ticks = Ticks(time, left, left + np.where(by_hand, 80.0, 0.0))
+    refuse_wrong_columns(
+        replace(driven(0), ticks=ticks, reference=Reference(time, nowhere, nowhere, yaw))
+    )
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
     run = driven(seed)

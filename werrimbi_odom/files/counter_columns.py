@@ -21,7 +21,9 @@ WINDOW = 0.5
 TAKES, HARDLY = 0.9, 0.5
 """Correlations with the motion: of the values themselves, from which they are increments or speeds,
 and of their differences, up to which they are no totals."""
-
+CARRIED = 3
+"""Windows that matter most for a correlation of the values, and are left out of it: a robot that
+drives straight and is turned by hand once has one that makes it alone."""
 
 SEVERAL, AT_MOST = 3, 0.3
 """Leaps from which a counter's range is taken for its period, and their largest share of the rows:
@@ -63,9 +65,9 @@ class _Windows(NamedTuple):
 
 def _no_totals(found: _Windows) -> str:
     # A displacement has no sign, so the values have none either. Turns have theirs.
-    of_values = [_related(np.abs(found.values[0]), found.moved[0])]
+    of_values = [_related(np.abs(found.values[0]), found.moved[0], CARRIED)]
     of_steps = [_related(np.abs(found.steps[0]), found.moved[0])]
-    of_values += [_related(found.values[1], found.moved[1])]
+    of_values += [_related(found.values[1], found.moved[1], CARRIED)]
     of_steps += [_related(found.steps[1], found.moved[1])]
     if max(of_values) < TAKES or max(of_steps) > HARDLY:
         return ""
@@ -115,9 +117,18 @@ def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
     return _Windows(values, np.diff(at, axis=1)[:, whole], moved[:, whole])
 
 
-def _related(one: Floats, other: Floats) -> float:
-    """Correlation where both are known; 0 if there are too few values, or none varies."""
+def _related(one: Floats, other: Floats, without: int = 0) -> float:
+    """Correlation where both are known; 0 if there are too few values, or none varies.
+
+    Parameters
+    ----------
+    without : int
+        Number of the most influential values that are left out.
+    """
     known = np.isfinite(one) & np.isfinite(other)
+    if without and np.count_nonzero(known) > without:
+        products = np.abs((one - one[known].mean()) * (other - other[known].mean()))
+        known[np.argsort(np.where(known, products, -1.0))[-without:]] = False
     if np.count_nonzero(known) < FEWEST or not np.ptp(one[known]) or not np.ptp(other[known]):
         return 0.0
     return abs(float(np.corrcoef(one[known], other[known])[0, 1]))
