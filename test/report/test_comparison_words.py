@@ -156,9 +156,12 @@ def test_what_is_still_missing_is_told_in_words_and_not_by_a_variables_name() ->
     added = SimpleNamespace(
         verdict=None,
         compared=SimpleNamespace(main=SimpleNamespace(all=SimpleNamespace(figures=figures))),
-        misfit=SimpleNamespace(cell=cell, only_in=None, effect=None),
+        misfit=SimpleNamespace(cell=cell, only_in=None, effect=None, share=None),
     )
     assert _rest(added) == (  # type: ignore[arg-type]
         "Something is still missing: how far both wheels roll goes with the size of the rate of "
         "turning (p = 4e-16; NEES 10.96, honest is 1)."
     )
+    added.misfit.share = 0.012
+    assert _rest(added).startswith("Something is left: how far both wheels roll goes with")  # type: ignore[arg-type]
+    assert "That is 1.2 % of the squared errors" in _rest(added)  # type: ignore[arg-type]
