@@ -155,9 +155,10 @@ def _of_group(group: ReferenceGroup, model: Model) -> Model:
 def _with_drifts(model: Model, runs: Concatenated) -> Model:
     """Model with the drift of each run's gyro, which is no error of the robot.
 
-    Fits leave this drift free too. It is the slope of heading errors over time by least absolute
-    deviations: a median of slopes weighted by the legs' durations. A run of fewer than `DRIFT_LEGS`
-    has none, as the drift would absorb the whole error of one leg.
+    Fits leave this drift free too. To what the model has of it the rest is added: the slope of
+    heading errors over time by least absolute deviations, a median of slopes weighted by the legs'
+    durations. Of a run of fewer than `DRIFT_LEGS` nothing is, as it would absorb the whole error of
+    one leg.
     """
     seen = predicted_legs(model, runs)[:, 2]
     error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
@@ -170,7 +171,7 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
         weight = np.cumsum(runs.duration[rows][order])
         middle = int(np.searchsorted(weight, 0.5 * weight[-1])) if rows.size else 0
         drift = float(slopes[order][middle]) if rows.size >= DRIFT_LEGS else 0.0
-        own.append({**mine, YAW_DRIFT: drift})
+        own.append({**mine, YAW_DRIFT: mine.get(YAW_DRIFT, 0.0) + drift})
     return Model(model.robot, tuple(own))
 
 
@@ -255,7 +256,7 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     noise, and the reference noise from its own small differences. The limit is the median variance,
     as that of a first leg with an unknown heading is arbitrary.
     """
-    legs = judged_legs(prepared, in_runs(prepared, model), prepared.options.leg).quiet
+    legs = judged_legs(prepared, model, prepared.options.leg).quiet
     kept = legs.errors.chosen(~legs.outlier)
     places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)
