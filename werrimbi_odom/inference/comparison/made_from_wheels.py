@@ -131,24 +131,22 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     rows = _rows(reference, counters, robot)
     if rows.size <= CIRCLE_FEWEST:
         return None
-    # Odometry goes along the arc of each message, or along its chord: both are tried.
-    (ways, known), (chords, _) = (_ways(reference, rows, arcs=arcs) for arcs in (True, False))
+    ways, known = _ways(reference, rows)
     turns = np.diff(np.unwrap(reference.yaw[rows]))
     turning = np.isfinite(turns)
     best = turned = np.inf
     for delay in CIRCLE_DELAYS:
         wheels = np.diff(counters.at(reference.time[rows] - delay), axis=0)
         wheels = wheels * [robot.left_tick, robot.right_tick]
-        if not known:  # the sign of the motion is taken from the wheels
-            ways = np.abs(ways) * np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
-        best = min(best, _typical(ways, wheels))
-        best = min(best, _typical(chords, wheels)) if known else best
+        # Where it is not known, the sign of the motion is taken from the wheels.
+        sign = 1.0 if known else np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
+        best = min(best, *(_typical(sign * each, wheels) for each in ways))
         if turning.sum() > CIRCLE_FEWEST:
             turned = min(turned, _typical(turns[turning], wheels[turning]))
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
     rolled = 0.5 * float(np.abs(wheels).sum())
-    scale = float(np.abs(ways).sum()) / rolled if rolled > 0.0 else 1.0
-    way = float(np.median(np.abs(ways)))
+    scale = float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 1.0
+    way = float(np.median(np.abs(ways[0])))
     return Closeness(best, way, scale * _rounding(run, robot), turned)
 
 
@@ -168,10 +166,10 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
     return np.asarray(rows[new])
 
 
-def _ways(reference: Reference, rows: NDArray[np.intp], *, arcs: bool) -> tuple[Floats, bool]:
-    """Path length from each row to the next through all poses between, and whether it is signed.
+def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[list[Floats], bool]:
+    """Path lengths from each row to the next through all poses between, and whether signed.
 
-    Where headings are known, poses are joined by arcs, or else by their chords.
+    Where headings are known along arcs, and in any case along chords: odometry adds up either.
     """
     every = np.flatnonzero(reference.has_position)
     x, y, yaw = (part[every] for part in (reference.x, reference.y, reference.yaw))
@@ -182,9 +180,9 @@ def _ways(reference: Reference, rows: NDArray[np.intp], *, arcs: bool) -> tuple[
         turns = np.angle(np.exp(1j * np.diff(yaw)))
         ahead = (steps * np.exp(-1j * (yaw[:-1] + 0.5 * turns))).real
         chord = np.where(ahead < 0.0, -chord, chord)
-        chord = chord / np.sinc(0.5 * turns / np.pi) if arcs else chord
-    sums = np.concatenate([[0.0], np.cumsum(chord)])
-    return np.diff(sums[np.searchsorted(every, rows)]), known
+    steps_by = [chord / np.sinc(0.5 * turns / np.pi), chord] if known else [chord]
+    at = np.searchsorted(every, rows)
+    return [np.diff(np.concatenate([[0.0], np.cumsum(each)])[at]) for each in steps_by], known
 
 
 def _typical(ways: Floats, wheels: Floats) -> float:

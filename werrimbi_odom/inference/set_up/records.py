@@ -233,18 +233,8 @@ def _way(record: SetUpRecord) -> Floats:
     return summed(np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right))))
 
 
-def gaps_of(record: SetUpRecord, gone: Floats, length: float) -> NDArray[np.bool_]:
-    """Reference intervals without driving, or with silence of reference or ticks.
-
-    Parameters
-    ----------
-    record : SetUpRecord
-        With m rows of the reference within the ticks' time.
-    gone : ndarray, shape (m,)
-        Cumulative travel at each row [m].
-    length : float
-        Travel of a leg [m].
-    """
+def _gaps(record: SetUpRecord, gone: Floats, length: float) -> NDArray[np.bool_]:
+    """Reference intervals without driving, or with silence of reference or ticks."""
     inside = (record.time >= record.seen[0]) & (record.time <= record.seen[-1])
     time = record.time[inside]
     ticks = np.flatnonzero(gaps_in(time, _way(record)[inside] / length))
@@ -257,7 +247,7 @@ def _cut_run(
     record: SetUpRecord, length: float, point: complex, yaw: float, stretch: int, offset: int
 ) -> Cuts:
     gone = _progress(record)
-    gap = gaps_of(record, gone, length)
+    gap = _gaps(record, gone, length)
     chosen = leg_ends(gone, gap, length)
     at = record.seen[chosen]
     time = np.union1d(record.time, at)
