@@ -98,5 +98,8 @@ class Window:
             )
         worst = max(self._deviations) / sum(self._deviations)
         if worst > _ONE_LEG and self.count > 2:
-            words += f"; one leg makes {worst:.0%} of it: a jump of the reference, or a hard slip"
+            words += (
+                f"; one leg makes {worst:.0%} of it: a jump of the reference, a hard slip, or "
+                "the one sharp turn among calmer legs"
+            )
         return False, f"the covariance is too small, the errors are larger than it says: {words}"

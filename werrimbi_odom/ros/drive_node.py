@@ -21,6 +21,7 @@ from geometry_msgs.msg import Point, Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Trigger
@@ -55,6 +56,10 @@ LEVELS = {
 class DriveNode(Node):  # type: ignore[misc]
     """A `Driver` behind topics and services.
 
+    It publishes on `cmd_vel` from the start of a drive to a second after its end. A node that waits
+    disturbs nobody; a second one that is started is refused, or both see each other and stop in the
+    second that a robot stands still before it drives.
+
     Raises
     ------
     InputError
@@ -76,7 +81,8 @@ class DriveNode(Node):  # type: ignore[misc]
         self._held_until = -math.inf
         self._told = self._driver.state
         self._shown_from: Pose | None = None
-        self._commands = publisher(self, TwistStamped if self._stamped else Twist, "cmd_vel", 10)
+        self._topic = self.resolve_topic_name("cmd_vel")
+        self._commands: Publisher | None = None
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._path = publisher(self, Marker, "~/path", latched)
         self._diagnose = diagnostics_publisher(self)
@@ -130,15 +136,19 @@ class DriveNode(Node):  # type: ignore[misc]
         """Check time and other publishers; repeat zeros after a drive."""
         driver, now = self._driver, time.monotonic()
         if driver.state == "driving":
-            others = others_on(self, self._commands.topic_name)
+            others = self._others()
             if others:
                 driver.stop(others)
                 self._send(STILL)
             else:
                 self._send(driver.tick(now))
             self._after()
-        if driver.state != "driving" and now < self._held_until:
-            self._send(STILL)
+        if driver.state != "driving" and self._commands is not None:
+            if now < self._held_until:
+                self._send(STILL)
+            else:
+                self.destroy_publisher(self._commands)
+                self._commands = None
         self._records.look()
         self._show(again=False)
 
@@ -146,7 +156,7 @@ class DriveNode(Node):  # type: ignore[misc]
 
     def _on_start(self, _: Any, response: Any) -> Any:
         asked = time.monotonic()
-        wrong = others_on(self, self._commands.topic_name) or self._driver.refusal(asked)
+        wrong = self._others() or self._driver.refusal(asked)
         if wrong:
             response.success, response.message = False, f"it does not start: {wrong}"
             self.get_logger().warning(response.message)
@@ -160,6 +170,8 @@ class DriveNode(Node):  # type: ignore[misc]
             self._records.begin(self._driver.plan.name)
             now = time.monotonic()
             self._driver.start(now, busy=now - asked)
+            kind = TwistStamped if self._stamped else Twist
+            self._commands = self._commands or publisher(self, kind, "cmd_vel", 10)
         except InputError as error:
             self._records.close()
             response.success, response.message = False, f"it does not start: {error}"
@@ -178,7 +190,7 @@ class DriveNode(Node):  # type: ignore[misc]
         return response
 
     def _on_check(self, _: Any, response: Any) -> Any:
-        wrong = others_on(self, self._commands.topic_name) or self._driver.refusal(time.monotonic())
+        wrong = self._others() or self._driver.refusal(time.monotonic())
         self._show(again=True)
         response.success = not wrong
         response.message = wrong or f"it could start. {self._words()}"
@@ -202,10 +214,14 @@ class DriveNode(Node):  # type: ignore[misc]
                 time.sleep(TICK)
         self._records.close()
 
+    def _others(self) -> str:
+        """Who else commands the robot, in words; "" if nobody does."""
+        return others_on(self, self._topic, own=self._commands is not None)
+
     # ------------------------------------------------------------------------- publications
 
     def _send(self, command: Command | None) -> None:
-        if command is None:
+        if command is None or self._commands is None:
             return
         twist = Twist()
         twist.linear.x, twist.angular.z = command

@@ -19,13 +19,21 @@ def full_name(node: Node) -> str:
     return str(node.get_fully_qualified_name().lstrip("/"))
 
 
-def others_on(node: Node, topic: str) -> str:
-    """Other publishers on a topic of the node, in words; "" if there are none."""
-    if node.count_publishers(topic) <= 1:
+def others_on(node: Node, topic: str, *, own: bool) -> str:
+    """Other publishers on a topic, in words; "" if there are none.
+
+    Parameters
+    ----------
+    topic : str
+        With its namespace.
+    own : bool
+        Whether the node itself publishes it.
+    """
+    if node.count_publishers(topic) <= own:
         return ""
     names = [_name(each) for each in node.get_publishers_info_by_topic(topic)]
-    if (own := f"/{full_name(node)}") in names:
-        names.remove(own)
+    if own and (name := f"/{full_name(node)}") in names:
+        names.remove(name)
     return (
         f"another publishes {topic} too ({', '.join(sorted(names))}); a node that was killed is "
         "listed for 20 s"
