@@ -111,6 +111,23 @@ def score_test_of_products(square: Floats, cross: Floats, size: Floats) -> Score
     return ScoreTest(float(shares @ shares), int(kept.sum()), coefficients)
 
 
+def within_reach(free: Floats, residual: Floats, reach: Floats) -> Floats:
+    """Coefficients (k,) of columns that explain a residual, with standard deviations known before.
+
+    Where columns do nearly the same, their difference takes any value for a little of noise. The
+    prior keeps it, and hardly moves what the columns determine.
+
+    Parameters
+    ----------
+    free : ndarray, shape (n, k)
+    residual : ndarray, shape (n,)
+    reach : ndarray, shape (k,)
+        Prior standard deviations about zero.
+    """
+    square = free.T @ free + np.diag(reach**-2.0)
+    return np.asarray(np.linalg.solve(square, -(free.T @ residual)))
+
+
 def solved(columns: Floats, target: Floats) -> Floats:
     """Least-squares solution (k,) for a target (n,), zero along undetermined directions."""
     unit, size = _unit(columns)

@@ -45,6 +45,24 @@ class Candidate:
         )
 
     @property
+    def reach(self) -> tuple[float, ...]:
+        """Largest physical distance from null along each coordinate, in steps."""
+        effect, null = self.effect, self.effect.nulls
+        if effect.quadrature is not None:
+            names = [effect.quadrature[0]] * 2
+        else:
+            names = [
+                name
+                for name, item in effect.parameters.items()
+                if not item.tries and not item.as_base
+            ]
+        items = [(effect.parameters[name], null[name]) for name in names]
+        return tuple(
+            max(abs(bound - zero) for bound in item.bounds) / (STEP * item.scale)
+            for item, zero in items
+        )
+
+    @property
     def place(self) -> str | None:
         """Name of a parameter that is an unknown angle round the wheel, possibly one per run."""
         items = self.effect.parameters

@@ -33,7 +33,7 @@ from werrimbi_odom.inference.fitting.prediction import (
     predicted_legs,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, stacked, unexpected
-from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
+from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test, within_reach
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 
@@ -187,9 +187,10 @@ def scores(
         test = score_test(flat, free, rest)
         if test is None:
             continue
-        solution = test.coefficients
+        copies = len(runs.runs) if candidate.per_run else 1
+        solution = within_reach(free, rest, np.tile(candidate.reach, copies))
         if candidate.per_run:
-            solution = solution.reshape(len(runs.runs), -1)
+            solution = solution.reshape(copies, -1)
         results.append(Score(candidate, test.gain, test.degrees, solution))
     return tuple(results)
 
