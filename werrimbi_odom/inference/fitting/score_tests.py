@@ -188,7 +188,9 @@ def scores(
         if test is None:
             continue
         copies = len(runs.runs) if candidate.per_run else 1
-        solution = within_reach(free, rest, np.tile(candidate.reach, copies))
+        solution, reach = test.coefficients, np.tile(candidate.reach, copies)
+        if (np.abs(solution) > reach).any():
+            solution = within_reach(free, rest, reach)
         if candidate.per_run:
             solution = solution.reshape(copies, -1)
         results.append(Score(candidate, test.gain, test.degrees, solution))
