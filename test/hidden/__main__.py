@@ -81,7 +81,7 @@ EVERYTHING = Extent(
     scans=(2, 12, len(plan.EFFECTS)),
 )
 PART_OF_IT = Extent(
-    SAMPLE, survive=12, smallest=1, gaps=40, margins=3, field=(1, 2, 8), scans=(1, 2, 8)
+    SAMPLE, survive=12, smallest=2, gaps=40, margins=1, field=(1, 2, 8), scans=(1, 2, 8)
 )
 
 SCANS = 1000
@@ -94,7 +94,7 @@ SECONDS = {
     "scans": 60.0,
     "survive": 4.5,
     "coverage": 3.0,
-    "smallest": 42.0,
+    "smallest": 25.0,
     "gaps": 4.5,
     "margins": 4.5,
 }

@@ -20,7 +20,7 @@ from itertools import pairwise
 from pkgutil import walk_packages
 from typing import cast
 
-from test.hidden.plan import CALIBRATION, evenly
+from test.hidden.plan import APART, CALIBRATION, evenly
 from test.hidden.result_line import Judged, is_right, judgement
 from test.hidden.resumable_jobs import Line
 from test.hidden.set_judging import judged, options_of
@@ -112,14 +112,14 @@ def _load() -> None:
 def tasks(
     sets: Sequence[HiddenSet], wanted: int, start: int
 ) -> dict[str, tuple[HiddenSet, str, float]]:
-    """Some of the judged sets with each number perturbed."""
-    some = evenly([each for each in sets if each.group in GROUPS], wanted, start)
+    """Some of the judged sets with each number perturbed: others for each number."""
+    pool = [each for each in sets if each.group in GROUPS]
     return {
         f"{name} x{factor:g} {each.name}": (each, name, factor)
-        for name, value in judging().items()
+        for number, (name, value) in enumerate(judging().items())
+        for each in evenly(pool, wanted, start + number * APART)
         for factor in FACTORS
         if times(value, factor) != value
-        for each in some
     }
 
 

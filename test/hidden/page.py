@@ -61,7 +61,7 @@ def page(
 
 def draw(
     found: Scores,
-    ratios: dict[str, float],
+    ratios: dict[str, tuple[float, float]],
     true: list[float],
     false: list[float],
     sure: float,
@@ -72,7 +72,8 @@ def draw(
     Parameters
     ----------
     ratios
-        By effect: the size that is named over the smallest that could be seen.
+        By effect: the size that is named over the smallest that could be seen, and the factor by
+        which that may be wrong.
     true, false
         Minus log10 of p-values, of what is hidden and of the likeliest where nothing is.
     sure : float
@@ -94,9 +95,13 @@ def draw(
             made.append((name, title))
 
     if ratios:
-        names = sorted(ratios, key=ratios.__getitem__)
-        values = [ratios[name] for name in names]
-        figure = go.Figure(go.Bar(x=values, y=names, orientation="h", marker_color=BLUE))
+        names = sorted(ratios, key=lambda name: ratios[name][0])
+        values = [ratios[name][0] for name in names]
+        up = [ratios[name][0] * (ratios[name][1] - 1.0) for name in names]
+        down = [ratios[name][0] * (1.0 - 1.0 / ratios[name][1]) for name in names]
+        error = {"array": up, "arrayminus": down, "color": GREY}
+        bars = go.Bar(x=values, y=names, orientation="h", marker_color=BLUE, error_x=error)
+        figure = go.Figure(bars)
         figure.add_vline(x=1.0, line={"color": GREY, "dash": "dash"})
         title = "Size named in 95 of 100 cases, over the smallest that could be seen at all"
         save(figure, "evidence_smallest.png", title, "ratio", "", 200 + 24 * len(names))

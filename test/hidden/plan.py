@@ -99,7 +99,7 @@ class Sizes:
 ALL = Sizes()
 
 SAMPLE = Sizes(
-    effects=3,
+    effects=2,
     clean=12,
     outsiders=1,
     calibration=1,

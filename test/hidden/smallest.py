@@ -2,19 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """How small an effect is named, beside how small one could be seen at all.
 
-Each effect is hidden in a ladder of sizes about the smallest that any method could see in the same
-drives. A logistic curve through what was named and what was not says at which size 95 of 100 are.
+In each session the size from which on an effect is named is closed in upon: the drives and their
+noise stay, the effect grows. How these sizes scatter from session to session says from which size
+on 95 of 100 are named.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from statistics import median
+from statistics import NormalDist, median
 
 import numpy as np
-from scipy.optimize import minimize
 
 from test.hidden.fisher import bound, detectable
 from test.hidden.follow import follow
@@ -29,8 +29,11 @@ from werrimbi_odom.effects import find as in_library
 from werrimbi_odom.simulation import hide
 from werrimbi_odom.simulation.hidden import find
 
-LADDER = (0.6, 0.9, 1.4, 2.1, 3.2, 4.8)
-"""Sizes that are hidden, times the smallest that could be seen."""
+STEP = 1.25
+"""From one size to the next."""
+
+LADDER = tuple(0.5 * STEP**rung for rung in range(11))
+"""Sizes that may be hidden, times the smallest that could be seen."""
 
 POWER = 0.95
 """Share that is to be named."""
@@ -56,24 +59,43 @@ def tasks(start: int, seeds: int) -> dict[str, tuple[str, int]]:
 
 
 def work(task: tuple[str, int]) -> Line:
-    """The ladder of one effect in one session."""
+    """From which size on one effect is named in one session."""
     name, seed = task
     entry = find(name)
     clean = HiddenSet("clean", (), seed, SETUP)
     little = hide(name, entry.null + entry.low, seed=seed).peculiarity
     sigma = bound(clean, name, asdict(little), entry.low)
     limit = detectable(sigma, len(EFFECTS), CHANCE, POWER)
-    rungs = []
-    for step in LADDER:
+    wrong = []
+
+    def is_named(step: float) -> bool:
         wish = f"{name}={entry.null + step * limit!r}"
         line = judged(HiddenSet("effect", (wish,), seed, SETUP), floors=False)
-        rungs.append((step * limit, is_right(line), judgement(line) == "wrong"))
+        wrong.append(judgement(line) == "wrong")
+        return is_right(line)
+
+    step = first_named(is_named)
     return {
         "effect": name,
         "limit": limit,
         "claimed": claimed(clean, name),
-        "rungs": rungs,
+        "named_from": step,
+        "judged": len(wrong),
+        "wrong": sum(wrong),
     }
+
+
+def first_named(is_named: Callable[[float], bool]) -> float | None:
+    """Size, over the smallest that could be seen, from which on an effect is named.
+
+    By bisection of the ladder: between the largest that is not and the smallest that is. None where
+    not even the ladder's largest is.
+    """
+    below, above = -1, len(LADDER)
+    while above - below > 1:
+        middle = (below + above) // 2
+        below, above = (below, middle) if is_named(LADDER[middle]) else (middle, above)
+    return None if above == len(LADDER) else LADDER[above] / math.sqrt(STEP)
 
 
 def claimed(clean: HiddenSet, name: str) -> float | None:
@@ -89,67 +111,68 @@ def claimed(clean: HiddenSet, name: str) -> float | None:
     return None
 
 
-def named_from(sizes: Sequence[float], named: Sequence[bool], power: float = POWER) -> float | None:
-    """Size at which a share is named, by a logistic curve in the logarithm of the size.
+def scatter(by_effect: Mapping[str, Sequence[float]]) -> float:
+    """Standard deviation, from session to session, of the logarithm of the size named.
 
-    The likelihood is weighed by the square root of the information's determinant (Jeffreys, Firth
-    1993), so that there is a curve where all above a size were named and none below. None where
-    nothing was named, or everything.
+    One for all effects: each has few sessions, and what scatters, the noise of a session's drives,
+    is of the same size in the unit of its own bound. NaN where no effect has two sessions.
     """
-    if not sizes or all(named) or not any(named):
-        return None
-    x, y = np.log(np.asarray(sizes)), np.asarray(named, dtype=float)
-    middle = float(x.mean())
-    design = np.stack([np.ones_like(x), x - middle], axis=-1)
-
-    def misfit(values: np.ndarray) -> float:
-        share = np.clip(1.0 / (1.0 + np.exp(-(design @ values))), 1e-12, 1.0 - 1e-12)
-        information = design.T @ (design * (share * (1.0 - share))[:, None])
-        likelihood = y @ np.log(share) + (1.0 - y) @ np.log(1.0 - share)
-        return -float(likelihood + 0.5 * np.log(max(float(np.linalg.det(information)), 1e-300)))
-
-    offset, slope = minimize(misfit, np.array([0.0, 1.0]), method="Nelder-Mead").x
-    if slope <= 0.0:
-        return None
-    return math.exp(middle + (math.log(power / (1.0 - power)) - offset) / slope)
+    squares, degrees = 0.0, 0
+    for sizes in by_effect.values():
+        logs = np.log(sizes)
+        squares += float(((logs - logs.mean()) ** 2).sum())
+        degrees += logs.size - 1
+    return math.sqrt(squares / degrees) if degrees else math.nan
 
 
-def ratios(results: Mapping[str, Line]) -> dict[str, float]:
-    """By effect: the size from which on it is named, over the smallest that could be seen."""
-    found = {}
-    for name in EFFECTS:
-        own = [each for each in results.values() if each["effect"] == name]
-        steps = [size / each["limit"] for each in own for size, _, _ in each["rungs"]]
-        ratio = named_from(steps, [named for each in own for _, named, _ in each["rungs"]])
-        if ratio is not None:
-            found[name] = ratio
-    return found
+def ratios(results: Mapping[str, Line]) -> dict[str, tuple[float, float]]:
+    """By effect: the size that is named in 95 %, over the smallest that could be seen.
+
+    With the factor by which it may be wrong: one standard error of the mean over the sessions.
+    Effects are left out that some session does not name at the ladder's largest size.
+    """
+    by_effect = {
+        name: [each["named_from"] for each in own]
+        for name, own in _by_effect(results).items()
+        if all(each["named_from"] for each in own)
+    }
+    spread = scatter(by_effect)
+    if math.isnan(spread):
+        return {}
+    quantile = NormalDist().inv_cdf(POWER)
+    return {
+        name: (
+            math.exp(float(np.log(sizes).mean()) + quantile * spread),
+            math.exp(spread / math.sqrt(len(sizes))),
+        )
+        for name, sizes in by_effect.items()
+    }
+
+
+def _by_effect(results: Mapping[str, Line]) -> dict[str, list[Line]]:
+    """In the vocabulary's order; effects with no session are left out."""
+    own = {name: [each for each in results.values() if each["effect"] == name] for name in EFFECTS}
+    return {name: lines for name, lines in own.items() if lines}
 
 
 def table(results: Mapping[str, Line]) -> Table:
     """Each effect."""
     found = ratios(results)
     rows = []
-    for name in EFFECTS:
-        own = [each for each in results.values() if each["effect"] == name]
-        if not own:
-            continue
+    for name, own in _by_effect(results).items():
         limit = median(each["limit"] for each in own)
         said = [each["claimed"] for each in own if each["claimed"]]
-        entry = find(name)
-        tries = [rung for each in own for rung in each["rungs"]]
-        shown = ", ".join(
-            f"{sum(each['rungs'][step][1] for each in own)}" for step in range(len(LADDER))
-        )
+        unit = find(name).unit
+        ratio, error = found.get(name, (None, None))
         rows.append(
             (
                 name,
-                f"{limit:.2g} {entry.unit if entry.unit != '1' else ''}".strip(),
+                f"{limit:.2g} {unit if unit != '1' else ''}".strip(),
                 f"{median(said):.2g}" if said else "",
-                f"{found[name] * limit:.2g}" if name in found else _outside(own),
-                f"{found[name]:.1f}" if name in found else "",
-                f"{shown} of {len(own)}",
-                str(sum(wrong for _, _, wrong in tries) or ""),
+                f"{ratio * limit:.2g}" if ratio else "",
+                f"{ratio:.2f} ({ratio / error:.2f} to {ratio * error:.2f})" if ratio else "",
+                ", ".join(_step(each["named_from"]) for each in own),
+                f"{sum(each['wrong'] for each in own)} of {sum(each['judged'] for each in own)}",
             )
         )
     words = (
@@ -157,8 +180,10 @@ def table(results: Mapping[str, Line]) -> Table:
         "that a test which knows the effect's shape and all noise finds in 95 of 100 cases, with a "
         f"false name of any of the {len(EFFECTS)} effects in one of {1 / CHANCE:g}: "
         f"{detectable(1.0, len(EFFECTS), CHANCE, POWER):.1f} times the bound of Cramér and Rao. "
-        "*Named in 95 %*: by a logistic curve through the ladder "
-        f"{', '.join(f'{step:g}' for step in LADDER)} times that size."
+        "*Named from*: in each session, over that size, by closing in on it in steps of "
+        f"{STEP:g}. *Named in 95 %*: from how these scatter from session to session (pooled over "
+        "all effects, in the logarithm); the ratio with one standard error. *Wrong*: names, of all "
+        "sets judged on the way."
     )
     columns = (
         "effect",
@@ -166,15 +191,11 @@ def table(results: Mapping[str, Line]) -> Table:
         "the tool says",
         "named in 95 %",
         "ratio",
-        "named at each size",
-        "wrong names",
+        "named from",
+        "wrong",
     )
     return Table("How small an effect is named", columns, tuple(rows), words)
 
 
-def _outside(own: Sequence[Line]) -> str:
-    """What the ladder says where it has no curve."""
-    named = [done for each in own for _, done, _ in each["rungs"]]
-    step = LADDER[0] if all(named) else LADDER[-1]
-    word = "less than" if all(named) else "more than"
-    return f"{word} {step * median(each['limit'] for each in own):.2g}" if named else ""
+def _step(size: float | None) -> str:
+    return f"{size:.2f}" if size else f"> {LADDER[-1]:.1f}"

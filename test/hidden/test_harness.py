@@ -454,22 +454,41 @@ def test_whitened_changes_hold_what_the_whole_covariance_says() -> None:
     assert white.T @ white == pytest.approx(flat.T @ np.linalg.solve(whole, flat), rel=1e-4)
 
 
-def test_the_curve_finds_the_size_that_is_named_in_most_cases() -> None:
+@pytest.mark.parametrize("truth", [0.2, 0.51, 1.0, 2.7, 4.6])
+def test_the_size_from_which_an_effect_is_named_is_closed_in_upon(truth: float) -> None:
+    asked: list[float] = []
+
+    def is_named(size: float) -> bool:
+        asked.append(size)
+        return size >= truth
+
+    found = smallest.first_named(is_named)
+    assert found == pytest.approx(max(truth, smallest.LADDER[0]), rel=smallest.STEP - 1.0)
+    assert len(asked) <= 4
+    assert smallest.first_named(lambda size: False) is None
+
+
+def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100() -> None:
     chance = np.random.default_rng(5)
-    sizes = np.tile(smallest.LADDER, 200)
-    share = 1.0 / (1.0 + np.exp(-4.0 * np.log(sizes / 1.5)))
-    named = [bool(each) for each in chance.uniform(size=sizes.size) < share]
-    wanted = 1.5 * math.exp(math.log(19.0) / 4.0)
-    assert smallest.named_from(list(sizes), named) == pytest.approx(wanted, rel=0.1)
-
-
-def test_the_curve_stands_where_a_single_ladder_is_parted_clearly() -> None:
-    named = [size > 2.0 for size in smallest.LADDER]
-    found = smallest.named_from(smallest.LADDER, named)
-    assert found is not None
-    assert 2.0 < found < 12.0
-    assert smallest.named_from(smallest.LADDER, [True] * 6) is None
-    assert smallest.named_from(smallest.LADDER, [False] * 6) is None
+    true_ratio = {name: 1.0 + 0.1 * number for number, name in enumerate(plan.EFFECTS[:20])}
+    results = {
+        f"{name} {session}": {
+            "effect": name,
+            "named_from": true_ratio[name] * math.exp(0.2 * (chance.normal() - 1.645)),
+        }
+        for name in true_ratio
+        for session in range(25)
+    }
+    found = smallest.ratios(results)
+    off = [
+        math.log(ratio / true_ratio[name]) / math.log(error)
+        for name, (ratio, error) in found.items()
+    ]
+    assert len(off) == 20
+    assert max(map(abs, off)) < 3.5
+    assert 0.6 < float(np.std(off)) < 1.5
+    results["never"] = {"effect": plan.EFFECTS[0], "named_from": None}
+    assert set(true_ratio) - set(smallest.ratios(results)) == {plan.EFFECTS[0]}
 
 
 # ------------------------------------------------------------------ intervals

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of
+from test.inference.driven import run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY, find
@@ -85,3 +85,22 @@ def test_on_one_circle_at_one_speed_many_effects_are_rivals_of_unequal_wheels() 
     found = diagnose([circle], ROBOT, LIBRARY)
     assert found.verdict == "ambiguous"
     assert {"unequal_wheel_radii", "load_transfer"} <= set(found.rivals)
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_two_sizes_that_do_nearly_the_same_start_within_what_is_physical(seed: int) -> None:
+    # Left turns at nearly one rate: what `sharpness` adds, `sense` takes away, but for little.
+    law = find("turn_dependent_track").using(sharpness=0.02, sense=0.0)
+    turning = np.tile(np.repeat([0.0, 0.5], 100), 2)
+    turning *= 1.0 + 0.015 * np.random.default_rng(seed).standard_normal(turning.size)
+    truth = replace(ROBOT, effects=(law,))
+    drive = run_by(truth, np.full(turning.size, 0.3), turning, seed=seed)
+    runs = concatenated(match_for_fit([drive], ROBOT, 1.0))
+    point = start_point(runs, ROBOT, EvaluationOptions())
+    (score,) = scores(runs, point, (), candidates([law.effect], (), (), 1))
+    (start,) = started_with(runs, point, score).model.robot.effects
+    assert abs(start.values["sharpness"]) < 0.1
+    assert abs(start.values["sense"]) < 0.1
+    found = diagnose([drive], ROBOT, LIBRARY)
+    assert found.verdict == "ambiguous"
+    assert {"track_width", "turn_dependent_track"} <= set(found.rivals)
