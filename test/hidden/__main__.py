@@ -94,7 +94,7 @@ SECONDS = {
     "scans": 60.0,
     "survive": 4.5,
     "coverage": 3.0,
-    "smallest": 25.0,
+    "smallest": 50.0,
     "gaps": 4.5,
     "margins": 4.5,
 }

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from statistics import NormalDist, median
 
 import numpy as np
@@ -43,6 +44,9 @@ CHANCE = 1e-3
 
 SETUP = "short"
 
+LEGS = (1.0, 0.1)
+"""Lengths of the legs that are judged [m]: what is the default, and what sees smaller effects."""
+
 
 def tasks(start: int, seeds: int) -> dict[str, tuple[str, int]]:
     """Each effect in some sessions, where its parameters are known to both sides.
@@ -68,18 +72,18 @@ def work(task: tuple[str, int]) -> Line:
     limit = detectable(sigma, len(EFFECTS), CHANCE, POWER)
     wrong = []
 
-    def is_named(step: float) -> bool:
+    def is_named(step: float, leg: float) -> bool:
         wish = f"{name}={entry.null + step * limit!r}"
-        line = judged(HiddenSet("effect", (wish,), seed, SETUP), floors=False)
+        what = HiddenSet("effect", (wish,), seed, SETUP)
+        line = judged(what, floors=False, options=("--leg", f"{leg:g}"))
         wrong.append(judgement(line) == "wrong")
         return is_right(line)
 
-    step = first_named(is_named)
     return {
         "effect": name,
         "limit": limit,
         "claimed": claimed(clean, name),
-        "named_from": step,
+        "named_from": [first_named(partial(is_named, leg=leg)) for leg in LEGS],
         "judged": len(wrong),
         "wrong": sum(wrong),
     }
@@ -125,16 +129,17 @@ def scatter(by_effect: Mapping[str, Sequence[float]]) -> float:
     return math.sqrt(squares / degrees) if degrees else math.nan
 
 
-def ratios(results: Mapping[str, Line]) -> dict[str, tuple[float, float]]:
-    """By effect: the size that is named in 95 %, over the smallest that could be seen.
+def ratios(results: Mapping[str, Line], leg: float = LEGS[0]) -> dict[str, tuple[float, float]]:
+    """By effect: the size that is named in 95 % with legs of a length, over what could be seen.
 
     With the factor by which it may be wrong: one standard error of the mean over the sessions.
     Effects are left out that some session does not name at the ladder's largest size.
     """
+    at = LEGS.index(leg)
     by_effect = {
-        name: [each["named_from"] for each in own]
+        name: [each["named_from"][at] for each in own]
         for name, own in _by_effect(results).items()
-        if all(each["named_from"] for each in own)
+        if all(each["named_from"][at] for each in own)
     }
     spread = scatter(by_effect)
     if math.isnan(spread):
@@ -157,21 +162,26 @@ def _by_effect(results: Mapping[str, Line]) -> dict[str, list[Line]]:
 
 def table(results: Mapping[str, Line]) -> Table:
     """Each effect."""
-    found = ratios(results)
+    found = [ratios(results, leg) for leg in LEGS]
     rows = []
     for name, own in _by_effect(results).items():
         limit = median(each["limit"] for each in own)
         said = [each["claimed"] for each in own if each["claimed"]]
         unit = find(name).unit
-        ratio, error = found.get(name, (None, None))
+        cells = []
+        for at, there in enumerate(found):
+            ratio, error = there.get(name, (None, None))
+            known = ratio is not None and error is not None
+            cells += [
+                ", ".join(_step(each["named_from"][at]) for each in own),
+                f"{ratio:.2f} ({ratio / error:.2f} to {ratio * error:.2f})" if known else "",
+            ]
         rows.append(
             (
                 name,
                 f"{limit:.2g} {unit if unit != '1' else ''}".strip(),
                 f"{median(said):.2g}" if said else "",
-                f"{ratio * limit:.2g}" if ratio else "",
-                f"{ratio:.2f} ({ratio / error:.2f} to {ratio * error:.2f})" if ratio else "",
-                ", ".join(_step(each["named_from"]) for each in own),
+                *cells,
                 f"{sum(each['wrong'] for each in own)} of {sum(each['judged'] for each in own)}",
             )
         )
@@ -181,17 +191,20 @@ def table(results: Mapping[str, Line]) -> Table:
         f"false name of any of the {len(EFFECTS)} effects in one of {1 / CHANCE:g}: "
         f"{detectable(1.0, len(EFFECTS), CHANCE, POWER):.1f} times the bound of Cramér and Rao. "
         "*Named from*: in each session, over that size, by closing in on it in steps of "
-        f"{STEP:g}. *Named in 95 %*: from how these scatter from session to session (pooled over "
-        "all effects, in the logarithm); the ratio with one standard error. *Wrong*: names, of all "
-        "sets judged on the way."
+        f"{STEP:g}. *Ratio*: the size that is named in 95 of 100 sessions, over what could be "
+        "seen, from how the sessions scatter (pooled over all effects, in the logarithm), with one "
+        "standard error. *Wrong*: names, of all sets judged on the way. A leg is judged by the "
+        "poses at its ends: of short ones more poses of the reference are used."
     )
     columns = (
         "effect",
         "could be seen",
         "the tool says",
-        "named in 95 %",
-        "ratio",
-        "named from",
+        *(
+            column
+            for leg in LEGS
+            for column in (f"named from, legs of {leg:g} m", f"ratio, {leg:g} m")
+        ),
         "wrong",
     )
     return Table("How small an effect is named", columns, tuple(rows), words)
