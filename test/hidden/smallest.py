@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from functools import partial
 from statistics import NormalDist, median
 
 import numpy as np
@@ -48,23 +47,30 @@ LEGS = (1.0, 0.1)
 """Lengths of the legs that are judged [m]: what is the default, and what sees smaller effects."""
 
 
-def tasks(start: int, seeds: int) -> dict[str, tuple[str, int]]:
-    """Each effect in some sessions, where its parameters are known to both sides.
+Task = tuple[str, int, float]
+"""An effect, a session's seed, the legs' length [m]."""
 
-    Not those that look at a channel: where nothing is hidden there is none.
+
+def tasks(start: int, sessions: Sequence[int]) -> dict[str, Task]:
+    """Each effect in some sessions for each length of legs.
+
+    Where its parameters are known to both sides; not those that look at a channel: where nothing is
+    hidden there is none.
     """
     return {
-        f"{name} {start + 8000 + seed}": (name, start + 8000 + seed)
-        for seed in range(seeds)
+        f"{name} {start + 8000 + session} {leg:g}": (name, start + 8000 + session, leg)
+        for leg, count in zip(LEGS, sessions, strict=True)
+        for session in range(count)
         for name in EFFECTS
         if values_of(name, asdict(hide(name, seed=0).peculiarity))
         and not in_library(name).lacks(())
     }
 
 
-def work(task: tuple[str, int]) -> Line:
+def work(task: Task) -> Line:
     """From which size on one effect is named in one session."""
-    name, seed = task
+    name, seed, leg = task
+    options = ("--leg", f"{leg:g}")
     entry = find(name)
     clean = HiddenSet("clean", (), seed, SETUP)
     little = hide(name, entry.null + entry.low, seed=seed).peculiarity
@@ -72,18 +78,19 @@ def work(task: tuple[str, int]) -> Line:
     limit = detectable(sigma, len(EFFECTS), CHANCE, POWER)
     wrong = []
 
-    def is_named(step: float, leg: float) -> bool:
+    def is_named(step: float) -> bool:
         wish = f"{name}={entry.null + step * limit!r}"
-        what = HiddenSet("effect", (wish,), seed, SETUP)
-        line = judged(what, floors=False, options=("--leg", f"{leg:g}"))
+        line = judged(HiddenSet("effect", (wish,), seed, SETUP), floors=False, options=options)
         wrong.append(judgement(line) == "wrong")
         return is_right(line)
 
+    step = first_named(is_named)
     return {
         "effect": name,
+        "leg": leg,
         "limit": limit,
-        "claimed": claimed(clean, name),
-        "named_from": [first_named(partial(is_named, leg=leg)) for leg in LEGS],
+        "claimed": claimed(clean, name, options),
+        "named_from": step,
         "judged": len(wrong),
         "wrong": sum(wrong),
     }
@@ -102,9 +109,9 @@ def first_named(is_named: Callable[[float], bool]) -> float | None:
     return None if above == len(LADDER) else LADDER[above] / math.sqrt(STEP)
 
 
-def claimed(clean: HiddenSet, name: str) -> float | None:
+def claimed(clean: HiddenSet, name: str, options: Sequence[str]) -> float | None:
     """From which size on the tool says that it would have seen an effect in these drives."""
-    first = follow(make(clean), most=0).first
+    first = follow(make(clean), options, most=0).first
     entry = find(name)
     for sight in first.get("could_have_been_seen", ()):
         if sight["effect"] != name or sight["seen_from"] is None:
@@ -115,76 +122,76 @@ def claimed(clean: HiddenSet, name: str) -> float | None:
     return None
 
 
-def scatter(by_effect: Mapping[str, Sequence[float]]) -> float:
+Key = tuple[str, float]
+"""An effect, the legs' length [m]."""
+
+
+def scatter(groups: Mapping[Key, Sequence[float]]) -> float:
     """Standard deviation, from session to session, of the logarithm of the size named.
 
     One for all effects: each has few sessions, and what scatters, the noise of a session's drives,
     is of the same size in the unit of its own bound. NaN where no effect has two sessions.
     """
     squares, degrees = 0.0, 0
-    for sizes in by_effect.values():
+    for sizes in groups.values():
         logs = np.log(sizes)
         squares += float(((logs - logs.mean()) ** 2).sum())
         degrees += logs.size - 1
     return math.sqrt(squares / degrees) if degrees else math.nan
 
 
-def ratios(results: Mapping[str, Line], leg: float = LEGS[0]) -> dict[str, tuple[float, float]]:
-    """By effect: the size that is named in 95 % with legs of a length, over what could be seen.
+def ratios(results: Mapping[str, Line]) -> dict[Key, tuple[float, float]]:
+    """By effect and legs: the size that is named in 95 %, over the smallest that could be seen.
 
     With the factor by which it may be wrong: one standard error of the mean over the sessions.
     Effects are left out that some session does not name at the ladder's largest size.
     """
-    at = LEGS.index(leg)
-    by_effect = {
-        name: [each["named_from"][at] for each in own]
-        for name, own in _by_effect(results).items()
-        if all(each["named_from"][at] for each in own)
+    groups = {
+        key: [each["named_from"] for each in own]
+        for key, own in _groups(results).items()
+        if all(each["named_from"] for each in own)
     }
-    spread = scatter(by_effect)
+    spread = scatter(groups)
     if math.isnan(spread):
         return {}
     quantile = NormalDist().inv_cdf(POWER)
     return {
-        name: (
+        key: (
             math.exp(float(np.log(sizes).mean()) + quantile * spread),
             math.exp(spread / math.sqrt(len(sizes))),
         )
-        for name, sizes in by_effect.items()
+        for key, sizes in groups.items()
     }
 
 
-def _by_effect(results: Mapping[str, Line]) -> dict[str, list[Line]]:
-    """In the vocabulary's order; effects with no session are left out."""
-    own = {name: [each for each in results.values() if each["effect"] == name] for name in EFFECTS}
-    return {name: lines for name, lines in own.items() if lines}
+def _groups(results: Mapping[str, Line]) -> dict[Key, list[Line]]:
+    """Sessions by effect, in the vocabulary's order, and legs."""
+    found: dict[Key, list[Line]] = {(name, leg): [] for name in EFFECTS for leg in LEGS}
+    for each in results.values():
+        found[each["effect"], each["leg"]].append(each)
+    return {key: lines for key, lines in found.items() if lines}
 
 
 def table(results: Mapping[str, Line]) -> Table:
     """Each effect."""
-    found = [ratios(results, leg) for leg in LEGS]
+    found, groups = ratios(results), _groups(results)
     rows = []
-    for name, own in _by_effect(results).items():
+    for name in dict.fromkeys(name for name, _ in groups):
+        by_leg = [groups.get((name, leg), []) for leg in LEGS]
+        own = [each for lines in by_leg for each in lines]
         limit = median(each["limit"] for each in own)
-        said = [each["claimed"] for each in own if each["claimed"]]
         unit = find(name).unit
         cells = []
-        for at, there in enumerate(found):
-            ratio, error = there.get(name, (None, None))
-            known = ratio is not None and error is not None
+        for leg, lines in zip(LEGS, by_leg, strict=True):
+            said = [each["claimed"] for each in lines if each["claimed"]]
             cells += [
-                ", ".join(_step(each["named_from"][at]) for each in own),
-                f"{ratio:.2f} ({ratio / error:.2f} to {ratio * error:.2f})" if known else "",
-            ]
-        rows.append(
-            (
-                name,
-                f"{limit:.2g} {unit if unit != '1' else ''}".strip(),
                 f"{median(said):.2g}" if said else "",
-                *cells,
-                f"{sum(each['wrong'] for each in own)} of {sum(each['judged'] for each in own)}",
-            )
-        )
+                ", ".join(_step(each["named_from"]) for each in lines),
+                _ratio(*found[name, leg]) if (name, leg) in found else "",
+            ]
+        wrong, all_judged = (sum(each[what] for each in own) for what in ("wrong", "judged"))
+        shown = f"{limit:.2g} {unit if unit != '1' else ''}".strip()
+        rows.append((name, shown, *cells, f"{wrong} of {all_judged}"))
     words = (
         "In short sessions (four drives to learn from, two held out). *Could be seen*: the size "
         "that a test which knows the effect's shape and all noise finds in 95 of 100 cases, with a "
@@ -194,16 +201,15 @@ def table(results: Mapping[str, Line]) -> Table:
         f"{STEP:g}. *Ratio*: the size that is named in 95 of 100 sessions, over what could be "
         "seen, from how the sessions scatter (pooled over all effects, in the logarithm), with one "
         "standard error. *Wrong*: names, of all sets judged on the way. A leg is judged by the "
-        "poses at its ends: of short ones more poses of the reference are used."
+        "poses at its ends: with short ones more poses of the reference are used."
     )
     columns = (
         "effect",
         "could be seen",
-        "the tool says",
         *(
-            column
-            for leg in LEGS
-            for column in (f"named from, legs of {leg:g} m", f"ratio, {leg:g} m")
+            f"{column}{legs}"
+            for legs in (f", legs of {leg:g} m" for leg in LEGS)
+            for column in ("the tool says", "named from", "ratio")
         ),
         "wrong",
     )
@@ -212,3 +218,7 @@ def table(results: Mapping[str, Line]) -> Table:
 
 def _step(size: float | None) -> str:
     return f"{size:.2f}" if size else f"> {LADDER[-1]:.1f}"
+
+
+def _ratio(ratio: float, error: float) -> str:
+    return f"{ratio:.2f} ({ratio / error:.2f} to {ratio * error:.2f})"
