@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
@@ -32,16 +31,6 @@ def written_by(file: Path, *words: object) -> dict[str, Any]:
     found = json.loads(file.read_text(), parse_constant=refuse)
     assert isinstance(found, dict)
     return found
-
-
-def complaint(capsys: pytest.CaptureFixture[str], *words: object) -> str:
-    """The one line that a command says of a mistake, and nothing else."""
-    assert main([*map(str, words)]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert len(said.err.splitlines()) == 1
-    assert said.err.startswith(f"werrimbi {words[0]}: ")
-    return said.err
 
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 import werrimbi_odom as wo
-from test.cli.commands import PLAIN, ROBOT_FILE, complaint, write_run, written_by
+from test.cli.commands import PLAIN, ROBOT_FILE, write_run, written_by
+from test.command_line import Complaint
 from test.inference.driven import run_of
 
 BEGAN = 1_700_000_000.0
@@ -135,9 +136,9 @@ def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Pa
 
 
 def test_drives_none_of_which_can_be_used_are_an_error(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, complaint: Complaint
 ) -> None:
     (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
     (tmp_path / "empty").mkdir()
     given = ("--robot", tmp_path / "robot.yaml", tmp_path / "empty", "--cache", tmp_path / "kept")
-    assert "no drive can be used" in complaint(capsys, "history", *given)
+    assert "no drive can be used" in complaint("history", *given)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.inference.driven import run_of
 from test.inference.test_held_or_carried import held
@@ -180,7 +181,7 @@ def test_without_sizes_it_says_what_to_measure(
 
 
 def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     bag, _ = bag_of(tmp_path)
     wrong = tmp_path / "wrong.yaml"
@@ -188,14 +189,13 @@ def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
         "odom_node:\n  ros__parameters:\n    wheel_separation: 0.4\n    wheel_radius: 0.1\n"
         "    ticks_per_revolution: 1000.0\n"
     )
-    assert main(["info", str(bag), "--robot", str(wrong)]) == 2
-    assert "unknown parameter ticks_per_revolution" in capsys.readouterr().err
+    told = werrimbi("info", bag, "--robot", wrong, code=2).err
+    assert "unknown parameter ticks_per_revolution" in told
 
 
-def test_without_a_reference_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_reference_it_says_so(tmp_path: Path, werrimbi: Werrimbi) -> None:
     bag, _ = bag_of(tmp_path, measured=False)
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "Nothing that is read in the bag measures the robot but its own wheels" in printed
     assert "Record again with something that measures the robot" in printed
 
@@ -214,12 +214,11 @@ def one_drive(*spaces: str, wheels_late: int = 0) -> list[tuple[str, int, object
 
 
 def test_of_two_robots_each_is_judged_by_its_own_reference(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     bag = Messages().write(tmp_path / "two", one_drive("/one", "/two"))
     for mine, other in (("one", "two"), ("two", "one")):
-        assert main(["info", str(bag), "--ticks-topic", f"/{mine}/joint_states"]) == 0
-        printed = " ".join(capsys.readouterr().out.split())
+        printed = werrimbi("info", bag, "--ticks-topic", f"/{mine}/joint_states").words
         assert f"Wheels: /{mine}/joint_states" in printed
         assert f"not looked at, but may tell of wheels: /{other}/joint_states" in printed.lower()
         assert f"Reference /{mine}/pose: poses at 10 Hz" in printed
@@ -228,12 +227,11 @@ def test_of_two_robots_each_is_judged_by_its_own_reference(
 
 
 def test_clocks_apart_are_told_with_both_spans_and_put_on_the_recorders(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """The robot's computer began at another date; one recorder received it all by one clock."""
     bag = Messages().write(tmp_path / "apart", one_drive("", wheels_late=5 - DAY))
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "the reference's stamps are 1.7e+09 s later than those of the wheels" in printed
     assert f"and reference ({DAY} to {DAY + 29.9:.14g}) are of two clocks" in printed
     assert "In 29.9 s the robot drove for 29.9 s" in printed
@@ -241,7 +239,7 @@ def test_clocks_apart_are_told_with_both_spans_and_put_on_the_recorders(
 
 
 def test_poses_that_repeat_are_left_out_as_where_drives_are_judged(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """A tracker's last pose, sent on for 2 s at a time, is not a robot that somebody holds."""
     entries = one_drive("")
@@ -251,42 +249,36 @@ def test_poses_that_repeat_are_left_out_as_where_drives_are_judged(
         seen = 20 * (number // 20) if 100 <= number < 200 else number
         entries[entries.index(poses[number])] = (topic, at, ros.pose(at, 0.005 * seen, 0.0, 0.0))
     bag = ros.write(tmp_path / "sticks", entries)
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "reference poses repeat the one before to the last digit" in printed
     assert "held, or against a wall" not in printed
 
 
-def test_an_array_of_floats_is_told_with_how_it_is_read(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_array_of_floats_is_told_with_how_it_is_read(tmp_path: Path, werrimbi: Werrimbi) -> None:
     ros = Messages()
     entries = [("/wheel_ticks", n * 10**8, ros.floats(10.0 * n, 10.0 * n)) for n in range(1, 100)]
     bag = ros.write(tmp_path / "floats", entries)
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "if its two values count both wheels, --ticks-topic /wheel_ticks reads them" in printed
-    assert main(["info", str(bag), "--ticks-topic", "/wheel_ticks"]) == 0
-    assert "Wheels: /wheel_ticks, counters at 10 Hz" in capsys.readouterr().out
+    then = werrimbi("info", bag, "--ticks-topic", "/wheel_ticks").out
+    assert "Wheels: /wheel_ticks, counters at 10 Hz" in then
 
 
-def test_a_run_folder_is_looked_at_too(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_folder_is_looked_at_too(werrimbi: Werrimbi) -> None:
     square = Path(wo.__file__).parent / "recordings" / "square"
-    assert main(["info", str(square), "--robot", str(square / "robot.yaml")]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", square, "--robot", square / "robot.yaml").words
     assert "Reference: reference.csv, poses." in printed
     assert "werrimbi compare --robot" in printed
 
 
-def test_the_bias_of_a_gyro_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:
     counts = [100.0 * max(0.0, 0.1 * n - 3.0) for n in range(90)]
     rows = [f"{0.1 * n},{each:.0f},{each:.0f}" for n, each in enumerate(counts)]
     (tmp_path / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + "\n".join(rows))
     turned = [f"{0.1 * n},,,{-0.002 * n}" for n in range(90)]
     (tmp_path / "reference.csv").write_text("t_s,x_m,y_m,yaw_rad\n" + "\n".join(turned))
     robot = Path(wo.__file__).parent / "recordings" / "square" / "robot.yaml"
-    assert main(["info", str(tmp_path), "--robot", str(robot)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", tmp_path, "--robot", robot).words
     assert "Its headings turn by -1.1°/s while the wheels stand: a gyro's bias" in printed
 
 
@@ -387,7 +379,7 @@ def test_coarse_counts_at_one_speed_are_counts() -> None:
 
 
 def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """In the middle of a hall a lidar sees nothing; the command that is printed works."""
     ros, lidar = Messages(), Lidar()
@@ -405,24 +397,21 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
         nothing = np.full(lidar.beams, np.inf)
         entries.append(("/scan", stamp, ros.scan(stamp, lidar, nothing)))
     bag = ros.write(tmp_path / "hall", sorted(entries, key=lambda entry: entry[1]))
-    assert main(["info", str(bag), "--reference-topic", "/scan"]) == 0
-    printed = capsys.readouterr().out
+    printed = werrimbi("info", bag, "--reference-topic", "/scan").out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
-    assert main(shlex.split(printed.splitlines()[-1].strip())[1:]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = werrimbi(*shlex.split(printed.splitlines()[-1].strip())[1:]).words
     assert "its yaw rate is integrated). It is taken." in said
     assert "It can show what happens at reversals" in said
 
 
 def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     ros, kind = Messages(), "sensor_msgs/msg/PointCloud2"
     none = np.zeros(0, dtype=np.uint8)
     cloud = (kind, ros.make(kind, ros.header(1), 1, 0, [], False, 16, 0, none, True))
     wheels = [("/joint_states", n, ros.joints(n, JOINTS, [0.1 * n] * 2)) for n in (1, 2, 3)]
     bag = ros.write(tmp_path / "cloud", [*wheels, ("/velodyne_points", 4, cloud)])
-    assert main(["info", str(bag)]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    told = werrimbi("info", bag).words
     assert "No reference as it is: /velodyne_points, clouds of points" in told
     assert "pointcloud_to_laserscan makes them of it" in told

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 from test.cli.commands import RECORDING
+from test.command_line import Werrimbi
 from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import progress
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.cli.options import EXAMPLES
 from werrimbi_odom.errors import InputError
 
@@ -190,13 +190,9 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     assert list(out.iterdir()) == []
 
 
-def test_a_line_now_and_then_on_stderr(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_line_now_and_then_on_stderr(monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi) -> None:
     words = ["compare", "--robot", str(RECORDING / "robot.yaml"), str(RECORDING)]
-    assert main(words) == 0
-    assert capsys.readouterr().err == ""
+    assert werrimbi(*words).err == ""
     monkeypatch.setattr(progress, "EVERY", 1e-4)
-    assert main(words) == 0
-    lines = capsys.readouterr().err.splitlines()
+    lines = werrimbi(*words).err.splitlines()
     assert any(line.startswith("comparing: ") and " %, " in line for line in lines)

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from test.cli.commands import RECORDING
-from werrimbi_odom.cli.main import _parser, main
+from test.command_line import Werrimbi
+from werrimbi_odom.cli.main import _parser
 
 
 def pasted(command: str) -> list[str]:
@@ -25,9 +26,7 @@ def pasted(command: str) -> list[str]:
 
 
 @pytest.mark.parametrize("every", [True, False])
-def test_what_compare_prints_can_be_pasted(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], every: bool
-) -> None:
+def test_what_compare_prints_can_be_pasted(tmp_path: Path, werrimbi: Werrimbi, every: bool) -> None:
     runs = [tmp_path / "my drives" / name for name in ("a b", "it's", "{c}")]
     for folder in runs:
         shutil.copytree(RECORDING, folder)
@@ -40,8 +39,7 @@ def test_what_compare_prints_can_be_pasted(
     robot.write_text(text)
     given = runs if every else runs[:2]
     words = ["--robot", str(robot), "--leg", "0.5", "--reference-sigma-xy", "0.001"]
-    assert main(["compare", *words, *map(str, given)]) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = werrimbi("compare", *words, *given).out.splitlines()
     first = next(n for n, line in enumerate(lines) if line.startswith("    werrimbi diagnose"))
     assert lines[first - 1].endswith((".", "noise.", "mistake."))
     command = "\n".join(lines[first : lines.index("", first)])
