@@ -23,7 +23,7 @@ from werrimbi_odom.report.diagnosis import phrases, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.number_format import chance_words, error_words, listed
+from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
 
@@ -92,7 +92,6 @@ _HEADS += ["Next", "But", "Why"]
 
 def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
-    hidden = [sight for sight in told.sights if sight.hidden]
     wanders = reference_wanders(diagnosis)
     large = remarks.drowned(told)
     old = remarks.outdated_told(told)
@@ -114,14 +113,12 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
             "the drives do not agree on what they go with. So errs a reference that wanders (a "
             "camera, a map that is matched); what is smaller than that is not seen."
         )
-    seen = [sight for sight in told.sights if not sight.hidden]
-    if seen:
+    if not all(sight.hidden for sight in told.sights):
         lines.append(
             "How well that is known: the table says from which size on each effect would have been "
             "seen."
         )
-    if hidden:
-        lines += remarks.not_shown(told)
+    lines += remarks.not_shown(told)
     if old:
         return [
             *lines,
@@ -148,17 +145,18 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
     for other in diagnosis.found[1:]:
         if other not in mistakes(diagnosis):
             lines += phrases.also(told, other)
-    sizes = phrases.sizes_found(diagnosis)
-    if sizes:
+    if sizes := phrases.sizes_found(diagnosis):
         lines.append(f"On the robot: {sizes}.")
-    lines += [
+    it = "it" if len(diagnosis.found) == 1 else "all of it"
+    return [
+        *lines,
         *phrases.whole(told),
-        *remarks.law(told),
-        *remarks.scatter(told),
-        *remarks.at_bounds_told(diagnosis),
+        *_remainder(told),
+        f"Next: add {it} to the model, fitted together with all calibration:",
+        f"    {steps.add(diagnosis.found)}",
+        *remarks.by_headings_alone(diagnosis),
+        *remarks.not_shown(told),
     ]
-    lines += _next_add(told, steps)
-    return [*lines, *remarks.by_headings_alone(told.diagnosis), *remarks.not_shown(told)]
 
 
 def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
@@ -190,8 +188,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
     lines += remarks.by_headings_alone(diagnosis)
     lines += phrases.cost(told, rivals[0])
-    move = told.manoeuvre
-    if move is not None:
+    if (move := told.manoeuvre) is not None:
         lines.append(f"Why: {move.why}.")
         lines.append(" ".join((f"Next: {move.do} ({move.name}).", *how_long(move, steps.diagnose))))
     else:
@@ -206,7 +203,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += phrases.also(told, other)
-    return [*lines, *remarks.law(told), *remarks.scatter(told), *remarks.at_bounds_told(diagnosis)]
+    return [*lines, *_remainder(told)]
 
 
 def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
@@ -220,18 +217,15 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     yield f"Then give that drive to `{diagnose}` together with these."
 
 
-def _of_the_same(diagnosis: Diagnosis) -> str:
-    unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
-    return " Give the reference of the same drive." if unrelated else ""
-
-
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     if diagnosis.of_another_drive:
+        unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
+        mend = " Give the reference of the same drive." if unrelated else ""
         return [
             "Nothing can be told of the robot from these drives.",
             "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
-            f"--report draws both paths.{_of_the_same(diagnosis)}",
+            f"--report draws both paths.{mend}",
         ]
     lines = _set_up(diagnosis)
     cells = significant(diagnosis)
@@ -263,8 +257,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
             "part of a second, a reference that loses its place, or one of another drive look so."
         )
-    if told.manoeuvre is not None:
-        move = told.manoeuvre
+    if (move := told.manoeuvre) is not None:
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
     return lines
 
@@ -274,12 +267,10 @@ def _things(diagnosis: Diagnosis) -> list[str]:
     side = one_wheel(diagnosis)
     if side is None:
         return list(diagnosis.found)
-    radii = [name for name in diagnosis.found if name in _OF_A_WHEEL]
+    of_a_wheel = ("unequal_wheel_radii", "wheel_radius_scale")
+    radii = [name for name in diagnosis.found if name in of_a_wheel]
     told = {radii[0]: f"the size of the {side} wheel ({' with '.join(radii)})", radii[1]: ""}
     return [words for name in diagnosis.found if (words := told.get(name, name))]
-
-
-_OF_A_WHEEL = ("unequal_wheel_radii", "wheel_radius_scale")
 
 
 def _set_up(diagnosis: Diagnosis) -> list[str]:
@@ -289,7 +280,7 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     lines = ["Something is set up wrongly:"] if wrong else []
     for finding in wrong:
         words = finding.words.rstrip(".")
-        lines.append(f"- {words[0].upper()}{words[1:]}: {finding.effect}.")
+        lines.append(f"- {capital(words)}: {finding.effect}.")
     skids = [finding for finding in findings if finding not in wrong]
     return [
         *lines,
@@ -297,13 +288,10 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _next_add(told: Told, steps: NextSteps) -> list[str]:
-    diagnosis = told.diagnosis
-    it = "it" if len(diagnosis.found) == 1 else "all of it"
-    return [
-        f"Next: add {it} to the model, fitted together with all calibration:",
-        f"    {steps.add(diagnosis.found)}",
-    ]
+def _remainder(told: Told) -> list[str]:
+    """What speaks against the model with everything found put in."""
+    bounds = remarks.at_bounds_told(told.diagnosis)
+    return [*remarks.law(told), *remarks.scatter(told), *bounds]
 
 
 def _count(number: int) -> str:
