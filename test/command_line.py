@@ -4,10 +4,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+
+ROOT = Path(__file__).parents[1]
+"""The checkout."""
+WERRIMBI = (sys.executable, "-m", "werrimbi_odom.cli.main")
+"""The command, in a process of its own."""
+
+
+def ran(
+    command: Iterable[object], cwd: Path = ROOT, timeout: float = 300.0, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """A command in a process of its own, which finds this package, when it has ended."""
+    return subprocess.run(
+        [*map(str, command)],
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=timeout,
+    )
 
 
 class Said(NamedTuple):
@@ -22,8 +46,15 @@ class Said(NamedTuple):
         return " ".join(self.out.split())
 
 
+Printed = Callable[[], str]
 Werrimbi = Callable[..., Said]
 Complaint = Callable[..., str]
+
+
+@pytest.fixture
+def printed(capsys: pytest.CaptureFixture[str]) -> Printed:
+    """Tells what was printed since it was asked last, as if the terminal were wide."""
+    return lambda: Said(*capsys.readouterr()).words
 
 
 @pytest.fixture

@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -31,6 +33,13 @@ def written_by(file: Path, *words: object) -> dict[str, Any]:
     found = json.loads(file.read_text(), parse_constant=refuse)
     assert isinstance(found, dict)
     return found
+
+
+def called(verb: ModuleType, *words: object) -> int:
+    """Code of a verb that raises its mistakes, as it does in front of `main`."""
+    parser = argparse.ArgumentParser()
+    verb.add_arguments(parser)
+    return int(verb.run(parser.parse_args([str(word) for word in words])))
 
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

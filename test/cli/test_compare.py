@@ -8,18 +8,16 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from test.cli.commands import RECORDING, ROBOT, written_by
-from test.command_line import Complaint
+from test.command_line import WERRIMBI, Complaint, ran
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 
-ROOT = Path(__file__).parents[2]
 OPTIONS = {
     "optitrack_robot": ("--leg", "0.5"),
     "khepera_laser_to_the_side": ("--leg", "0.1", "--reference-kind", "incremental"),
@@ -151,14 +149,7 @@ def test_a_run_without_a_reference_is_named(tmp_path: Path, complaint: Complaint
 
 
 def test_in_a_process_of_its_own_without_a_terminal() -> None:
-    words = ["compare", "--robot", ROBOT, RECORDING]
-    done = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *words],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        check=False,
-    )
+    done = ran([*WERRIMBI, "compare", "--robot", ROBOT, RECORDING])
     assert done.returncode == 0
     assert done.stderr == ""
     assert "Errors of legs of 1 m (rms)" in done.stdout
@@ -167,12 +158,9 @@ def test_in_a_process_of_its_own_without_a_terminal() -> None:
 def test_who_stops_reading_has_the_files_all_the_same(tmp_path: Path) -> None:
     """As of `werrimbi compare ... --json F | head -1`."""
     figures = tmp_path / "compare.json"
-    command = [sys.executable, "-m", "werrimbi_odom.cli.main", "compare", "--robot", str(ROBOT)]
-    with subprocess.Popen(
-        [*command, str(RECORDING), "--json", str(figures)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    ) as process:
+    words = ["compare", "--robot", str(ROBOT), str(RECORDING), "--json", str(figures)]
+    quiet = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([*WERRIMBI, *words], **quiet) as process:
         assert process.stdout is not None
         process.stdout.close()
         process.wait(120)

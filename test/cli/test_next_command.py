@@ -6,22 +6,19 @@ from __future__ import annotations
 
 import shlex
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from test.cli.commands import RECORDING
-from test.command_line import Werrimbi
+from test.command_line import Werrimbi, ran
 from werrimbi_odom.cli.main import _parser
 
 
 def pasted(command: str) -> list[str]:
     """Its words as a shell makes them, patterns filled in."""
-    done = subprocess.run(
-        ["sh", "-c", command.replace("werrimbi ", "printf '%s\\0' ", 1)],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
+    done = ran(["sh", "-c", command.replace("werrimbi ", "printf '%s\\0' ", 1)])
+    assert done.returncode == 0
     return done.stdout.split("\0")[:-1]
 
 

@@ -10,7 +10,6 @@ import math
 import os
 import pty
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.command_line import ROOT, WERRIMBI, Printed
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -28,7 +28,6 @@ from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
-ROOT = Path(__file__).parents[2]
 RECORDINGS = ROOT / "werrimbi_odom" / "recordings"
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
 ROBOT = """\
@@ -181,14 +180,14 @@ def test_sigmas_along_and_across_go_with_the_heading(place: Path) -> None:
     assert turned["covariance"]["xx"] != pytest.approx(straight["covariance"]["xx"])
 
 
-def test_only_positions_were_measured(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_only_positions_were_measured(place: Path, printed: Printed) -> None:
     reference(place, "0,1,2,", f"1,1,{2 + 100 * TICK + 0.01},")
     found = figures(place)
     assert found["start"]["yaw_rad"] == pytest.approx(math.pi / 2)
     assert found["end_error_m"] == pytest.approx(0.01)
     assert found["end_error_rad"] is None
     assert found["reference_last"]["yaw_rad"] is None
-    assert "least squares" in unwrapped(capsys.readouterr().out)
+    assert "least squares" in printed()
 
 
 def test_a_reference_that_begins_in_mid_drive(place: Path) -> None:
@@ -208,16 +207,14 @@ def test_clocks_that_have_nothing_in_common(place: Path, times: tuple[int, int])
     assert any("are both clocks the same" in note for note in found["notes"])
 
 
-def test_what_happened_to_the_counters_is_told(
-    place: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_happened_to_the_counters_is_told(place: Path, printed: Printed) -> None:
     (place / "robot.yaml").write_text(ROBOT + "    encoder_bits: 8\n")
     ticks(place, [(0, 100, 100), (0.1, 120, 120), (0.2, -116, -116), (5.0, -100, -100)])
     found = figures(place)
     assert found["rows"]["wraps"] == 2
     assert found["rows"]["gaps"] == 1
     assert found["final"]["x_m"] == pytest.approx(56 * TICK)
-    assert "4, 4 used, 1 gaps, 2 wraps" in unwrapped(capsys.readouterr().out)
+    assert "4, 4 used, 1 gaps, 2 wraps" in printed()
 
 
 def test_a_clock_that_was_set_back(place: Path) -> None:
@@ -317,7 +314,7 @@ def test_on_a_terminal_a_bar_is_shown_and_taken_away(place: Path) -> None:
     words = ["odom", "--robot", place / "robot.yaml", place / "run", "--out", place / "odom.csv"]
     screen, terminal = pty.openpty()
     done = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *map(str, words)],
+        [*WERRIMBI, *map(str, words)],
         stdout=subprocess.PIPE,
         stderr=terminal,
         env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
@@ -455,9 +452,8 @@ def test_an_eccentric_wheel_is_learnt_from_the_run_s_reference(
     robot_with(place, "eccentric_left_wheel", "eccentric_left_wheel: {amplitude: 0.002}")
     learnt = figures(place)
     assert learnt["end_error_m"] < 1e-5
-    assert "phase 2.000 ± 0.000 rad, learnt from the reference of this run" in unwrapped(
-        capsys.readouterr().out
-    )
+    told = unwrapped(capsys.readouterr().out)
+    assert "phase 2.000 ± 0.000 rad, learnt from the reference of this run" in told
     odom(place)
     with_it = table(place / "odom.csv")
     (place / "run" / "reference.csv").unlink()

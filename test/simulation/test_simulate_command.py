@@ -4,14 +4,15 @@
 
 from __future__ import annotations
 
-import argparse
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
 
 import werrimbi_odom.simulation
+from test.cli.commands import called
 from test.command_line import Complaint
 from werrimbi_odom.cli import simulate
 from werrimbi_odom.errors import InputError
@@ -25,11 +26,7 @@ from werrimbi_odom.simulation import (
     write_robot_file,
 )
 
-
-def call(*words: str) -> int:
-    parser = argparse.ArgumentParser()
-    simulate.add_arguments(parser)
-    return simulate.run(parser.parse_args(words))
+call = partial(called, simulate)
 
 
 @pytest.fixture
