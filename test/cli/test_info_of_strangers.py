@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.cli.test_info import DAY, JOINTS
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
+from test.files.unseen import JOINTS, gyro, joints, poses, stamp_of
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
 
@@ -33,21 +33,9 @@ NAMES = f"""
 
 def bag_of(folder: Path, *, moves: bool = True, frame: str = "map") -> Path:
     """Joints, a gyro, and poses in some frame."""
-    ros, run = Messages(), run_of(ROBOT, 1, 40)
-    reference = run.reference
-    assert reference is not None
-    share = float(moves)
-    entries = []
-    for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
-        stamp = round(1e9 * (DAY + time))
-        angles = [2.0 * math.pi * share * n / ROBOT.left_ticks_per_revolution for n in counts]
-        entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, angles)))
-    rates = np.gradient(np.unwrap(reference.yaw), reference.time)
-    poses = zip(reference.time, reference.x, reference.y, reference.yaw, rates, strict=True)
-    for time, x, y, yaw, rate in poses:
-        stamp = round(1e9 * (DAY + time))
-        entries.append(("/imu", stamp, ros.imu(stamp, share * rate)))
-        kind, pose = ros.pose(stamp, share * x, share * y, share * yaw)
+    ros, run, share = Messages(), run_of(ROBOT, 1, 40), float(moves)
+    entries = [*joints(ros, run, share), *gyro(ros, run, share)]
+    for _, stamp, (kind, pose) in poses(ros, run, share):
         pose.header.frame_id = frame
         entries.append(("/seen", stamp, (kind, pose)))
     return ros.write(folder / "bag", sorted(entries, key=lambda entry: entry[1]))
@@ -87,7 +75,7 @@ def test_what_compare_refuses_info_does_not_offer(tmp_path: Path, werrimbi: Werr
     x = y = yaw = 0.0
     last = np.zeros(2)
     for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
-        stamp = round(1e9 * (DAY + time))
+        stamp = stamp_of(time)
         counts = [n + 0.4 * math.sin(n) for n in counts]  # angles that are no whole counts
         angles = [2.0 * math.pi * n / ROBOT.left_ticks_per_revolution for n in counts]
         left, right = np.array(angles) * ROBOT.wheel_radius - last
