@@ -171,7 +171,7 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     run, out = tmp_path / "run", tmp_path / "out"
     run.mkdir()
     out.mkdir()
-    rows = "".join(f"{0.001 * i:.3f},{i},{i}\n" for i in range(400_000))
+    rows = "".join(f"{0.001 * i:.3f},{i},{i}\n" for i in range(200_000))
     (run / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + rows)
     words = ["odom", "--robot", SQUARE / "robot.yaml", run, "--out", out / "odom.csv"]
     working = subprocess.Popen(
