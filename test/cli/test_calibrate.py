@@ -59,9 +59,6 @@ def test_a_package_that_is_not_installed_is_named(
     assert "needs the Python package scipy" in werrimbi(*words, code=2).err
 
 
-ROOT = Path(__file__).parents[2]
-
-
 def fit(tmp_path: Path, *arguments: str) -> dict[str, object]:
     words = ("calibrate", "fit", *arguments, "--out", tmp_path / "new.yaml")
     return written_by(tmp_path / "figures.json", *words)

@@ -17,7 +17,6 @@ from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.covariance import path_noise
 
-ROOT = Path(__file__).parents[2]
 RUNS = sorted(path.parent for path in ROBOTS.glob("*/*/ticks.csv"))
 
 

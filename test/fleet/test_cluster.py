@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT
 from test.fleet.conftest import broken
 from test.fleet.test_process_pool import KILLS, nowhere
 from werrimbi_odom.errors import InputError
@@ -35,8 +36,6 @@ from werrimbi_odom.fleet.worker_archive import (
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 dask = pytest.importorskip("dask")
-
-ROOT = Path(__file__).parents[2]
 
 
 def refused(address: str, patience: float = 30.0) -> str:
