@@ -104,9 +104,7 @@ def test_effects_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 def test_a_broken_package_is_a_warning(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from werrimbi_odom import effects
-
     ruined = Collection(LIBRARY, ("effect ruin of someone is left out: it is broken",))
-    monkeypatch.setattr(effects, "all_effects", lambda files: ruined)
+    monkeypatch.setattr("werrimbi_odom.effects.lookup.all_effects", lambda files: ruined)
     assert run("castor_kick") == 0
     assert capsys.readouterr().err == "warning: effect ruin of someone is left out: it is broken\n"
