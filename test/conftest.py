@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from test.command_line import complaint, printed, werrimbi  # noqa: F401 (fixtures of all tests)
 from test.recorded_robots import RECORDINGS
 
 # A shell has what it runs in the background ignore Ctrl-C, and so would all that tests interrupt.

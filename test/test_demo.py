@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -20,25 +19,19 @@ from nav_msgs.msg import Odometry
 from rclpy.time import Time
 
 import werrimbi_odom as wo
+from test.command_line import ROOT, ran
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.demo.node_processes import save_and_tell
 from werrimbi_odom.demo.simulated_procedure import drive_of, error_figure
 
-ROOT = Path(__file__).parents[1]
+DEMO = (sys.executable, "-m", "werrimbi_odom.demo")
 OPTITRACK = ROBOTS / "optitrack_robot"
 DRIVES = sorted(path.name for path in OPTITRACK.glob("*") if path.is_dir())
 
 
 def demo(out: Path, *arguments: str, seconds: float = 120) -> str:
     """What the demo prints; a process of its own, as `make demo` starts it."""
-    run = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.demo", "--out", str(out), *arguments],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=seconds,
-    )
+    run = ran([*DEMO, "--out", out, *arguments], timeout=seconds)
     assert run.returncode == 0, run.stdout + run.stderr
     return run.stdout
 
@@ -58,13 +51,7 @@ def test_the_same_drive_from_its_bag(tmp_path: Path) -> None:
 
 
 def test_a_run_that_is_not_there_is_one_clear_line(tmp_path: Path) -> None:
-    run = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.demo", "--run", str(tmp_path / "nowhere")],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    run = ran([*DEMO, "--run", tmp_path / "nowhere"])
     assert run.returncode == 2
     assert len(run.stderr.strip().splitlines()) == 1
     assert "nowhere" in run.stderr

@@ -5,18 +5,16 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from test.command_line import ROOT, WERRIMBI, ran
 from test.recorded_robots import with_recordings
 
-ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
 PAGES = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")),
@@ -103,14 +101,7 @@ def test_the_table_of_real_robots_is_what_its_command_prints() -> None:
 
 
 def werrimbi(*arguments: str, cwd: Path) -> None:
-    run = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *arguments],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )
+    run = ran([*WERRIMBI, *arguments], cwd)
     assert run.returncode == 0, f"werrimbi {' '.join(arguments)}\n{run.stdout}{run.stderr}"
 
 

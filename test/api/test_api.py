@@ -17,6 +17,7 @@ import pytest
 
 import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run
+from test.command_line import Werrimbi
 from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
@@ -156,7 +157,7 @@ CASES: dict[str, tuple[list[str], Any]] = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_verb_says_what_the_command_says(
-    drives: Path, case: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    drives: Path, case: str, monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi
 ) -> None:
     """Words, JSON and robot file, to the last digit."""
     monkeypatch.chdir(drives)
@@ -165,8 +166,7 @@ def test_a_verb_says_what_the_command_says(
     Path("squares.csv").write_text("\n".join(("sense,x_m,y_m", *offsets)))
     ends = (f"{0.002 * (-1) ** i},{0.03 * (i % 5 - 2)},{0.004 * (i % 4 - 1.5)}" for i in range(20))
     Path("noise.csv").write_text("\n".join(("ex_m,ey_m,eyaw_rad", *ends)))
-    assert main([*command, "--json", "said.json"]) == 0
-    said = capsys.readouterr().out
+    said = werrimbi(*command, "--json", "said.json").out
     found = verb(wo.read_robot("robot.yaml"))
     assert said.startswith(f"{found.summary()}\n")
     assert plain(found.to_dict()) == json.loads(Path("said.json").read_text())

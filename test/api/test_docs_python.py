@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from test.command_line import ROOT, ran
+
 PAGE = ROOT / "docs" / "python.md"
 
 ENOUGH = ("robot.yaml", "train/square_ccw", "train/free_brisk", "train/eights_and_spins",
@@ -25,7 +25,7 @@ def test_the_five_lines_run_in_a_shell() -> None:
     (shown,) = re.findall(r"```bash\n(python -c '.*?')\n```", PAGE.read_text(), re.DOTALL)
     assert len(shown.splitlines()) == 7, "five lines of Python between the two of the shell"
     command = shown.replace("python", sys.executable, 1)
-    run = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True)
+    run = ran(["sh", "-c", command])
     assert run.returncode == 0, run.stderr
     lines = run.stdout.splitlines()
     assert len(lines) == 4

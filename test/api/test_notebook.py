@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from test.command_line import ROOT
+
 NOTEBOOK = ROOT / "example" / "notebook.ipynb"
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 

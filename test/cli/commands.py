@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
-import pytest
 
 from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
@@ -34,14 +35,11 @@ def written_by(file: Path, *words: object) -> dict[str, Any]:
     return found
 
 
-def complaint(capsys: pytest.CaptureFixture[str], *words: object) -> str:
-    """The one line that a command says of a mistake, and nothing else."""
-    assert main([*map(str, words)]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert len(said.err.splitlines()) == 1
-    assert said.err.startswith(f"werrimbi {words[0]}: ")
-    return said.err
+def called(verb: ModuleType, *words: object) -> int:
+    """Code of a verb that raises its mistakes, as it does in front of `main`."""
+    parser = argparse.ArgumentParser()
+    verb.add_arguments(parser)
+    return int(verb.run(parser.parse_args([str(word) for word in words])))
 
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from test.cli.commands import PLAIN, written
+from test.command_line import Werrimbi
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -47,11 +48,10 @@ def test_it_writes_what_the_node_reads(
 
 
 def test_what_does_not_help_is_refused_in_one_line(
-    creeping: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    creeping: Path, tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     out, figures = tmp_path / "new.yaml", tmp_path / "f.json"
-    assert main(words(creeping, "wheels_swapped", out, "--json", figures)) == 2
-    said = capsys.readouterr().err
+    said = werrimbi(*words(creeping, "wheels_swapped", out, "--json", figures), code=2).err
     assert said.count("\n") == 1
     assert "wheels_swapped does not lower the error" in said
     assert not out.exists()
@@ -62,10 +62,9 @@ def test_what_does_not_help_is_refused_in_one_line(
     ("effect", "told"), [("lateral_slipp", "nearest known one is lateral_slip"), ("", "unknown")]
 )
 def test_an_unknown_name_is_one_line(
-    creeping: Path, tmp_path: Path, effect: str, told: str, capsys: pytest.CaptureFixture[str]
+    creeping: Path, tmp_path: Path, effect: str, told: str, werrimbi: Werrimbi
 ) -> None:
-    assert main(words(creeping, effect, tmp_path / "new.yaml")) == 2
-    assert told in capsys.readouterr().err
+    assert told in werrimbi(*words(creeping, effect, tmp_path / "new.yaml"), code=2).err
 
 
 def test_an_existing_file_is_kept(
@@ -109,7 +108,7 @@ def test_several_effects_are_added_at_once(
 
 
 def test_what_cannot_be_written_is_found_before_the_work(
-    creeping: Path, capsys: pytest.CaptureFixture[str]
+    creeping: Path, werrimbi: Werrimbi
 ) -> None:
-    assert main(words(creeping, "lateral_slip", Path("/proc/new.yaml"))) == 2
-    assert "--out /proc/new.yaml cannot be written" in capsys.readouterr().err
+    told = werrimbi(*words(creeping, "lateral_slip", Path("/proc/new.yaml")), code=2).err
+    assert "--out /proc/new.yaml cannot be written" in told

@@ -8,22 +8,20 @@ from pathlib import Path
 
 import pytest
 
-from test.cli.commands import RECORDING, ROBOT, complaint, written_by
+from test.cli.commands import RECORDING, ROBOT, written_by
+from test.command_line import Complaint, Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.robot_file import read_robot_file
 
 
 @pytest.mark.parametrize("kind", ["umbmark", "noise"])
-def test_help(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["calibrate", kind, "--help"]) == 0
-    assert "--robot" in capsys.readouterr().out
+def test_help(kind: str, werrimbi: Werrimbi) -> None:
+    assert "--robot" in werrimbi("calibrate", kind, "--help").out
 
 
-def test_the_kinds_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["calibrate", "--help"]) == 0
-    said = capsys.readouterr().out
+def test_the_kinds_are_listed(werrimbi: Werrimbi) -> None:
+    said = werrimbi("calibrate", "--help").out
     assert "umbmark" in said
     assert "noise" in said
 
@@ -42,28 +40,23 @@ def test_bad_use_is_one_line_and_exit_2(
     words: list[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    werrimbi: Werrimbi,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(words) == 2
-    said = capsys.readouterr().err
+    said = werrimbi(*words, code=2).err
     assert said.count("\n") == 1
     assert "Traceback" not in said
 
 
 def test_a_package_that_is_not_installed_is_named(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi
 ) -> None:
     def without_scipy(arguments: object) -> int:
         raise ModuleNotFoundError("No module named 'scipy'", name="scipy")
 
     monkeypatch.setitem(KINDS, "noise", (*KINDS["noise"][:2], without_scipy))
     words = ["calibrate", "noise", "r.csv", "--distance", "1", "--robot", "r", "--out", "n"]
-    assert main(words) == 2
-    assert "needs the Python package scipy" in capsys.readouterr().err
-
-
-ROOT = Path(__file__).parents[2]
+    assert "needs the Python package scipy" in werrimbi(*words, code=2).err
 
 
 def fit(tmp_path: Path, *arguments: str) -> dict[str, object]:
@@ -133,13 +126,11 @@ def test_where_calibration_is_not_what_is_missing_it_gives_no_error_bars(
     assert "Something else is missing" in capsys.readouterr().out
 
 
-def test_a_run_without_a_reference_is_one_clear_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_without_a_reference_is_one_clear_line(tmp_path: Path, complaint: Complaint) -> None:
     run = tmp_path / "run"
     run.mkdir()
     (run / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
     out = tmp_path / "new.yaml"
-    told = complaint(capsys, "calibrate", "fit", "--robot", ROBOT, run, "--out", out)
+    told = complaint("calibrate", "fit", "--robot", ROBOT, run, "--out", out)
     assert "reference" in told
     assert not out.exists()

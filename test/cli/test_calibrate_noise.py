@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 from pathlib import Path
@@ -12,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.cli.commands import called
+from test.command_line import Printed
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -47,20 +48,9 @@ def desk(tmp_path: Path) -> Path:
 
 
 def noise(desk: Path, *words: object, distance: float = 10.0) -> int:
-    parser = argparse.ArgumentParser()
-    calibrate.add_arguments(parser)
-    all_words = [
-        "noise",
-        desk / "results.csv",
-        "--distance",
-        distance,
-        "--robot",
-        desk / "robot.yaml",
-        "--out",
-        desk / "new.yaml",
-        *words,
-    ]
-    return calibrate.run(parser.parse_args([str(word) for word in all_words]))
+    files = ("--robot", desk / "robot.yaml", "--out", desk / "new.yaml")
+    results = desk / "results.csv"
+    return called(calibrate, "noise", results, "--distance", distance, *files, *words)
 
 
 def figures(desk: Path) -> dict[str, object]:
@@ -83,7 +73,7 @@ def test_a_table_to_a_robot_file(desk: Path, capsys: pytest.CaptureFixture[str])
     assert "ellipses matched" in said
 
 
-def test_wheels_that_cannot_be_told_apart(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wheels_that_cannot_be_told_apart(desk: Path, printed: Printed) -> None:
     (desk / "results.csv").write_text(table(10e-3, 5e-3), encoding="utf-8")
     words = ["--reference-sigma-xy", 0.01, "--reference-sigma-yaw", 0.005]
     assert noise(desk, *words, "--json", desk / "f.json") == 0
@@ -93,23 +83,21 @@ def test_wheels_that_cannot_be_told_apart(desk: Path, capsys: pytest.CaptureFixt
     assert new.left_wheel_noise == pytest.approx(
         math.hypot(K_LEFT, K_RIGHT) / math.sqrt(2), rel=0.3
     )
-    said = " ".join(capsys.readouterr().out.split())
+    said = printed()
     assert "not which wheel has how much of it" in said
     assert "turns about the standing left wheel" in said
 
 
-def test_turning_round_hides_the_difference(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_turning_round_hides_the_difference(desk: Path, printed: Printed) -> None:
     assert noise(desk, "--turn-round", "--json", desk / "f.json") == 0
     assert figures(desk)["wheels_told_apart"] is False
-    assert "backing to the mark would show it" in " ".join(capsys.readouterr().out.split())
+    assert "backing to the mark would show it" in printed()
 
 
-def test_a_noisy_reference_that_was_not_told_is_named(
-    desk: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_noisy_reference_that_was_not_told_is_named(desk: Path, printed: Printed) -> None:
     (desk / "results.csv").write_text(table(8e-3, 6e-3), encoding="utf-8")
     assert noise(desk, "--json", desk / "f.json") == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = printed()
     assert "Careful" in said
     missing = figures(desk)["missing_reference"]
     assert missing["sigma_xy_m"] == pytest.approx(8e-3, rel=0.4)  # type: ignore[index]
@@ -117,20 +105,18 @@ def test_a_noisy_reference_that_was_not_told_is_named(
     assert "--reference-sigma-xy" in said
 
 
-def test_disturbed_runs_are_not_blamed_on_the_reference(
-    desk: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_disturbed_runs_are_not_blamed_on_the_reference(desk: Path, printed: Printed) -> None:
     rows = table().split("\n")
     rows[5], rows[9], rows[20] = "0.05,0.9,0.05", "-0.05,0.9,0.06", "0.04,1.1,0.05"
     (desk / "results.csv").write_text("\n".join(rows), encoding="utf-8")
     assert noise(desk, "--json", desk / "f.json") == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = printed()
     assert "Careful" in said
     assert figures(desk)["missing_reference"] is None
     assert "were some runs disturbed?" in said
 
 
-def test_what_is_systematic_is_said(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_systematic_is_said(desk: Path, printed: Printed) -> None:
     rows = table().strip().split("\n")
     moved = [rows[0]]
     for row in rows[1:]:
@@ -138,7 +124,7 @@ def test_what_is_systematic_is_said(desk: Path, capsys: pytest.CaptureFixture[st
         moved.append(f"{x + 0.01},{y + 0.2},{yaw - 0.03}")
     (desk / "results.csv").write_text("\n".join(moved), encoding="utf-8")
     assert noise(desk) == 0
-    assert "calibrate base and radii first" in " ".join(capsys.readouterr().out.split())
+    assert "calibrate base and radii first" in printed()
 
 
 @pytest.mark.parametrize(

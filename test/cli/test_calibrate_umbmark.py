@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 from pathlib import Path
 
 import pytest
 
+from test.cli.commands import called
+from test.command_line import Printed
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
@@ -43,12 +44,6 @@ ccw,-0.024,0.018
 DATA = ROBOTS / "optitrack_robot"
 
 
-def werrimbi_calibrate(*words: object) -> int:
-    parser = argparse.ArgumentParser()
-    calibrate.add_arguments(parser)
-    return calibrate.run(parser.parse_args([str(word) for word in words]))
-
-
 @pytest.fixture
 def desk(tmp_path: Path) -> Path:
     """A folder with a robot file and two tables."""
@@ -58,18 +53,12 @@ def desk(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def umbmark_files(desk: Path) -> tuple[object, ...]:
+    return "--robot", desk / "robot.yaml", "--out", desk / "new.yaml", "--side", 4.0
+
+
 def umbmark(desk: Path, *words: object, table: str = "before.csv") -> int:
-    return werrimbi_calibrate(
-        "umbmark",
-        desk / table,
-        "--robot",
-        desk / "robot.yaml",
-        "--out",
-        desk / "new.yaml",
-        "--side",
-        4.0,
-        *words,
-    )
+    return called(calibrate, "umbmark", desk / table, *umbmark_files(desk), *words)
 
 
 def test_a_table_to_a_robot_file(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -93,12 +82,12 @@ def test_a_table_to_a_robot_file(desk: Path, capsys: pytest.CaptureFixture[str])
 
 
 def test_squares_that_do_not_scatter_are_told_without_a_spread(
-    desk: Path, capsys: pytest.CaptureFixture[str]
+    desk: Path, printed: Printed
 ) -> None:
     rows = "cw,0.032,0.031\n" * 2 + "ccw,0.097,-0.094\n" * 2
     (desk / "same.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
     assert umbmark(desk, table="same.csv") == 0
-    assert "closer together than the robot file says" in " ".join(capsys.readouterr().out.split())
+    assert "closer together than the robot file says" in printed()
 
 
 def test_a_second_table_says_what_was_gained(
@@ -169,13 +158,12 @@ def test_files_that_cannot_be_read_or_written(desk: Path) -> None:
 
 def test_tables_and_runs_are_not_mixed(desk: Path) -> None:
     with pytest.raises(InputError, match="not both and not several"):
-        werrimbi_calibrate(
-            "umbmark", desk / "before.csv", desk, "--side", 4, "--robot", desk / "robot.yaml",
-            "--out", desk / "new.yaml",
-        )  # fmt: skip
+        called(calibrate, "umbmark", desk / "before.csv", desk, *umbmark_files(desk))
 
 
-def test_recorded_runs_before_and_after(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_recorded_runs_before_and_after(
+    desk: Path,
+) -> None:
     (desk / "robot.yaml").write_text(
         ROBOT.replace("wheel_separation_multiplier: 1.01", "encoder_bits: 0"), encoding="utf-8"
     )
@@ -186,7 +174,7 @@ def test_recorded_runs_before_and_after(desk: Path, capsys: pytest.CaptureFixtur
         runs.append(write_run(drive, desk / "runs" / f"{sense}_{seed}"))
     arguments = [*runs, "--side", 1.0, "--robot", desk / "robot.yaml", "--out", desk / "new.yaml"]
     assert (
-        werrimbi_calibrate("umbmark", *arguments, "--after", *runs, "--json", desk / "f.json") == 0
+        called(calibrate, "umbmark", *arguments, "--after", *runs, "--json", desk / "f.json") == 0
     )
     figures = json.loads((desk / "f.json").read_text(encoding="utf-8"))
     found = figures["parameters"]["wheel_separation_multiplier"]
@@ -197,22 +185,22 @@ def test_recorded_runs_before_and_after(desk: Path, capsys: pytest.CaptureFixtur
     assert size["after"] == pytest.approx(size["same_runs_corrected"], abs=1e-4)
     (runs[0] / "reference.csv").unlink()
     with pytest.raises(InputError, match="there is no reference"):
-        werrimbi_calibrate("umbmark", *arguments, "--force")
+        called(calibrate, "umbmark", *arguments, "--force")
 
 
 @with_recordings
-def test_a_real_robots_squares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_real_robots_squares(tmp_path: Path, printed: Printed) -> None:
     runs = sorted(DATA.glob("square_*"))
     words = ["--side", 1.7, "--robot", DATA / "robot.yaml", "--out", tmp_path / "new.yaml"]
-    assert werrimbi_calibrate("umbmark", *runs, *words, "--report", tmp_path / "f.html") == 0
+    assert called(calibrate, "umbmark", *runs, *words, "--report", tmp_path / "f.html") == 0
     new = read_robot_file(tmp_path / "new.yaml").robot
     assert new.wheel_separation_multiplier == pytest.approx(1.0085, abs=3e-4)
-    said = " ".join(capsys.readouterr().out.split())
+    said = printed()
     assert "Base and radii are off: E_max,syst is 104.4 mm on squares of 1.7 m." in said
     assert "clockwise 3 -15.3 -16.9" in said
     assert "anticlockwise 3 -67.1 79.9" in said
     ccw = [run for run in runs if run.name[-1] in "456"]
     with pytest.raises(InputError, match="2 more cw"):
-        werrimbi_calibrate("umbmark", *ccw, *words, "--force")
+        called(calibrate, "umbmark", *ccw, *words, "--force")
     with pytest.raises(InputError, match="not a square of side 2 m"):
-        werrimbi_calibrate("umbmark", *runs, *words, "--force", "--side", 2.0)
+        called(calibrate, "umbmark", *runs, *words, "--force", "--side", 2.0)

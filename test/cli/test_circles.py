@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
-from werrimbi_odom.cli.main import main
+from test.command_line import Werrimbi
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -45,15 +45,13 @@ def drive(tmp_path: Path) -> tuple[Path, Path]:
     return robot, run
 
 
-def test_the_command_line(drive: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_line(drive: tuple[Path, Path], werrimbi: Werrimbi) -> None:
     robot, run = drive
     command = ["compare", "--robot", str(robot), str(run)]
-    assert main(command) == 2
-    said = capsys.readouterr().err
+    said = werrimbi(*command, code=2).err
     assert said.count("\n") == 1
     assert "it was made from the same counts, and cannot judge them (--force takes it" in said
-    assert main([*command, "--force"]) == 0
-    said = capsys.readouterr().err
+    said = werrimbi(*command, "--force").err
     assert "warning: " in said
     assert "taken all the same" in said
 

@@ -8,17 +8,16 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from test.cli.commands import RECORDING, ROBOT, complaint, written_by
+from test.cli.commands import RECORDING, ROBOT, written_by
+from test.command_line import WERRIMBI, Complaint, ran
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 
-ROOT = Path(__file__).parents[2]
 OPTIONS = {
     "optitrack_robot": ("--leg", "0.5"),
     "khepera_laser_to_the_side": ("--leg", "0.1", "--reference-kind", "incremental"),
@@ -120,46 +119,37 @@ def test_every_recorded_robot(
     assert "explains these drives" not in capsys.readouterr().out
 
 
-def test_mistakes_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_mistakes_are_told_in_one_line(tmp_path: Path, complaint: Complaint) -> None:
     robot = ("--robot", ROBOT)
-    told = complaint(capsys, "compare", *robot, RECORDING, "--leg", "0")
+    told = complaint("compare", *robot, RECORDING, "--leg", "0")
     assert "--leg" in told
     assert "greater than zero" in told
-    assert "given twice" in complaint(capsys, "compare", *robot, RECORDING, f"{RECORDING}/.")
-    assert "there is no such run" in complaint(capsys, "compare", *robot, tmp_path / "nowhere")
-    told = complaint(capsys, "compare", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
+    assert "given twice" in complaint("compare", *robot, RECORDING, f"{RECORDING}/.")
+    assert "there is no such run" in complaint("compare", *robot, tmp_path / "nowhere")
+    told = complaint("compare", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
     assert "would overwrite" in told
-    told = complaint(capsys, "compare", *robot, RECORDING, "--json", tmp_path)
+    told = complaint("compare", *robot, RECORDING, "--json", tmp_path)
     assert "is a folder" in told
 
 
-def test_a_folder_of_runs_names_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_of_runs_names_them(tmp_path: Path, complaint: Complaint) -> None:
     for name in ("first", "second"):
         (tmp_path / "runs" / name).mkdir(parents=True)
         for file in ("ticks.csv", "reference.csv"):
             (tmp_path / "runs" / name / file).write_text((RECORDING / file).read_text())
-    told = complaint(capsys, "compare", "--robot", ROBOT, tmp_path / "runs")
+    told = complaint("compare", "--robot", ROBOT, tmp_path / "runs")
     assert "is no run but a folder of 2 (first, second)" in told
 
 
-def test_a_run_without_a_reference_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_without_a_reference_is_named(tmp_path: Path, complaint: Complaint) -> None:
     (tmp_path / "blind").mkdir()
     (tmp_path / "blind" / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
-    told = complaint(capsys, "compare", "--robot", ROBOT, tmp_path / "blind")
+    told = complaint("compare", "--robot", ROBOT, tmp_path / "blind")
     assert "there is no reference to compare with" in told
 
 
 def test_in_a_process_of_its_own_without_a_terminal() -> None:
-    words = ["compare", "--robot", ROBOT, RECORDING]
-    done = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *words],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        check=False,
-    )
+    done = ran([*WERRIMBI, "compare", "--robot", ROBOT, RECORDING])
     assert done.returncode == 0
     assert done.stderr == ""
     assert "Errors of legs of 1 m (rms)" in done.stdout
@@ -168,12 +158,9 @@ def test_in_a_process_of_its_own_without_a_terminal() -> None:
 def test_who_stops_reading_has_the_files_all_the_same(tmp_path: Path) -> None:
     """As of `werrimbi compare ... --json F | head -1`."""
     figures = tmp_path / "compare.json"
-    command = [sys.executable, "-m", "werrimbi_odom.cli.main", "compare", "--robot", str(ROBOT)]
-    with subprocess.Popen(
-        [*command, str(RECORDING), "--json", str(figures)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    ) as process:
+    words = ["compare", "--robot", str(ROBOT), str(RECORDING), "--json", str(figures)]
+    quiet = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([*WERRIMBI, *words], **quiet) as process:
         assert process.stdout is not None
         process.stdout.close()
         process.wait(120)
@@ -191,7 +178,7 @@ def test_who_stops_reading_has_the_files_all_the_same(tmp_path: Path) -> None:
 )
 def test_what_could_not_be_written_is_said_before_the_work(
     tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
+    complaint: Complaint,
     monkeypatch: pytest.MonkeyPatch,
     option: str,
     name: str,
@@ -200,7 +187,7 @@ def test_what_could_not_be_written_is_said_before_the_work(
     monkeypatch.setenv("PATH", "")  # no browser
     not_there = tmp_path / "a_drive_that_would_be_read_next"
     words = ("--robot", wrong_base(tmp_path), not_there, option, tmp_path / name)
-    assert said in complaint(capsys, "compare", *words)
+    assert said in complaint("compare", *words)
 
 
 def test_held_poses_are_left_out_and_told(

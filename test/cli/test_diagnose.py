@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from test.cli.commands import RECORDING, ROBOT, complaint, written_by
+from test.cli.commands import RECORDING, ROBOT, written_by
+from test.command_line import Complaint
 
 TEXT = ROBOT.read_text()
 FILES = {
@@ -121,25 +122,23 @@ def test_half_a_base_is_called_a_mistake_of_set_up_before_anything_else(
     assert value["value"] == pytest.approx(2.0, abs=0.01)
 
 
-def test_mistakes_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_mistakes_are_told_in_one_line(tmp_path: Path, complaint: Complaint) -> None:
     robot = ("--robot", ROBOT)
-    told = complaint(capsys, "diagnose", *robot, RECORDING, "--holdout", RECORDING)
+    told = complaint("diagnose", *robot, RECORDING, "--holdout", RECORDING)
     assert "given twice" in told
-    assert "there is no such run" in complaint(capsys, "diagnose", *robot, tmp_path / "nowhere")
-    told = complaint(capsys, "diagnose", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
+    assert "there is no such run" in complaint("diagnose", *robot, tmp_path / "nowhere")
+    told = complaint("diagnose", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
     assert "would overwrite" in told
-    assert "required: --robot" in complaint(capsys, "diagnose", RECORDING)
+    assert "required: --robot" in complaint("diagnose", RECORDING)
 
 
-def test_headings_in_degrees_are_told_with_the_mend(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_headings_in_degrees_are_told_with_the_mend(tmp_path: Path, complaint: Complaint) -> None:
     (tmp_path / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
     header, *rows = (RECORDING / "reference.csv").read_text().splitlines()
     turned = [row.rsplit(",", 1) for row in rows]
     lines = [f"{rest},{float(yaw) * 180.0 / 3.141592653589793:.4f}" for rest, yaw in turned]
     (tmp_path / "reference.csv").write_text("\n".join([header, *lines]) + "\n")
-    told = complaint(capsys, "diagnose", "--robot", ROBOT, tmp_path)
+    told = complaint("diagnose", "--robot", ROBOT, tmp_path)
     assert str(tmp_path) in told
     assert "degrees" in told
     assert "pi/180" in told

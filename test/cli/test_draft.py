@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.cli.commands import PLAIN, complaint, written, written_by
+from test.cli.commands import PLAIN, written, written_by
+from test.command_line import Complaint
 from test.soft_tyres import soft_tyres
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import load_file
@@ -54,17 +55,13 @@ def test_the_law_is_found_written_and_added(
     assert "along_by_load_kg" in new.read_text()
 
 
-def test_a_package_is_not_written_over(
-    loaded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_package_is_not_written_over(loaded: Path, tmp_path: Path, complaint: Complaint) -> None:
     (tmp_path / "mine.txt").write_text("mine")
-    assert "is not empty" in complaint(capsys, "draft", *runs(loaded), "--out", tmp_path)
+    assert "is not empty" in complaint("draft", *runs(loaded), "--out", tmp_path)
 
 
-def test_where_nothing_is_missing_nothing_is_drafted(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_where_nothing_is_missing_nothing_is_drafted(tmp_path: Path, complaint: Complaint) -> None:
     folder = written(tmp_path, [PLAIN] * 4)
-    told = complaint(capsys, "draft", *runs(folder), "--out", tmp_path / "package")
+    told = complaint("draft", *runs(folder), "--out", tmp_path / "package")
     assert "the verdict is" in told
     assert not (tmp_path / "package").exists()

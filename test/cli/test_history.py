@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 import werrimbi_odom as wo
-from test.cli.commands import PLAIN, ROBOT_FILE, complaint, write_run, written_by
+from test.cli.commands import PLAIN, ROBOT_FILE, write_run, written_by
+from test.command_line import Complaint, Printed
 from test.inference.driven import run_of
 
 BEGAN = 1_700_000_000.0
@@ -54,7 +55,7 @@ def told(folder: Path, *more: str, out: Path) -> dict[str, object]:
 
 
 def test_drives_are_told_by_their_dates_and_kept_by_their_content(
-    months: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    months: Path, tmp_path: Path, printed: Printed
 ) -> None:
     cache, out, page = tmp_path / "kept", tmp_path / "h.json", tmp_path / "h.html"
     more = ("--cache", str(cache), "--report", str(page), "--like", str(months / "sound.yaml"))
@@ -74,7 +75,7 @@ def test_drives_are_told_by_their_dates_and_kept_by_their_content(
     assert not any(each["differs"] for each in found["like"])
     (unusable,) = found["unusable"]
     assert "drive_broken" in unusable["run"]
-    words = " ".join(capsys.readouterr().out.split())
+    words = printed()
     assert "look at the right wheel" in words
     assert "calibrate again" in words
     assert "nothing is new" in words
@@ -86,14 +87,14 @@ def test_drives_are_told_by_their_dates_and_kept_by_their_content(
     again = told(months, *more, out=out)
     assert again == found
     assert [file.stat().st_mtime_ns for file in sorted(cache.iterdir())] == before
-    words = " ".join(capsys.readouterr().out.split())
+    words = printed()
     assert f"{DRIVES} of them known from before" in words
     kept[0].write_text("{")
     assert told(months, *more, out=out) == found
 
 
 def test_without_stamps_the_files_own_dates_count_unless_they_were_copied(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, printed: Printed
 ) -> None:
     (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
     for number in range(2):
@@ -101,13 +102,13 @@ def test_without_stamps_the_files_own_dates_count_unless_they_were_copied(
     more = ("--cache", str(tmp_path / "kept"))
     found = told(tmp_path, *more, out=tmp_path / "h.json")
     assert [drive["date"] for drive in found["drives"]] == [None, None]
-    assert "in the order given" in " ".join(capsys.readouterr().out.split())
+    assert "in the order given" in printed()
     for file in (tmp_path / "drive_1").iterdir():
         os.utime(file, (BEGAN, BEGAN))
     found = told(tmp_path, *more, out=tmp_path / "h.json")
     assert [Path(drive["run"]).name for drive in found["drives"]] == ["drive_1", "drive_0"]
     assert found["drives"][0]["date"].startswith("2023-11-14")
-    assert "when their files were written" in " ".join(capsys.readouterr().out.split())
+    assert "when their files were written" in printed()
     assert found["changes"] == []
 
 
@@ -135,9 +136,9 @@ def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Pa
 
 
 def test_drives_none_of_which_can_be_used_are_an_error(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, complaint: Complaint
 ) -> None:
     (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
     (tmp_path / "empty").mkdir()
     given = ("--robot", tmp_path / "robot.yaml", tmp_path / "empty", "--cache", tmp_path / "kept")
-    assert "no drive can be used" in complaint(capsys, "history", *given)
+    assert "no drive can be used" in complaint("history", *given)

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import json
-import math
 import shlex
 from pathlib import Path
 
@@ -13,76 +12,29 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.command_line import Werrimbi
 from test.files.conftest import Messages
+from test.files.unseen import DAY, JOINTS, gyro, joints, poses, stamp_of, urdf
 from test.inference.driven import run_of
 from test.inference.test_held_or_carried import held
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.files.controller_wheels import of_controller
-from werrimbi_odom.files.first_robot import with_steps
-from werrimbi_odom.files.stamps import _judged
-from werrimbi_odom.files.urdf_wheels import of_urdf
-from werrimbi_odom.report.info_words import _clock
 from werrimbi_odom.simulation.lidar import Lidar
-
-DAY = 1_700_000_000
-JOINTS = ("drive_left_joint", "drive_right_joint")
-
-WHEEL = """
-  <joint name="{name}" type="continuous">
-    <parent link="chassis"/><child link="{name}_link"/>
-    <origin xyz="0.05 {y} 0.01" rpy="-1.5707963 0 0"/><axis xyz="0 0 1"/>
-  </joint>
-  <link name="{name}_link"><collision><geometry>
-    <cylinder radius="{radius}" length="0.02"/>
-  </geometry></collision></link>
-"""
-URDF = """<robot name="a_robot"><link name="base_footprint"/><link name="chassis"/>
-  <joint name="up" type="fixed"><parent link="base_footprint"/><child link="chassis"/>
-    <origin xyz="0 0 0.04" rpy="0 0 {yaw}"/></joint>
-  <joint name="castor_joint" type="continuous"><parent link="chassis"/><child link="castor"/>
-    <origin xyz="-0.2 0.01 0"/><axis xyz="0 1 0"/></joint><link name="castor"/>{wheels}</robot>"""
-
-
-def urdf(yaw: float = 0.0) -> str:
-    """Of the robot that is driven."""
-    half, radius = 0.5 * ROBOT.wheel_separation, ROBOT.wheel_radius
-    wheels = [
-        WHEEL.format(name=name, y=y, radius=radius)
-        for name, y in zip(JOINTS, (half, -half), strict=True)
-    ]
-    return URDF.format(wheels="".join(wheels), yaw=yaw)
 
 
 def bag_of(folder: Path, *, described: bool = True, measured: bool = True) -> tuple[Path, float]:
     """A bag as people have it: joints, gyro, own odometry, poses of a tracker; begin of a hold."""
-    ros, random = Messages(), np.random.default_rng(4)
+    ros, late = Messages(), np.random.default_rng(4)
     run, begin, _ = held(run_of(ROBOT, 1, 40), 20.0, 26.0)
-    reference = run.reference
-    assert reference is not None
-    late = random.exponential(0.02, 10_000)
-    entries = []
-
-    def add(topic: str, seconds: float, message: object) -> None:
-        stamp = DAY * 10**9 + round(seconds * 1e9)
-        entries.append((topic, stamp + round(1e9 * late[len(entries)]), message))
-
-    per_turn = ROBOT.left_ticks_per_revolution
-    for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
-        stamp = DAY * 10**9 + round(time * 1e9)
-        angles = [2.0 * math.pi * round(count) / per_turn for count in counts]
-        add("/joint_states", time, ros.joints(stamp, JOINTS, angles))
-        add("/odom", time, ros.odometry(stamp, 0.0, 0.0, 0.0))
-    poses = zip(reference.time, reference.x, reference.y, reference.yaw, strict=True)
-    rates = np.gradient(reference.yaw, reference.time)
-    for rate, (time, *pose) in zip(rates, poses, strict=True):
-        stamp = DAY * 10**9 + round(time * 1e9)
-        if measured:
-            add("/imu", time, ros.imu(stamp, rate))
-            add("/vrpn/robot/pose", time, ros.pose(stamp, *pose))
+    sent = list(joints(ros, run))
+    sent += [("/odom", at, ros.odometry(at, 0.0, 0.0, 0.0)) for _, at, _ in sent]
+    if measured:
+        sent += gyro(ros, run)
+        sent += [("/vrpn/robot/pose", at, pose) for _, at, pose in poses(ros, run)]
     if described:
         text = ros.make("std_msgs/msg/String", urdf())
-        add("/robot_description", 0.0, ("std_msgs/msg/String", text))
+        sent.append(("/robot_description", stamp_of(0.0), ("std_msgs/msg/String", text)))
+    entries = [(topic, at + round(1e9 * late.exponential(0.02)), what) for topic, at, what in sent]
     entries.sort(key=lambda entry: entry[1])
     return ros.write(folder / "a bag", entries, "sqlite3"), begin
 
@@ -180,7 +132,7 @@ def test_without_sizes_it_says_what_to_measure(
 
 
 def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     bag, _ = bag_of(tmp_path)
     wrong = tmp_path / "wrong.yaml"
@@ -188,14 +140,13 @@ def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
         "odom_node:\n  ros__parameters:\n    wheel_separation: 0.4\n    wheel_radius: 0.1\n"
         "    ticks_per_revolution: 1000.0\n"
     )
-    assert main(["info", str(bag), "--robot", str(wrong)]) == 2
-    assert "unknown parameter ticks_per_revolution" in capsys.readouterr().err
+    told = werrimbi("info", bag, "--robot", wrong, code=2).err
+    assert "unknown parameter ticks_per_revolution" in told
 
 
-def test_without_a_reference_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_reference_it_says_so(tmp_path: Path, werrimbi: Werrimbi) -> None:
     bag, _ = bag_of(tmp_path, measured=False)
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "Nothing that is read in the bag measures the robot but its own wheels" in printed
     assert "Record again with something that measures the robot" in printed
 
@@ -214,12 +165,11 @@ def one_drive(*spaces: str, wheels_late: int = 0) -> list[tuple[str, int, object
 
 
 def test_of_two_robots_each_is_judged_by_its_own_reference(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     bag = Messages().write(tmp_path / "two", one_drive("/one", "/two"))
     for mine, other in (("one", "two"), ("two", "one")):
-        assert main(["info", str(bag), "--ticks-topic", f"/{mine}/joint_states"]) == 0
-        printed = " ".join(capsys.readouterr().out.split())
+        printed = werrimbi("info", bag, "--ticks-topic", f"/{mine}/joint_states").words
         assert f"Wheels: /{mine}/joint_states" in printed
         assert f"not looked at, but may tell of wheels: /{other}/joint_states" in printed.lower()
         assert f"Reference /{mine}/pose: poses at 10 Hz" in printed
@@ -228,12 +178,11 @@ def test_of_two_robots_each_is_judged_by_its_own_reference(
 
 
 def test_clocks_apart_are_told_with_both_spans_and_put_on_the_recorders(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """The robot's computer began at another date; one recorder received it all by one clock."""
     bag = Messages().write(tmp_path / "apart", one_drive("", wheels_late=5 - DAY))
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "the reference's stamps are 1.7e+09 s later than those of the wheels" in printed
     assert f"and reference ({DAY} to {DAY + 29.9:.14g}) are of two clocks" in printed
     assert "In 29.9 s the robot drove for 29.9 s" in printed
@@ -241,7 +190,7 @@ def test_clocks_apart_are_told_with_both_spans_and_put_on_the_recorders(
 
 
 def test_poses_that_repeat_are_left_out_as_where_drives_are_judged(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """A tracker's last pose, sent on for 2 s at a time, is not a robot that somebody holds."""
     entries = one_drive("")
@@ -251,111 +200,37 @@ def test_poses_that_repeat_are_left_out_as_where_drives_are_judged(
         seen = 20 * (number // 20) if 100 <= number < 200 else number
         entries[entries.index(poses[number])] = (topic, at, ros.pose(at, 0.005 * seen, 0.0, 0.0))
     bag = ros.write(tmp_path / "sticks", entries)
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "reference poses repeat the one before to the last digit" in printed
     assert "held, or against a wall" not in printed
 
 
-def test_an_array_of_floats_is_told_with_how_it_is_read(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_array_of_floats_is_told_with_how_it_is_read(tmp_path: Path, werrimbi: Werrimbi) -> None:
     ros = Messages()
     entries = [("/wheel_ticks", n * 10**8, ros.floats(10.0 * n, 10.0 * n)) for n in range(1, 100)]
     bag = ros.write(tmp_path / "floats", entries)
-    assert main(["info", str(bag)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", bag).words
     assert "if its two values count both wheels, --ticks-topic /wheel_ticks reads them" in printed
-    assert main(["info", str(bag), "--ticks-topic", "/wheel_ticks"]) == 0
-    assert "Wheels: /wheel_ticks, counters at 10 Hz" in capsys.readouterr().out
+    then = werrimbi("info", bag, "--ticks-topic", "/wheel_ticks").out
+    assert "Wheels: /wheel_ticks, counters at 10 Hz" in then
 
 
-def test_a_run_folder_is_looked_at_too(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_folder_is_looked_at_too(werrimbi: Werrimbi) -> None:
     square = Path(wo.__file__).parent / "recordings" / "square"
-    assert main(["info", str(square), "--robot", str(square / "robot.yaml")]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", square, "--robot", square / "robot.yaml").words
     assert "Reference: reference.csv, poses." in printed
     assert "werrimbi compare --robot" in printed
 
 
-def test_the_bias_of_a_gyro_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:
     counts = [100.0 * max(0.0, 0.1 * n - 3.0) for n in range(90)]
     rows = [f"{0.1 * n},{each:.0f},{each:.0f}" for n, each in enumerate(counts)]
     (tmp_path / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + "\n".join(rows))
     turned = [f"{0.1 * n},,,{-0.002 * n}" for n in range(90)]
     (tmp_path / "reference.csv").write_text("t_s,x_m,y_m,yaw_rad\n" + "\n".join(turned))
     robot = Path(wo.__file__).parent / "recordings" / "square" / "robot.yaml"
-    assert main(["info", str(tmp_path), "--robot", str(robot)]) == 0
-    printed = " ".join(capsys.readouterr().out.split())
+    printed = werrimbi("info", tmp_path, "--robot", robot).words
     assert "Its headings turn by -1.1°/s while the wheels stand: a gyro's bias" in printed
-
-
-@pytest.mark.parametrize("yaw", [0.0, 0.3])
-def test_sizes_of_a_urdf(yaw: float) -> None:
-    found = of_urdf(urdf(yaw), JOINTS)
-    if yaw:  # a chassis that is mounted askew: its wheels do not roll along the robot's axis
-        assert found.separation == pytest.approx(ROBOT.wheel_separation * math.cos(yaw), rel=1e-3)
-        return
-    assert (found.separation, found.radius) == (ROBOT.wheel_separation, ROBOT.wheel_radius)
-    assert (found.left, found.right) == ((JOINTS[0],), (JOINTS[1],))
-    assert not of_urdf(urdf(), ["arm_joint"]).has_sizes
-
-
-@pytest.mark.parametrize(
-    "text", ["", "<robot", "<robot/>", "<!DOCTYPE x [<!ENTITY a 'b'>]><robot/>"]
-)
-def test_what_is_no_urdf_says_nothing(text: str) -> None:
-    assert not of_urdf(text).has_sizes
-
-
-def test_stamps_of_a_simulation_are_of_another_clock() -> None:
-    """Received in 2025, stamped from zero, by a clock that goes a little slower."""
-    stamped = np.arange(0.0, 60.0, 0.05)
-    words = _clock("/joint_states", _judged(stamped, 1.7e9 + 1.02 * stamped))
-    assert "another clock" in words
-    assert "e+09" not in words
-    assert "late" not in words
-
-
-@pytest.mark.parametrize(("uneven", "believed"), [(1.02, True), (1.5, False)])
-def test_headers_are_believed_where_receipt_is_no_evener(uneven: float, believed: bool) -> None:
-    random = np.random.default_rng(1)
-    received = 0.2 * np.arange(500.0) + random.normal(0.0, 0.02, 500)
-    stamped = 0.2 * np.arange(500.0) + uneven * (received - 0.2 * np.arange(500.0))
-    assert ("believe the headers" in _clock("/odom", _judged(stamped, received))) is believed
-
-
-def test_a_negative_multiplier_of_a_controller_is_a_reversed_wheel(tmp_path: Path) -> None:
-    """So diff_drive_controller takes it; a robot file says it with an effect."""
-    parameters = tmp_path / "controllers.yaml"
-    parameters.write_text(
-        "diff_drive_controller:\n  ros__parameters:\n    wheel_separation: 1.9\n"
-        "    wheel_radius: 0.3\n    left_wheel_radius_multiplier: 1.01\n"
-        "    right_wheel_radius_multiplier: -1.0\n"
-    )
-    out = tmp_path / "robot.yaml"
-    out.write_text(of_controller(parameters).text("first"))
-    robot = wo.read_robot(out).robot
-    assert [each.name for each in robot.effects] == ["right_wheel_reversed"]
-    assert robot.left_wheel_radius_multiplier == 1.01
-    assert robot.right_wheel_radius_multiplier == 1.0
-
-
-def test_a_file_without_wheels_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "other.yaml"
-    path.write_text("amcl:\n  ros__parameters:\n    max_particles: 2000\n")
-    with pytest.raises(wo.InputError, match="wheel_separation and wheel_radius"):
-        of_controller(path)
-
-
-@pytest.mark.parametrize("ticks", [512, 4096, 20000])
-def test_steps_of_the_angles_tell_the_counts_of_a_turn(ticks: int) -> None:
-    counts = np.cumsum(np.random.default_rng(1).integers(3, 60, 400))
-    first = of_urdf(urdf())
-    found = with_steps(first, [2.0 * math.pi * counts / ticks] * 2)
-    assert found.ticks == ticks
-    smooth = np.cumsum(np.random.default_rng(1).uniform(0.01, 0.1, 400))
-    assert with_steps(first, [smooth, smooth]).ticks is None
 
 
 def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> None:
@@ -372,57 +247,31 @@ def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> N
     assert "Whether it can show base and radii is said once --robot gives their sizes." in said
 
 
-def test_the_speeds_of_a_simulator_are_no_counts() -> None:
-    """Without inertia a robot holds three speeds, and turns the same in each message."""
-    steps = np.repeat([0.0, 0.135191, 0.0, 0.045064, 0.228225, 0.0], [80, 90, 30, 20, 60, 70])
-    angles = np.cumsum(steps)
-    assert with_steps(of_urdf(urdf()), [angles, angles]).ticks is None
-
-
-def test_coarse_counts_at_one_speed_are_counts() -> None:
-    """Twenty counts a turn: none or one in a message, as it comes."""
-    counts = np.floor(np.arange(0.0, 100.0, 0.3))
-    found = with_steps(of_urdf(urdf()), [2.0 * math.pi * counts / 20.0] * 2)
-    assert found.ticks == 20.0
-
-
 def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """In the middle of a hall a lidar sees nothing; the command that is printed works."""
-    ros, lidar = Messages(), Lidar()
-    run = run_of(ROBOT, 1, 40)
-    assert run.reference is not None
-    entries = []
-    for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
-        angles = [2.0 * math.pi * count / ROBOT.left_ticks_per_revolution for count in counts]
-        stamp = round(1e9 * (DAY + time))
-        entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, angles)))
-    rates = np.gradient(np.unwrap(run.reference.yaw), run.reference.time)
-    for time, rate in zip(run.reference.time, rates, strict=True):
-        stamp = round(1e9 * (DAY + time))
-        entries.append(("/imu", stamp, ros.imu(stamp, rate)))
-        nothing = np.full(lidar.beams, np.inf)
-        entries.append(("/scan", stamp, ros.scan(stamp, lidar, nothing)))
-    bag = ros.write(tmp_path / "hall", sorted(entries, key=lambda entry: entry[1]))
-    assert main(["info", str(bag), "--reference-topic", "/scan"]) == 0
-    printed = capsys.readouterr().out
+    ros, lidar, run = Messages(), Lidar(), run_of(ROBOT, 1, 40)
+    turned = list(gyro(ros, run))
+    nothing = np.full(lidar.beams, np.inf)
+    seen = [("/scan", at, ros.scan(at, lidar, nothing)) for _, at, _ in turned]
+    entries = sorted([*joints(ros, run), *turned, *seen], key=lambda entry: entry[1])
+    bag = ros.write(tmp_path / "hall", entries)
+    printed = werrimbi("info", bag, "--reference-topic", "/scan").out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
-    assert main(shlex.split(printed.splitlines()[-1].strip())[1:]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = werrimbi(*shlex.split(printed.splitlines()[-1].strip())[1:]).words
     assert "its yaw rate is integrated). It is taken." in said
     assert "It can show what happens at reversals" in said
 
 
 def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     ros, kind = Messages(), "sensor_msgs/msg/PointCloud2"
     none = np.zeros(0, dtype=np.uint8)
     cloud = (kind, ros.make(kind, ros.header(1), 1, 0, [], False, 16, 0, none, True))
     wheels = [("/joint_states", n, ros.joints(n, JOINTS, [0.1 * n] * 2)) for n in (1, 2, 3)]
     bag = ros.write(tmp_path / "cloud", [*wheels, ("/velodyne_points", 4, cloud)])
-    assert main(["info", str(bag)]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    told = werrimbi("info", bag).words
     assert "No reference as it is: /velodyne_points, clouds of points" in told
     assert "pointcloud_to_laserscan makes them of it" in told

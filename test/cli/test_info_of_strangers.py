@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.cli.test_info import DAY, JOINTS
+from test.command_line import Werrimbi
 from test.files.conftest import Messages
+from test.files.unseen import JOINTS, gyro, joints, poses, stamp_of
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
-from werrimbi_odom.cli.main import main
 
 SIZES = f"""odom_node:
   ros__parameters:
@@ -33,62 +33,41 @@ NAMES = f"""
 
 def bag_of(folder: Path, *, moves: bool = True, frame: str = "map") -> Path:
     """Joints, a gyro, and poses in some frame."""
-    ros, run = Messages(), run_of(ROBOT, 1, 40)
-    reference = run.reference
-    assert reference is not None
-    share = float(moves)
-    entries = []
-    for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
-        stamp = round(1e9 * (DAY + time))
-        angles = [2.0 * math.pi * share * n / ROBOT.left_ticks_per_revolution for n in counts]
-        entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, angles)))
-    rates = np.gradient(np.unwrap(reference.yaw), reference.time)
-    poses = zip(reference.time, reference.x, reference.y, reference.yaw, rates, strict=True)
-    for time, x, y, yaw, rate in poses:
-        stamp = round(1e9 * (DAY + time))
-        entries.append(("/imu", stamp, ros.imu(stamp, share * rate)))
-        kind, pose = ros.pose(stamp, share * x, share * y, share * yaw)
+    ros, run, share = Messages(), run_of(ROBOT, 1, 40), float(moves)
+    entries = [*joints(ros, run, share), *gyro(ros, run, share)]
+    for _, stamp, (kind, pose) in poses(ros, run, share):
         pose.header.frame_id = frame
         entries.append(("/seen", stamp, (kind, pose)))
     return ros.write(folder / "bag", sorted(entries, key=lambda entry: entry[1]))
 
 
-def said(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
-    assert main(words) == 0
-    return " ".join(capsys.readouterr().out.split())
-
-
 def test_other_names_of_joints_are_no_fault_of_the_reference(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """No other reference mends that; the lines that are told, written into the file, do."""
     bag, robot = bag_of(tmp_path), tmp_path / "robot.yaml"
     robot.write_text(SIZES)
-    told = said(["info", str(bag), "--robot", str(robot)], capsys)
+    told = werrimbi("info", bag, "--robot", robot).words
     assert "no joint left_wheel_joint" in told
     assert "nothing can be judged" not in told
     for line in NAMES.split("\n"):
         assert line.strip() in told
     robot.write_text(SIZES + NAMES)
-    told = said(["info", str(bag), "--robot", str(robot)], capsys)
+    told = werrimbi("info", bag, "--robot", robot).words
     assert "Next: werrimbi compare" in told
 
 
 @pytest.mark.parametrize("sizes", [False, True])
-def test_a_robot_that_stood_shows_nothing(
-    sizes: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_robot_that_stood_shows_nothing(sizes: bool, tmp_path: Path, werrimbi: Werrimbi) -> None:
     bag, robot = bag_of(tmp_path, moves=False), tmp_path / "robot.yaml"
     robot.write_text(SIZES + NAMES)
-    told = said(["info", str(bag), *(["--robot", str(robot)] if sizes else [])], capsys)
+    told = werrimbi("info", bag, *(["--robot", robot] if sizes else [])).words
     assert "It cannot show anything: the robot hardly moved." in told
     assert "It can show" not in told
     assert told.endswith("Record again while the robot drives.")
 
 
-def test_what_compare_refuses_info_does_not_offer(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_compare_refuses_info_does_not_offer(tmp_path: Path, werrimbi: Werrimbi) -> None:
     """Poses that are the wheels' own, under a name that says nothing."""
     ros, run = Messages(), run_of(ROBOT, 1, 40)
     entries, robot = [], tmp_path / "robot.yaml"
@@ -96,7 +75,7 @@ def test_what_compare_refuses_info_does_not_offer(
     x = y = yaw = 0.0
     last = np.zeros(2)
     for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
-        stamp = round(1e9 * (DAY + time))
+        stamp = stamp_of(time)
         counts = [n + 0.4 * math.sin(n) for n in counts]  # angles that are no whole counts
         angles = [2.0 * math.pi * n / ROBOT.left_ticks_per_revolution for n in counts]
         left, right = np.array(angles) * ROBOT.wheel_radius - last
@@ -108,22 +87,21 @@ def test_what_compare_refuses_info_does_not_offer(
         entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, angles)))
         entries.append(("/where", stamp, ros.pose(stamp, x, y, yaw)))
     bag = ros.write(tmp_path / "bag", entries)
-    words = ["info", str(bag), "--robot", str(robot)]
-    told = said(words, capsys)
+    told = werrimbi("info", bag, "--robot", robot).words
     assert "it was made from the same" in told
     assert "werrimbi compare" not in told
 
 
 def test_what_is_seen_from_the_robot_is_not_taken_for_where_it_is(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     bag = bag_of(tmp_path, frame="base_link")
-    told = said(["info", str(bag), "--json", str(tmp_path / "found.json")], capsys)
+    told = werrimbi("info", bag, "--json", tmp_path / "found.json").words
     assert "its yaw rate is integrated). It is taken." in told
     assert "Reference /seen: poses at 5 Hz (poses in base_link, a frame on the robot" in told
     (run,) = json.loads((tmp_path / "found.json").read_text())["runs"]
     assert [each["topic"] for each in run["references"]] == ["/imu", "/seen"]
     robot = tmp_path / "robot.yaml"
     robot.write_text(SIZES + NAMES)
-    told = said(["info", str(bag), "--robot", str(robot)], capsys)
-    assert main(shlex.split(told.rpartition("Next: ")[2])[1:]) == 0
+    told = werrimbi("info", bag, "--robot", robot).words
+    werrimbi(*shlex.split(told.rpartition("Next: ")[2])[1:])

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -16,27 +17,29 @@ from typing import Any
 import pytest
 
 from test.cli.commands import RECORDING
+from test.command_line import ROOT, WERRIMBI, Werrimbi, ran
 from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import progress
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.cli.options import EXAMPLES
 from werrimbi_odom.errors import InputError
 
-ROOT = Path(__file__).parents[2]
-WERRIMBI = [sys.executable, "-m", "werrimbi_odom.cli.main"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 SQUARE = ROOT / "werrimbi_odom" / "recordings" / "square"
 
 
-def werrimbi(*words: str | Path) -> subprocess.CompletedProcess[str]:
+def werrimbi(*words: str) -> subprocess.CompletedProcess[str]:
     """The real command in a process of its own."""
-    return subprocess.run(
-        [*WERRIMBI, *map(str, words)], capture_output=True, text=True, env=ENVIRONMENT, timeout=60
-    )
+    return ran([*WERRIMBI, *words], timeout=60)
+
+
+@cache
+def help_of(words: str) -> subprocess.CompletedProcess[str]:
+    """Asked for once in all tests."""
+    return werrimbi(*words.split(), "--help")
 
 
 def test_help_names_every_verb() -> None:
-    done = werrimbi("--help")
+    done = help_of("")
     assert done.returncode == 0
     assert done.stderr == ""
     for verb in command.VERBS:
@@ -45,14 +48,14 @@ def test_help_names_every_verb() -> None:
 
 @pytest.mark.parametrize("verb", command.VERBS)
 def test_every_verb_has_help(verb: str) -> None:
-    done = werrimbi(verb, "--help")
+    done = help_of(verb)
     assert done.returncode == 0
     assert done.stdout.startswith(f"usage: werrimbi {verb}")
 
 
 @pytest.mark.parametrize("of", EXAMPLES)
 def test_every_help_ends_with_examples_that_are_right(of: str) -> None:
-    done = werrimbi(*of.split(), "--help")
+    done = help_of(of)
     given = done.stdout.split("example:\n")[1].splitlines()
     assert given == [f"  werrimbi {words}" for words in EXAMPLES[of]]
     for example in EXAMPLES[of]:
@@ -62,7 +65,7 @@ def test_every_help_ends_with_examples_that_are_right(of: str) -> None:
 
 def test_help_says_what_a_leg_is() -> None:
     for verb in ("compare", "diagnose", "add", "draft", "workbench"):
-        text = " ".join(werrimbi(verb, "--help").stdout.split())
+        text = " ".join(help_of(verb).stdout.split())
         assert "drives are cut into legs of so much path" in text
 
 
@@ -72,9 +75,7 @@ def test_help_is_quick_and_imports_nothing_heavy() -> None:
         "heavy = {'numpy', 'scipy', 'rich', 'rosbags', 'mujoco', 'plotly', 'rclpy', 'ruamel.yaml'};"
         "sys.exit(code or ', '.join(sorted(heavy & set(sys.modules))) or 0)"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, env=ENVIRONMENT, timeout=60
-    )
+    done = ran([sys.executable, "-c", script], timeout=60)
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -170,7 +171,7 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     run, out = tmp_path / "run", tmp_path / "out"
     run.mkdir()
     out.mkdir()
-    rows = "".join(f"{0.001 * i:.3f},{i},{i}\n" for i in range(400_000))
+    rows = "".join(f"{0.001 * i:.3f},{i},{i}\n" for i in range(200_000))
     (run / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + rows)
     words = ["odom", "--robot", SQUARE / "robot.yaml", run, "--out", out / "odom.csv"]
     working = subprocess.Popen(
@@ -190,13 +191,9 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     assert list(out.iterdir()) == []
 
 
-def test_a_line_now_and_then_on_stderr(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_line_now_and_then_on_stderr(monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi) -> None:
     words = ["compare", "--robot", str(RECORDING / "robot.yaml"), str(RECORDING)]
-    assert main(words) == 0
-    assert capsys.readouterr().err == ""
+    assert werrimbi(*words).err == ""
     monkeypatch.setattr(progress, "EVERY", 1e-4)
-    assert main(words) == 0
-    lines = capsys.readouterr().err.splitlines()
+    lines = werrimbi(*words).err.splitlines()
     assert any(line.startswith("comparing: ") and " %, " in line for line in lines)

@@ -7,14 +7,12 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from test.cli.commands import RECORDING
-
-ROOT = Path(__file__).parents[2]
+from test.command_line import ROOT, WERRIMBI
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +57,7 @@ def test_names_that_are_no_text_are_spelt(
     if verb == "calibrate fit":
         words += ["--out", str(tmp_path / os.fsdecode(b"\xff.yaml"))]
     done = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *words],
+        [*WERRIMBI, *words],
         env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": encoding},
         capture_output=True,
     )

@@ -6,28 +6,24 @@ from __future__ import annotations
 
 import shlex
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from test.cli.commands import RECORDING
-from werrimbi_odom.cli.main import _parser, main
+from test.command_line import Werrimbi, ran
+from werrimbi_odom.cli.main import _parser
 
 
 def pasted(command: str) -> list[str]:
     """Its words as a shell makes them, patterns filled in."""
-    done = subprocess.run(
-        ["sh", "-c", command.replace("werrimbi ", "printf '%s\\0' ", 1)],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
+    done = ran(["sh", "-c", command.replace("werrimbi ", "printf '%s\\0' ", 1)])
+    assert done.returncode == 0
     return done.stdout.split("\0")[:-1]
 
 
 @pytest.mark.parametrize("every", [True, False])
-def test_what_compare_prints_can_be_pasted(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], every: bool
-) -> None:
+def test_what_compare_prints_can_be_pasted(tmp_path: Path, werrimbi: Werrimbi, every: bool) -> None:
     runs = [tmp_path / "my drives" / name for name in ("a b", "it's", "{c}")]
     for folder in runs:
         shutil.copytree(RECORDING, folder)
@@ -40,8 +36,7 @@ def test_what_compare_prints_can_be_pasted(
     robot.write_text(text)
     given = runs if every else runs[:2]
     words = ["--robot", str(robot), "--leg", "0.5", "--reference-sigma-xy", "0.001"]
-    assert main(["compare", *words, *map(str, given)]) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = werrimbi("compare", *words, *given).out.splitlines()
     first = next(n for n, line in enumerate(lines) if line.startswith("    werrimbi diagnose"))
     assert lines[first - 1].endswith((".", "noise.", "mistake."))
     command = "\n".join(lines[first : lines.index("", first)])

@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from test.cli.commands import RECORDING
+from test.command_line import Werrimbi
 from werrimbi_odom.cli.main import main
 
 EFFECT = '''
@@ -127,21 +128,18 @@ def test_no_verb_writes_over_what_it_reads(place: Place, data: st.DataObject) ->
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in OUTPUTS])
-def test_two_outputs_are_never_one_file(
-    place: Place, verb: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_two_outputs_are_never_one_file(place: Place, verb: str, werrimbi: Werrimbi) -> None:
     one = place.folder / "both.html"
     other = place.folder / "run" / ".." / "both.html"
     words = [*VERBS[verb].format(place.folder).split(), "--out", str(one), "--json", str(other)]
-    assert main(words) == 2
-    assert "--out" in capsys.readouterr().err
+    assert "--out" in werrimbi(*words, code=2).err
     assert not one.exists()
 
 
 @pytest.mark.parametrize("option", ["out", "json", "report"])
 @pytest.mark.parametrize("verb", VERBS)
 def test_what_cannot_be_written_is_said_before_the_work(
-    place: Place, verb: str, option: str, capsys: pytest.CaptureFixture[str]
+    place: Place, verb: str, option: str, werrimbi: Werrimbi
 ) -> None:
     """/sys takes no files, not even from root; the runs are not there to be worked on."""
     if option == "out" and verb in OUTPUTS:
@@ -152,48 +150,42 @@ def test_what_cannot_be_written_is_said_before_the_work(
     words += [f"--{option}", "/sys/new.html"]
     if option != "out" and verb in NEEDS_OUT:
         words += ["--out", str(place.folder / "new")]
-    assert main(words) == 2
-    said = capsys.readouterr()
+    said = werrimbi(*words, code=2)
     assert said.err.count("\n") == 1
     assert "/sys/new.html cannot be written" in said.err
     assert said.out == ""
 
 
-def test_a_folder_or_a_place_in_none_is_no_file(
-    place: Place, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_or_a_place_in_none_is_no_file(place: Place, werrimbi: Werrimbi) -> None:
     words = VERBS["add"].format(place.folder).split()
     for out, said in (("run", "is a folder"), ("no/where", "there is no folder")):
         for option in ("out", "json"):
             given = [*words, f"--{option}", str(place.folder / out)]
             given += [] if option == "out" else ["--out", str(place.folder / "new")]
-            assert main(given) == 2
-            assert said in capsys.readouterr().err
+            assert said in werrimbi(*given, code=2).err
 
 
 @pytest.mark.parametrize("verb", ["compare", "diagnose", "add", "fleet", "noise"])
 def test_a_report_without_plotly_is_refused_before_the_work(
-    place: Place, verb: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    place: Place, verb: str, monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi
 ) -> None:
     words = [*VERBS[verb].format(place.folder).split(), "--report", str(place.folder / "r.html")]
     if verb in NEEDS_OUT:
         words += ["--out", str(place.folder / "new")]
     monkeypatch.setattr(util, "find_spec", lambda name: FIND(name) if name != "plotly" else None)
-    assert main(words) == 2
-    said = capsys.readouterr()
+    said = werrimbi(*words, code=2)
     assert said.out == ""
     assert "pip install 'werrimbi_odom[tools]'" in said.err
     assert sorted(place.folder.glob("r.html")) == []
 
 
 def test_pictures_get_names_of_their_own_and_none_of_what_is_read(
-    place: Place, capsys: pytest.CaptureFixture[str]
+    place: Place, werrimbi: Werrimbi
 ) -> None:
     """A report as pictures is a file for each figure: r.png, r-legs.png and so on."""
     mine = place.folder / "r-legs.png"
     mine.write_text(EFFECT)
     words = [*VERBS["compare"].format(place.folder).split(), "--effects", str(mine)]
-    assert main([*words, "--report", str(place.folder / "r.png")]) == 2
-    err = capsys.readouterr().err
+    err = werrimbi(*words, "--report", place.folder / "r.png", code=2).err
     mine.unlink()
     assert "r-legs.png, which is read" in err or "chromium" in err

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import Werrimbi
 from werrimbi_odom.cli.main import main
 
 RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"
@@ -28,11 +29,16 @@ def run(tmp_path: Path) -> Path:
     return folder
 
 
-def said(capsys: pytest.CaptureFixture[str], code: int, *words: str | Path) -> str:
-    assert main(["compare", "--robot", str(SQUARE / "robot.yaml"), *map(str, words)]) == code
-    err = capsys.readouterr().err
-    assert err.count("\n") == 1, err
-    return err
+@pytest.fixture
+def said(werrimbi: Werrimbi) -> Callable[..., str]:
+    """The line that `werrimbi compare` says of a run, with its exit code."""
+
+    def compared(code: int, *words: str | Path) -> str:
+        err = werrimbi("compare", "--robot", SQUARE / "robot.yaml", *words, code=code).err
+        assert err.count("\n") == 1, err
+        return err
+
+    return compared
 
 
 def later(text: str, seconds: float) -> str:
@@ -42,11 +48,9 @@ def later(text: str, seconds: float) -> str:
 
 
 @pytest.mark.parametrize("seconds", [1.7e9, -1e4])
-def test_clocks_apart_show_both_spans(
-    run: Path, capsys: pytest.CaptureFixture[str], seconds: float
-) -> None:
+def test_clocks_apart_show_both_spans(run: Path, said: Callable[..., str], seconds: float) -> None:
     (run / "reference.csv").write_text(later(REFERENCE, seconds))
-    err = said(capsys, 2, run)
+    err = said(2, run)
     for text in (TICKS, (run / "reference.csv").read_text()):
         rows = text.splitlines()[1:]
         first, last = (float(row.split(",")[0]) for row in (rows[0], rows[-1]))
@@ -54,34 +58,32 @@ def test_clocks_apart_show_both_spans(
     assert f"lies wholly {'after' if seconds > 0 else 'before'} the ticks" in err
 
 
-def test_shuffled_rows_are_told_with_row_and_time(
-    run: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_shuffled_rows_are_told_with_row_and_time(run: Path, said: Callable[..., str]) -> None:
     header, *rows = TICKS.splitlines()
     random.Random(1).shuffle(rows)
     (run / "ticks.csv").write_text("\n".join([header, *rows]) + "\n")
-    err = said(capsys, 2, run)
+    err = said(2, run)
     assert "sort them by t_s" in err
     assert "first in row " in err
     assert " from t_s " in err
 
 
 def test_a_clock_that_is_set_back_is_told_with_row_and_time(
-    run: Path, capsys: pytest.CaptureFixture[str]
+    run: Path, said: Callable[..., str]
 ) -> None:
     header, *rows = TICKS.splitlines()
     again = later("\n".join([header, *rows[100:]]), -50.0).splitlines()[1:]
     (run / "ticks.csv").write_text("\n".join([header, *rows[:100], *again]) + "\n")
-    err = said(capsys, 2, run)
+    err = said(2, run)
     assert "go back in time first in row 101 of" in err
     assert f"to {float(again[0].split(',')[0]):.10g}: the clock was set back; cut the run" in err
 
 
 def test_a_bag_without_a_reference_lists_what_it_has_and_what_can_be_one(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, said: Callable[..., str]
 ) -> None:
     pytest.importorskip("rosbags", reason="rosbags is not installed")
-    err = said(capsys, 2, RECORDINGS / "square_bag", "--reference-topic", "none")
+    err = said(2, RECORDINGS / "square_bag", "--reference-topic", "none")
     assert "there is no reference to compare with (Imu, LaserScan, NavSatFix, Odometry," in err
     assert "the bag has /" in err
     assert "(sensor_msgs/msg/JointState)" in err
@@ -105,19 +107,18 @@ CUTS: dict[str, Callable[[str], str]] = {
     ],
 )
 def test_a_file_cut_by_a_power_failure_is_read_up_to_there(
-    run: Path, capsys: pytest.CaptureFixture[str], how: str, name: str
+    run: Path, said: Callable[..., str], werrimbi: Werrimbi, how: str, name: str
 ) -> None:
     rows = (run / name).read_text().splitlines()
     rows[-1] = CUTS[how](rows[-1])
     (run / name).write_text("\n".join(rows))
-    err = said(capsys, 0, run)
+    err = said(0, run)
     wanted = f"warning: {run}: {name}, line {len(rows)}: cut off in mid-row; read up to there\n"
     assert err == wanted
-    words = ["odom", "--robot", str(SQUARE / "robot.yaml"), str(run)]
-    assert main([*words, "--out", str(run.parent / "odom.csv")]) == 0
-    assert capsys.readouterr().err == wanted
+    words = ("odom", "--robot", SQUARE / "robot.yaml", run, "--out", run.parent / "odom.csv")
+    assert werrimbi(*words).err == wanted
     (run / name).write_text("\n".join(rows) + "\n")
-    assert "read up to there" not in said(capsys, 2, run), "a whole line is no cut"
+    assert "read up to there" not in said(2, run), "a whole line is no cut"
 
 
 def test_a_file_without_a_last_line_end_is_whole(run: Path) -> None:
@@ -133,19 +134,19 @@ def test_a_file_without_a_last_line_end_is_whole(run: Path) -> None:
 
 
 def test_ticks_that_are_no_number_are_told_by_compare_too(
-    run: Path, capsys: pytest.CaptureFixture[str]
+    run: Path, said: Callable[..., str]
 ) -> None:
     rows = TICKS.splitlines()
     for line in (50, 51, 70):
         rows[line] = rows[line].rsplit(",", 1)[0] + ",nan"
     (run / "ticks.csv").write_text("\n".join(rows) + "\n")
-    err = said(capsys, 0, run)
+    err = said(0, run)
     first = float(rows[50].split(",")[0])
     assert f"3 of {len(rows) - 1} rows of ticks are not finite, the first at t_s {first:g}" in err
 
 
-def test_a_copy_is_as_good(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_copy_is_as_good(run: Path, werrimbi: Werrimbi) -> None:
     """What the others are measured by: nothing is said of a whole recording."""
     shutil.copytree(run, run.parent / "copy")
-    assert main(["compare", "--robot", str(SQUARE / "robot.yaml"), str(run.parent / "copy")]) == 0
-    assert capsys.readouterr().err == ""
+    copy = run.parent / "copy"
+    assert werrimbi("compare", "--robot", SQUARE / "robot.yaml", copy).err == ""

@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.covariance import path_noise
 
-ROOT = Path(__file__).parents[2]
 RUNS = sorted(path.parent for path in ROBOTS.glob("*/*/ticks.csv"))
 
 
@@ -43,13 +42,10 @@ def of_each_robot_one() -> list[Any]:
 
 @with_recordings
 @pytest.mark.parametrize("run", of_each_robot_one())
-def test_every_recorded_drive(
-    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_every_recorded_drive(run: Path, tmp_path: Path, werrimbi: Werrimbi) -> None:
     out, figures = tmp_path / "odom.csv", tmp_path / "figures.json"
     words = ["odom", "--robot", run.parent / "robot.yaml", run, "--out", out, "--json", figures]
-    assert main([str(word) for word in words]) == 0
-    said = capsys.readouterr()
+    said = werrimbi(*words)
     assert said.err == ""
 
     ticks, reference, rows = (

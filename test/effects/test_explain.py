@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import Printed
 from werrimbi_odom.cli import explain
 from werrimbi_odom.effects import LIBRARY, Collection
 from werrimbi_odom.errors import InputError
@@ -63,9 +64,9 @@ def test_a_page_has_everything(effect: object, capsys: pytest.CaptureFixture[str
     assert effect.summary.split(",")[0][:40] in shown  # type: ignore[attr-defined]
 
 
-def test_twins_say_what_to_remount(capsys: pytest.CaptureFixture[str]) -> None:
+def test_twins_say_what_to_remount(printed: Printed) -> None:
     run("sideways_drift")
-    shown = " ".join(capsys.readouterr().out.split())
+    shown = printed()
     assert "reference_yaw_offset (angle = -angle): no drive can tell" in shown
     assert "turned by 90 degrees" in shown
 
@@ -103,9 +104,7 @@ def test_effects_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 def test_a_broken_package_is_a_warning(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from werrimbi_odom import effects
-
     ruined = Collection(LIBRARY, ("effect ruin of someone is left out: it is broken",))
-    monkeypatch.setattr(effects, "all_effects", lambda files: ruined)
+    monkeypatch.setattr("werrimbi_odom.effects.lookup.all_effects", lambda files: ruined)
     assert run("castor_kick") == 0
     assert capsys.readouterr().err == "warning: effect ruin of someone is left out: it is broken\n"

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from test.cli.commands import RECORDING
-from werrimbi_odom.cli.main import main
+from test.command_line import Werrimbi
 from werrimbi_odom.effects import LIBRARY, all_effects
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet.robot_task import Task, row_of
@@ -71,14 +71,11 @@ def words(folder: Path, verb: str, *more: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", RAISED)
-def test_any_exception_of_a_law_is_one_line(
-    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_any_exception_of_a_law_is_one_line(tmp_path: Path, name: str, werrimbi: Werrimbi) -> None:
     law = f"raise {name}({MADE.get(name, '')})"
     folder = place(tmp_path, law)
     out = tmp_path / "odom.csv"
-    assert main(words(folder, "odom", "--out", str(out))) == 2
-    said = capsys.readouterr()
+    said = werrimbi(*words(folder, "odom", "--out", str(out)), code=2)
     assert said.err.count("\n") == 1
     line = EFFECT.format(law=law).splitlines().index(f"    {law}") + 1
     assert f"mine.py:{line}: the law of of_my_own(size=0.01) fails: {name}" in said.err
@@ -87,11 +84,10 @@ def test_any_exception_of_a_law_is_one_line(
 
 @pytest.mark.parametrize("result", RESULTS)
 def test_any_result_that_is_none_is_one_line(
-    tmp_path: Path, result: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, result: str, werrimbi: Werrimbi
 ) -> None:
     folder = place(tmp_path, f"return {result}")
-    assert main(words(folder, "compare")) == 2
-    said = capsys.readouterr()
+    said = werrimbi(*words(folder, "compare"), code=2)
     assert said.err.count("\n") == 1
     assert RESULTS[result] in said.err
 
@@ -99,12 +95,11 @@ def test_any_result_that_is_none_is_one_line(
 @pytest.mark.parametrize("law", ["raise Dumb", "sys.exit(0)", "return 1.0 / 0.0", "return nowhere"])
 @pytest.mark.parametrize("verb", ["diagnose", "add track_width", "draft", "calibrate fit"])
 def test_no_verb_ends_as_if_all_were_well(
-    tmp_path: Path, verb: str, law: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, verb: str, law: str, werrimbi: Werrimbi
 ) -> None:
     folder = place(tmp_path, law)
     more = [] if verb == "diagnose" else ["--out", str(tmp_path / "new")]
-    assert main(words(folder, verb, *more)) == 2
-    said = capsys.readouterr()
+    said = werrimbi(*words(folder, verb, *more), code=2)
     assert said.err.count("\n") == 1
     assert "the law of of_my_own" in said.err
     assert not (tmp_path / "new").exists()
@@ -121,13 +116,12 @@ def test_in_a_fleet_it_is_a_row(tmp_path: Path, law: str) -> None:
 
 @pytest.mark.parametrize("name", ["SystemExit", "Dumb", "GeneratorExit"])
 def test_a_file_that_raises_as_it_is_read_is_one_line(
-    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, name: str, werrimbi: Werrimbi
 ) -> None:
     folder = place(tmp_path, "return travel")
     text = (folder / "mine.py").read_text()
     (folder / "mine.py").write_text(f"{text}\n\nraise {name}\n")
-    assert main(words(folder, "diagnose")) == 2
-    said = capsys.readouterr()
+    said = werrimbi(*words(folder, "diagnose"), code=2)
     assert said.err.count("\n") == 1
     assert f"mine.py:{text.count(chr(10)) + 3}: {name}" in said.err
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.cli.main import main
+from test.command_line import Werrimbi
 
 GOOD = {
     "wheel_separation": "0.35",
@@ -47,12 +47,11 @@ def robot_file(folder: Path, **changes: str) -> Path:
     ],
 )
 def test_a_robot_that_cannot_be_is_refused_in_a_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], verb: str, name: str, value: str
+    tmp_path: Path, werrimbi: Werrimbi, verb: str, name: str, value: str
 ) -> None:
     robot, out = robot_file(tmp_path, **{name: value}), tmp_path / "out"
     where = ["--out" if verb == "odom" else "--json", str(out)]
-    assert main([verb, "--robot", str(robot), str(SQUARE), *where]) == 2
-    said = capsys.readouterr().err
+    said = werrimbi(verb, "--robot", robot, SQUARE, *where, code=2).err
     line = list(GOOD).index(name) + 3
     assert said.startswith(f"werrimbi {verb}: {robot}, line {line}: "), said
     assert name in said

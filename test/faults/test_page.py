@@ -5,13 +5,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT
 from werrimbi_odom.files import csv_table, text_files
 
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
 
 

@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
+from test.command_line import ROOT
 from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
@@ -21,7 +22,6 @@ from werrimbi_odom.files.parameters import PARAMETERS
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.robot_file_rewrite import write_robot_file
 
-ROOT = Path(__file__).parents[2]
 COMMENTED = """\
 # The robot in the cellar.
 

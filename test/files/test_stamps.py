@@ -1,16 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Stamps of a bag's topics."""
+"""Stamps of a bag's topics, and which clock is believed."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.stamps import stamps_of
+from werrimbi_odom.files.stamps import _judged, stamps_of
+from werrimbi_odom.report.info_words import _clock
 
 MS = 10**6
 
@@ -26,3 +28,20 @@ def test_the_rate_of_messages_in_bursts_is_how_many_come_a_second(tmp_path: Path
         stamps = stamps_of(bag, ["/pose"])["/pose"]
     assert stamps.rate == pytest.approx(100.0, rel=0.05)
     assert stamps.bursts > 0.8
+
+
+def test_stamps_of_a_simulation_are_of_another_clock() -> None:
+    """Received in 2025, stamped from zero, by a clock that goes a little slower."""
+    stamped = np.arange(0.0, 60.0, 0.05)
+    words = _clock("/joint_states", _judged(stamped, 1.7e9 + 1.02 * stamped))
+    assert "another clock" in words
+    assert "e+09" not in words
+    assert "late" not in words
+
+
+@pytest.mark.parametrize(("uneven", "believed"), [(1.02, True), (1.5, False)])
+def test_headers_are_believed_where_receipt_is_no_evener(uneven: float, believed: bool) -> None:
+    random = np.random.default_rng(1)
+    received = 0.2 * np.arange(500.0) + random.normal(0.0, 0.02, 500)
+    stamped = 0.2 * np.arange(500.0) + uneven * (received - 0.2 * np.arange(500.0))
+    assert ("believe the headers" in _clock("/odom", _judged(stamped, received))) is believed

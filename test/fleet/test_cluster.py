@@ -13,10 +13,10 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from test.command_line import ROOT
 from test.fleet.conftest import broken
 from test.fleet.test_process_pool import KILLS, nowhere
 from werrimbi_odom.errors import InputError
@@ -35,8 +35,7 @@ from werrimbi_odom.fleet.worker_archive import (
 )
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
-
-ROOT = Path(__file__).parents[2]
+dask = pytest.importorskip("dask")
 
 
 def refused(address: str, patience: float = 30.0) -> str:
@@ -49,7 +48,10 @@ def refused(address: str, patience: float = 30.0) -> str:
 @pytest.fixture(scope="module")
 def bare() -> Iterator[str]:
     """Address of a scheduler without workers."""
-    with distributed.LocalCluster(n_workers=0, processes=True, dashboard_address=None) as made:
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        distributed.LocalCluster(n_workers=0, processes=True, dashboard_address=None) as made,
+    ):
         yield made.scheduler_address
 
 
@@ -134,10 +136,12 @@ def test_what_must_be_the_same_and_what_should() -> None:
     assert doubts(here, there) == f"numpy 1.0, here {here['numpy']}"
 
 
-def test_a_robot_that_kills_its_workers_is_a_row(cluster: Any, tmp_path: Path) -> None:
+def test_a_robot_that_kills_its_workers_is_a_row(bare: str, tmp_path: Path) -> None:
     (tmp_path / "kills.py").write_text(KILLS)
     tasks = [nowhere("killer", DriveOptions(effects=(tmp_path / "kills.py",)))]
-    (row,) = on_cluster(tasks, cluster.scheduler_address)
+    (tmp_path / "w").mkdir()
+    with worker(bare, tmp_path / "w", ROOT):
+        (row,) = on_cluster(tasks, bare)
     assert row.error == ours.DIED
 
 

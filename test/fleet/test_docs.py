@@ -16,9 +16,9 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT, ran
 from test.fleet.conftest import broken, drive
 
-ROOT = Path(__file__).parents[2]
 COMMANDS = [
     shlex.split(line, comments=True)
     for block in re.findall(r"```bash\n(.*?)```", (ROOT / "docs" / "fleet.md").read_text(), re.S)
@@ -67,14 +67,8 @@ def test_the_commands_run(tmp_path: Path) -> None:
         running([*python(shown["dask worker"], address), "--no-dashboard"], tmp_path),
     ):
         for number, words in enumerate((here, there)):
-            run = subprocess.run(
-                [*python(words, address), "--json", str(tmp_path / f"{number}.json")],
-                cwd=tmp_path,
-                env={**os.environ, "PYTHONPATH": str(ROOT)},
-                capture_output=True,
-                text=True,
-                check=False,
-            )
+            command = [*python(words, address), "--json", tmp_path / f"{number}.json"]
+            run = ran(command, tmp_path)
             assert run.returncode == 0, run.stderr
             assert run.stdout.startswith("2 robots: 1 misses nothing, 1 could not be diagnosed.")
     assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()

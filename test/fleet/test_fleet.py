@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from test.cli.commands import complaint
+from test.command_line import Complaint
 from test.fleet.conftest import BASES, broken
 from werrimbi_odom.cli.main import main
 
@@ -127,59 +127,59 @@ def test_the_page_shows_each_robot_and_draws_itself(home: Path, said: Said) -> N
     assert 'data-figure="errors"' in page
 
 
-def refused(capsys: pytest.CaptureFixture[str], *words: object) -> str:
-    return complaint(capsys, "diagnose", *words)
+@pytest.fixture
+def refused(complaint: Complaint) -> Complaint:
+    """What `werrimbi diagnose` says of a mistake."""
+    return lambda *words: complaint("diagnose", *words)
 
 
 def test_wrong_use_is_one_line_with_the_mend(
-    home: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    home: Path, tmp_path: Path, refused: Complaint
 ) -> None:
     fleet = home / "fleet"
     run = fleet / "robot_2" / "train" / "free"
     robot = fleet / "robot_2" / "robot.yaml"
-    both = refused(capsys, "--fleet", fleet, "--jobs", "2", "--scheduler", "tcp://a:1")
+    both = refused("--fleet", fleet, "--jobs", "2", "--scheduler", "tcp://a:1")
     assert "leave out one" in both
-    assert "leave out --robot" in refused(capsys, "--fleet", fleet, "--robot", robot)
-    assert "leave out RUN" in refused(capsys, "--fleet", fleet, "--", run)
-    assert "leave out --holdout" in refused(capsys, "--fleet", fleet, "--holdout", run)
-    assert "give --fleet FOLDER" in refused(capsys, "--robot", robot, run, "--jobs", "2")
-    alone = refused(capsys, "--robot", robot, run, "--scheduler", "tcp://a:1")
+    assert "leave out --robot" in refused("--fleet", fleet, "--robot", robot)
+    assert "leave out RUN" in refused("--fleet", fleet, "--", run)
+    assert "leave out --holdout" in refused("--fleet", fleet, "--holdout", run)
+    assert "give --fleet FOLDER" in refused("--robot", robot, run, "--jobs", "2")
+    alone = refused("--robot", robot, run, "--scheduler", "tcp://a:1")
     assert "give --fleet FOLDER" in alone
-    assert "greater than zero" in refused(capsys, "--fleet", fleet, "--jobs", "0")
-    assert "write tcp://HOST:PORT" in refused(capsys, "--fleet", fleet, "--scheduler", "a:1")
-    assert "required: RUN, --robot" in refused(capsys)
-    assert "required: RUN " in refused(capsys, "--robot", robot)
-    taken = refused(capsys, "--fleet", fleet, "--json", run / "ticks.csv")
+    assert "greater than zero" in refused("--fleet", fleet, "--jobs", "0")
+    assert "write tcp://HOST:PORT" in refused("--fleet", fleet, "--scheduler", "a:1")
+    assert "required: RUN, --robot" in refused()
+    assert "required: RUN " in refused("--robot", robot)
+    taken = refused("--fleet", fleet, "--json", run / "ticks.csv")
     assert "would overwrite" in taken
-    late = refused(capsys, "--fleet", fleet, "--json", tmp_path / "new" / "figures.json")
+    late = refused("--fleet", fleet, "--json", tmp_path / "new" / "figures.json")
     assert "there is no folder" in late
-    assert "ends in .html" in refused(capsys, "--fleet", fleet, "--report", tmp_path / "a.txt")
+    assert "ends in .html" in refused("--fleet", fleet, "--report", tmp_path / "a.txt")
 
 
-def test_a_folder_without_a_fleet_is_told(
-    home: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "no such folder" in refused(capsys, "--fleet", tmp_path / "nowhere")
-    assert "no robot is in it; each robot is" in refused(capsys, "--fleet", tmp_path)
-    one = refused(capsys, "--fleet", home / "fleet" / "robot_2")
+def test_a_folder_without_a_fleet_is_told(home: Path, tmp_path: Path, refused: Complaint) -> None:
+    assert "no such folder" in refused("--fleet", tmp_path / "nowhere")
+    assert "no robot is in it; each robot is" in refused("--fleet", tmp_path)
+    one = refused("--fleet", home / "fleet" / "robot_2")
     assert "is one robot" in one
     robot = broken(tmp_path / "robot_1")
     (robot / "runs" / "day" / "ticks.csv").unlink()
     (robot / "runs" / "day").rmdir()
-    assert "holds no runs; put them in" in refused(capsys, "--fleet", tmp_path)
+    assert "holds no runs; put them in" in refused("--fleet", tmp_path)
 
 
 def test_effects_that_cannot_be_used_are_no_robots_fault(
-    home: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    home: Path, tmp_path: Path, refused: Complaint
 ) -> None:
     (tmp_path / "mine.py").write_text("1 / 0\n")
-    told = refused(capsys, "--fleet", home / "fleet", "--effects", tmp_path / "mine.py")
+    told = refused("--fleet", home / "fleet", "--effects", tmp_path / "mine.py")
     assert "mine.py:1: ZeroDivisionError" in told
 
 
 def test_what_is_not_installed_is_told_before_anything_is_begun(
-    home: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    home: Path, monkeypatch: pytest.MonkeyPatch, refused: Complaint
 ) -> None:
     monkeypatch.setitem(sys.modules, "threadpoolctl", None)
-    told = refused(capsys, "--fleet", home / "fleet")
+    told = refused("--fleet", home / "fleet")
     assert "pip install 'werrimbi_odom[tools]'" in told

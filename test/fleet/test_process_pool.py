@@ -14,13 +14,13 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT, WERRIMBI, ran
 from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import process_pool, robot_task
 from werrimbi_odom.fleet.robot_task import Task, row_of
 
-ROOT = Path(__file__).parents[2]
 KILLS = "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n"
 SLOW = """
 import os, time
@@ -84,13 +84,8 @@ def test_sums_are_made_by_one_thread(tmp_path: Path) -> None:
         "robot_task.read = read\n"
         "robot_task.row_of(nowhere('robot_1'))\n"
     )
-    run = subprocess.run(
-        [sys.executable, "-c", looks],
-        env={**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "2"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    run = ran([sys.executable, "-c", looks], OPENBLAS_NUM_THREADS="2")
+    assert run.returncode == 0, run.stderr
     pools = json.loads(run.stdout)
     assert pools
     assert set(pools) == {1}
@@ -103,7 +98,7 @@ def begun(tmp_path: Path) -> subprocess.Popen[str]:
     (tmp_path / "slow.py").write_text(SLOW)
     words = ["--fleet", "fleet", "--jobs", "1", "--effects", "slow.py", "--json", "figures.json"]
     process = subprocess.Popen(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", "diagnose", *words],
+        [*WERRIMBI, "diagnose", *words],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,

@@ -14,9 +14,10 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT
+
 pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 
-ROOT = Path(__file__).parents[2]
 SLEEPS = """
 import sys, time
 from pathlib import Path

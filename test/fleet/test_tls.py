@@ -12,17 +12,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT
 from test.fleet.test_process_pool import nowhere
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.fleet.cluster import on_cluster
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 
-ROOT = Path(__file__).parents[2]
 ASK = """
 import sys
 from test.fleet.test_process_pool import nowhere

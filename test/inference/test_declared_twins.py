@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from test.command_line import Printed
 from test.inference.driven import runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.cli import explain
@@ -73,7 +74,7 @@ def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_users_effect_brings_its_twin_and_its_sketch(
-    own: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    own: Path, tmp_path: Path, printed: Printed
 ) -> None:
     (mast,) = load_file(own)
     check_effect(mast)
@@ -81,7 +82,7 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     parser = argparse.ArgumentParser()
     explain.add_arguments(parser)
     assert explain.run(parser.parse_args(["leaning_mast", "--effects", str(own)])) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = printed()
     assert "reference_yaw_offset (angle = -lean): a mast that leans carries" in said
     assert "So hang a plumb line from the mast's top" in said
 

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from test.cli.commands import write_run
+from test.command_line import Werrimbi
 from test.inference.driven import run_of
 from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
@@ -224,7 +225,7 @@ def reeling(run: Run) -> Run:
 
 
 def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """Nothing more is seen in the fitted drives, and those held out err more than is promised."""
     slip = find("lateral_slip").using(creep=0.02)
@@ -236,11 +237,9 @@ def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
         write_run(tmp_path / run.name, reeling(run) if seed > 52 else run)
     out, json_of_both = tmp_path / "new.yaml", [tmp_path / "add.json", tmp_path / "compare.json"]
     words = ["add", "lateral_slip", "--robot", str(given), *folders[:3], "--holdout", *folders[3:]]
-    assert main([*words, "--out", str(out), "--json", str(json_of_both[0])]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = werrimbi(*words, "--out", out, "--json", json_of_both[0]).words
     words = ["compare", "--robot", str(out), *folders[3:], "--json", str(json_of_both[1])]
-    assert main(words) == 0
-    of_compare = " ".join(capsys.readouterr().out.split())
+    of_compare = werrimbi(*words).words
     added, compared = (json.loads(path.read_text()) for path in json_of_both)
     headline = of_compare.partition(" - ")[0]
     assert "the errors are larger than the model promises" in headline

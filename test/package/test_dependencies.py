@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from test.command_line import ROOT
+
 POOR = """
 import sys
 from importlib.abc import MetaPathFinder

@@ -11,9 +11,9 @@ from xml.etree import ElementTree
 import pytest
 from ruamel.yaml import YAML
 
+from test.command_line import ROOT
 from test.package.launching import launched
 
-ROOT = Path(__file__).parents[2]
 FILES = sorted(path.name for path in (ROOT / "launch").glob("*"))
 ASKED = {
     "compare.launch.xml": {"reference": "/vrpn/robot/pose"},

@@ -5,13 +5,12 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
+from test.command_line import ROOT
 from test.package.launching import launched
 
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "robot.md").read_text(encoding="utf-8")
 LAUNCHES = re.findall(r"^ros2 launch werrimbi_odom (\S+)(.*)$", PAGE, re.M)
 

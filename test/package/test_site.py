@@ -6,15 +6,13 @@ from __future__ import annotations
 
 import re
 import runpy
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 import werrimbi_odom as wo
-
-ROOT = Path(__file__).parents[2]
+from test.command_line import ROOT, ran
 
 
 def test_the_python_reference_names_all_that_is_public() -> None:
@@ -51,13 +49,7 @@ def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("myst_parser", reason="needs werrimbi_odom[docs]")
     pytest.importorskip("sphinx_rtd_theme", reason="needs werrimbi_odom[docs]")
     sphinx = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html"]
-    run = subprocess.run(
-        [*sphinx, "-d", str(tmp_path / "trees"), "docs", str(tmp_path / "site")],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    run = ran([*sphinx, "-d", tmp_path / "trees", "docs", tmp_path / "site"])
     assert run.returncode == 0, run.stdout + run.stderr
     for page in (ROOT / "docs").glob("*.md"):
         assert (tmp_path / "site" / f"{page.stem}.html").exists(), page

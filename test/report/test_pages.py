@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ import numpy as np
 import pytest
 from browser import Visit
 
+from test.axe import RUN
+from test.report.test_accessible import assert_obeyed, rules
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -83,14 +86,33 @@ ASKED = {
 }
 
 
+NAMELESS = "document.querySelector('main').append(document.createElement('button')), true"
+
+
 @pytest.fixture(scope="module")
 def seen(compare_page: Path, look: Look) -> dict[str, list[Any]]:
     """What one visit to the comparison saw, in the light."""
-    scripts = [script for group in ASKED.values() for script in group]
-    visit = look(compare_page, UNDRAWN, FIGURES, *scripts)
+    asked = {**ASKED, "rules": rules(), "nameless": (NAMELESS, RUN)}
+    visit = look(compare_page, UNDRAWN, FIGURES, *chain(*asked.values()))
     assert_well_drawn(visit)
     answers = iter(visit.answers[2:])
-    return {name: [next(answers) for _ in group] for name, group in ASKED.items()}
+    return {name: [next(answers) for _ in group] for name, group in asked.items()}
+
+
+def test_no_rule_of_axe_is_broken_and_one_that_were_would_be_seen(
+    seen: dict[str, list[Any]],
+) -> None:
+    assert_obeyed(seen["rules"])
+    _, broken = seen["nameless"]
+    assert any(words.startswith("button-name") for words in broken), "the rules are really asked"
+
+
+def test_no_rule_is_broken_by_a_diagnosis_in_the_dark_on_a_telephone(
+    diagnosis_page: Path, look: Look
+) -> None:
+    visit = look(diagnosis_page, *rules(), dark=True, width=390)
+    assert_obeyed(visit.answers)
+    assert visit.complaints == []
 
 
 def test_a_comparison_draws_itself_in_the_light(seen: dict[str, list[Any]]) -> None:

@@ -16,23 +16,13 @@ import numpy as np
 
 import werrimbi_odom as wo
 from test.scans.table import DOCS, put_into_page
-from werrimbi_odom.simulation import (
-    AxlePose,
-    FieldDrive,
-    Manoeuvre,
-    Nominal,
-    TrueRobot,
-    free,
-    record,
-    write_field_bag,
-    write_robot_file,
-)
+from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.lidar import Lidar, scanned
 from werrimbi_odom.simulation.rooms import around
 
 SCALE, RATIO = 0.9955, 1.0215
 LEFT = 2.0 * 0.033 * SCALE / (1.0 + RATIO)
-ROBOT = TrueRobot(
+ROBOT = sim.TrueRobot(
     wheel_separation=1.05 * 0.16,
     left_wheel_radius=LEFT,
     right_wheel_radius=RATIO * LEFT,
@@ -41,9 +31,9 @@ ROBOT = TrueRobot(
     left_wheel_noise=2e-4,
     right_wheel_noise=2e-4,
     mass=1.0,
-    nominal=Nominal(0.16, 0.033),
+    nominal=sim.Nominal(0.16, 0.033),
 )
-LIDAR = Lidar(mount=AxlePose(-0.032, 0.0, 0.03))
+LIDAR = Lidar(mount=sim.AxlePose(-0.032, 0.0, 0.03))
 WRONG = (
     "unequal_wheel_radii",
     "reference_lever_arm",
@@ -72,9 +62,9 @@ class Recorded(NamedTuple):
     """Wheels, and where the lidar truly was, to 0.5 mm and 0.5 mrad."""
 
 
-def recorded(manoeuvre: Manoeuvre, seed: int, folder: Path) -> Recorded:
+def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path) -> Recorded:
     """A drive of nobody's hands, in a room of its own."""
-    path = record(ROBOT, manoeuvre, seed=seed, start=AxlePose(0.0, 0.0, 0.0)).true_path
+    path = sim.record(ROBOT, manoeuvre, seed=seed, start=sim.AxlePose(0.0, 0.0, 0.0)).true_path
     at = np.arange(0.01, path.t_s[-1], 0.05)
     step = 2.0 * math.pi / 4096.0
     left, right = (
@@ -83,7 +73,7 @@ def recorded(manoeuvre: Manoeuvre, seed: int, folder: Path) -> Recorded:
     )
     nothing = np.column_stack([at, at, np.zeros(at.size)])
     sweeps = scanned(path, around(path.x_m, path.y_m, seed), LIDAR, seed)
-    drive = FieldDrive(
+    drive = sim.FieldDrive(
         folder.name,
         np.column_stack([at, at, step * left, step * right]),
         nothing,
@@ -102,14 +92,16 @@ def recorded(manoeuvre: Manoeuvre, seed: int, folder: Path) -> Recorded:
     ):
         table = np.column_stack(columns)
         np.savetxt(run / f"{name}.csv", table, "%.7g", ",", header=head, comments="")
-    return Recorded(write_field_bag(drive, ROBOT, folder, mounting=False), run)
+    return Recorded(sim.write_field_bag(drive, ROBOT, folder, mounting=False), run)
 
 
 def found(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """What `add` makes of all that is wrong, by scans and by the truth: 10 m, and 10 m held out."""
-    robot = wo.read_robot(write_robot_file(ROBOT, folder / "robot.yaml"))
+    robot = wo.read_robot(sim.write_robot_file(ROBOT, folder / "robot.yaml"))
     drives = [
-        recorded(free(80.0, seed=3 + n, speed=0.25, yaw_rate=0.8), 10 + n, folder / f"drive_{n}")
+        recorded(
+            sim.free(80.0, seed=3 + n, speed=0.25, yaw_rate=0.8), 10 + n, folder / f"drive_{n}"
+        )
         for n in range(2)
     ]
     (fitted, true), (apart, true_apart) = drives

@@ -12,31 +12,21 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
+from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.simulation import (
-    AxlePose,
-    FieldDrive,
-    Recording,
-    TrueRobot,
-    as_in_the_field,
-    free,
-    hide,
-    record,
-    write_field_bag,
-)
 from werrimbi_odom.simulation.bag import EPOCH
 
-ROBOT = TrueRobot()
+ROBOT = sim.TrueRobot()
 
 
 @cache
-def recorded() -> Recording:
-    return record(ROBOT, free(40.0, seed=3, yaw_rate=1.0), seed=4)
+def recorded() -> sim.Recording:
+    return sim.record(ROBOT, sim.free(40.0, seed=3, yaw_rate=1.0), seed=4)
 
 
 @cache
-def seen() -> FieldDrive:
-    return as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
+def seen() -> sim.FieldDrive:
+    return sim.as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
 
 
 def stretch(name: str) -> tuple[float, float]:
@@ -98,13 +88,13 @@ def test_stamps_scatter_and_stay_in_order() -> None:
 
 
 def test_the_same_seeds_the_same_drive() -> None:
-    again = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
+    again = sim.as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
     np.testing.assert_array_equal(again.imu, seen().imu)
     assert again.truth == seen().truth
 
 
 def test_the_bag_holds_what_was_seen(tmp_path: Path) -> None:
-    folder = write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    folder = sim.write_field_bag(seen(), ROBOT, tmp_path / "bag")
     found: dict[str, list[object]] = {}
     with AnyReader([folder]) as reader:
         for connection, _, data in reader.messages():
@@ -130,7 +120,7 @@ def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:
     from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.simulation import write_robot_file
 
-    folder = write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    folder = sim.write_field_bag(seen(), ROBOT, tmp_path / "bag")
     robot = write_robot_file(ROBOT, tmp_path / "robot.yaml")
     out = tmp_path / "odom.csv"
     assert main(["odom", "--robot", str(robot), str(folder), "--reference-topic",
@@ -143,9 +133,9 @@ def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:
 
 def test_what_is_made_in_records_is_hidden_too() -> None:
     """Counts that are lost at speed, and stamps of gyro and localiser that are late."""
-    odd = [hide("left_missed_ticks", 0.05, seed=1).peculiarity]
-    odd.append(hide("reference_delay", 0.1, seed=1).peculiarity)
-    drive = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
+    odd = [sim.hide("left_missed_ticks", 0.05, seed=1).peculiarity]
+    odd.append(sim.hide("reference_delay", 0.1, seed=1).peculiarity)
+    drive = sim.as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
     lost = seen().wheels[-1, 2:] - drive.wheels[-1, 2:]
     assert lost[0] > 1.0
     assert lost[1] == 0.0
@@ -157,10 +147,10 @@ def test_what_is_made_in_records_is_hidden_too() -> None:
 
 def test_a_lidar_that_is_not_where_its_transform_says() -> None:
     """What the transform makes of its pose is a base that is beside the robot's, and late."""
-    odd = [hide("reference_lever_arm", 0.05, seed=1).peculiarity]
-    odd.append(hide("reference_yaw_offset", 0.3, seed=1).peculiarity)
-    odd.append(hide("reference_delay", 0.1, seed=1).peculiarity)
-    drive = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
+    odd = [sim.hide("reference_lever_arm", 0.05, seed=1).peculiarity]
+    odd.append(sim.hide("reference_yaw_offset", 0.3, seed=1).peculiarity)
+    odd.append(sim.hide("reference_delay", 0.1, seed=1).peculiarity)
+    drive = sim.as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
     np.testing.assert_allclose(drive.scans.time - seen().scans.time, 0.1)
     believed = [pose_of(each.scans.truth, drive.lidar.mount) for each in (seen(), drive)]
     apart = believed[1][0] - believed[0][0]
@@ -169,7 +159,7 @@ def test_a_lidar_that_is_not_where_its_transform_says() -> None:
     assert np.abs(turned) == pytest.approx(0.3)
 
 
-def pose_of(lidar: np.ndarray, mount: AxlePose) -> tuple[np.ndarray, np.ndarray]:
+def pose_of(lidar: np.ndarray, mount: sim.AxlePose) -> tuple[np.ndarray, np.ndarray]:
     """Of the base, by poses (n, 3) of its lidar: place and heading."""
     yaw = lidar[:, 2] - mount.yaw
     return lidar[:, 0] + 1j * lidar[:, 1] - (mount.x + 1j * mount.y) * np.exp(1j * yaw), yaw

@@ -13,20 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.simulation import (
-    CATALOGUE,
-    Manoeuvre,
-    Peculiarity,
-    Recording,
-    ReferenceSensor,
-    TrueRobot,
-    UnknownEffectError,
-    free,
-    hide,
-    moves,
-    record,
-    write_robot_file,
-)
+from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.hidden import Entry
 from werrimbi_odom.simulation.hidden.counters import (
     EncoderSkew,
@@ -43,33 +30,33 @@ from werrimbi_odom.simulation.hidden.mount import (
 )
 from werrimbi_odom.simulation.sensors import wrap
 
-EXACT = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
-DRIVE = free(12.0, seed=4, speed=0.7)
-HOP = moves("hop", [(0.2, 0.3)])
+EXACT = sim.ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
+DRIVE = sim.free(12.0, seed=4, speed=0.7)
+HOP = sim.moves("hop", [(0.2, 0.3)])
 
 
 @lru_cache
-def plain_run(manoeuvre: Manoeuvre, reference: ReferenceSensor) -> Recording:
+def plain_run(manoeuvre: sim.Manoeuvre, reference: sim.ReferenceSensor) -> sim.Recording:
     """Nothing hidden."""
-    return record(TrueRobot(), manoeuvre, seed=1, reference=reference)
+    return sim.record(sim.TrueRobot(), manoeuvre, seed=1, reference=reference)
 
 
-def pair(odd: Peculiarity) -> tuple[Recording, Recording]:
+def pair(odd: sim.Peculiarity) -> tuple[sim.Recording, sim.Recording]:
     """The same drive without and with it."""
     plain = plain_run(DRIVE, EXACT)
-    odd_one = record(TrueRobot(), DRIVE, seed=1, reference=EXACT, hidden=[odd])
+    odd_one = sim.record(sim.TrueRobot(), DRIVE, seed=1, reference=EXACT, hidden=[odd])
     np.testing.assert_array_equal(plain.true_path.x_m, odd_one.true_path.x_m)
     return plain, odd_one
 
 
-def at(recording: Recording, times: np.ndarray) -> np.ndarray:
+def at(recording: sim.Recording, times: np.ndarray) -> np.ndarray:
     """True poses (n, 3) at `times`."""
     path = recording.true_path
     columns = (path.x_m, path.y_m, path.yaw_rad)
     return np.column_stack([np.interp(times, path.t_s, column) for column in columns])
 
 
-def measured(recording: Recording) -> np.ndarray:
+def measured(recording: sim.Recording) -> np.ndarray:
     return np.column_stack(
         (recording.reference_x_m, recording.reference_y_m, recording.reference_yaw_rad)
     )
@@ -110,8 +97,8 @@ def test_a_gyro_that_warms_up_turns_away_faster_and_faster() -> None:
 
 def test_its_bias_walks_besides_and_another_way_in_each_drive() -> None:
     odd = WarmingGyro(1e-4, unrest=3.0)
-    runs = [record(TrueRobot(), DRIVE, seed=seed, hidden=[odd]) for seed in (1, 2)]
-    plain = [record(TrueRobot(), DRIVE, seed=seed) for seed in (1, 2)]
+    runs = [sim.record(sim.TrueRobot(), DRIVE, seed=seed, hidden=[odd]) for seed in (1, 2)]
+    plain = [sim.record(sim.TrueRobot(), DRIVE, seed=seed) for seed in (1, 2)]
     ends = [
         math.remainder(float(a.reference_yaw_rad[-1] - b.reference_yaw_rad[-1]), 2 * math.pi)
         for a, b in zip(runs, plain, strict=True)
@@ -183,25 +170,27 @@ def test_wiring() -> None:
     ],
 )
 def test_a_simple_factor_is_a_slip_of_the_pen(
-    odd: Peculiarity, key: str, value: float, tmp_path: Path
+    odd: sim.Peculiarity, key: str, value: float, tmp_path: Path
 ) -> None:
     """The diameter for the radius, millimetres, half the base: in the file, not in the workshop."""
     plain, odd_one = pair(odd)
     np.testing.assert_array_equal(plain.left_ticks, odd_one.left_ticks)
-    text = write_robot_file(odd.written(TrueRobot()), tmp_path / "robot.yaml").read_text("utf-8")
+    text = sim.write_robot_file(odd.written(sim.TrueRobot()), tmp_path / "robot.yaml").read_text(
+        "utf-8"
+    )
     line = next(line for line in text.splitlines() if line.strip().startswith(f"{key}:"))
     assert float(line.split(":")[1].split("#")[0]) == pytest.approx(value)
 
 
-@pytest.mark.parametrize("entry", CATALOGUE, ids=lambda entry: entry.name)
+@pytest.mark.parametrize("entry", sim.CATALOGUE, ids=lambda entry: entry.name)
 def test_everything_in_the_catalogue_can_be_hidden(entry: Entry) -> None:
     """At its weakest and strongest, and it changes what is recorded."""
-    hidden = hide(entry.name, seed=3)
+    hidden = sim.hide(entry.name, seed=3)
     assert entry.low * 0.999 <= abs(hidden.strength - entry.null) <= entry.high * 1.001
-    plain = plain_run(HOP, ReferenceSensor())
+    plain = plain_run(HOP, sim.ReferenceSensor())
     for strength in (entry.null + entry.low, entry.null + entry.high):
-        odd = hide(entry.name, strength, seed=3).peculiarity
-        run = record(TrueRobot(), HOP, seed=1, hidden=[odd])
+        odd = sim.hide(entry.name, strength, seed=3).peculiarity
+        run = sim.record(sim.TrueRobot(), HOP, seed=1, hidden=[odd])
         assert np.isfinite(run.reference_x_m).all()
         assert asdict(odd) is not None
         same_ticks = np.array_equal(run.right_ticks, plain.right_ticks) and np.array_equal(
@@ -218,12 +207,12 @@ def test_everything_in_the_catalogue_can_be_hidden(entry: Entry) -> None:
 
 
 @pytest.mark.parametrize(
-    "entry", [e for e in CATALOGUE if e.kind not in ("mistake", "robot")], ids=lambda e: e.name
+    "entry", [e for e in sim.CATALOGUE if e.kind not in ("mistake", "robot")], ids=lambda e: e.name
 )
 def test_no_strength_is_no_effect(entry: Entry) -> None:
-    plain = plain_run(DRIVE, ReferenceSensor())
-    odd = hide(entry.name, entry.null, seed=3).peculiarity
-    run = record(TrueRobot(), DRIVE, seed=1, hidden=[odd])
+    plain = plain_run(DRIVE, sim.ReferenceSensor())
+    odd = sim.hide(entry.name, entry.null, seed=3).peculiarity
+    run = sim.record(sim.TrueRobot(), DRIVE, seed=1, hidden=[odd])
     assert np.abs(run.left_ticks - plain.left_ticks).max() <= 1
     assert np.abs(run.right_ticks - plain.right_ticks).max() <= 1
     np.testing.assert_allclose(run.reference_x_m, plain.reference_x_m, atol=2e-5)
@@ -231,7 +220,7 @@ def test_no_strength_is_no_effect(entry: Entry) -> None:
 
 
 def test_the_catalogue_holds_the_vocabulary_of_the_contract() -> None:
-    names = {entry.name for entry in CATALOGUE if entry.kind == "effect"}
+    names = {entry.name for entry in sim.CATALOGUE if entry.kind == "effect"}
     assert names == {
         "track_width", "unequal_wheel_radii", "wheel_radius_scale",
         "eccentric_left_wheel", "eccentric_right_wheel",
@@ -244,28 +233,28 @@ def test_the_catalogue_holds_the_vocabulary_of_the_contract() -> None:
         "load_transfer", "anisotropic_floor",
         "left_tread_bump", "right_tread_bump", "reference_gyro_drift", "coulomb_slip",
     }  # fmt: skip
-    assert {entry.name for entry in CATALOGUE if entry.kind == "mistake"} == {
+    assert {entry.name for entry in sim.CATALOGUE if entry.kind == "mistake"} == {
         "wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored",
     }  # fmt: skip
-    assert sum(entry.kind == "outside" for entry in CATALOGUE) >= 3
+    assert sum(entry.kind == "outside" for entry in sim.CATALOGUE) >= 3
 
 
 def test_random_hides_an_effect_of_the_vocabulary() -> None:
-    chosen = {hide("random", seed=s).entry.name for s in range(40)}
+    chosen = {sim.hide("random", seed=s).entry.name for s in range(40)}
     assert len(chosen) > 12
-    assert hide("random", seed=1) == hide("random", seed=1)
+    assert sim.hide("random", seed=1) == sim.hide("random", seed=1)
 
 
 def test_seeds_that_are_written_down_go_on_hiding_what_they_hid() -> None:
     """In README.md and the demo; effects that came later took others."""
-    assert [hide("random", seed=s).entry.name for s in (6, 149)] == [
+    assert [sim.hide("random", seed=s).entry.name for s in (6, 149)] == [
         "castor_kick", "unequal_wheel_radii",
     ]  # fmt: skip
 
 
 def test_random_hides_every_effect_alike() -> None:
-    drawn = Counter(hide("random", seed=s).entry.name for s in range(1000, 2350))
-    names = {entry.name for entry in CATALOGUE if entry.kind == "effect"}
+    drawn = Counter(sim.hide("random", seed=s).entry.name for s in range(1000, 2350))
+    names = {entry.name for entry in sim.CATALOGUE if entry.kind == "effect"}
     assert set(drawn) == names
     expected = 1350 / len(names)
     chi_squared = sum((count - expected) ** 2 / expected for count in drawn.values())
@@ -273,5 +262,5 @@ def test_random_hides_every_effect_alike() -> None:
 
 
 def test_a_name_that_is_not_there() -> None:
-    with pytest.raises(UnknownEffectError, match="did you mean castor_kick"):
-        hide("caster_kick", seed=1)
+    with pytest.raises(sim.UnknownEffectError, match="did you mean castor_kick"):
+        sim.hide("caster_kick", seed=1)

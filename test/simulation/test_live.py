@@ -9,28 +9,19 @@ import pytest
 
 pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[all])")
 
-from werrimbi_odom.simulation import (
-    AxlePose,
-    LiveRobot,
-    ReferenceSensor,
-    StrengthError,
-    TrueRobot,
-    UnknownEffectError,
-    moves,
-    record,
-    wished,
-)
+
+from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.live import KEPT
 from werrimbi_odom.simulation.manoeuvre import MoveLimits
 from werrimbi_odom.simulation.recorder import wheel_speeds
 from werrimbi_odom.simulation.rooms import arena
 
-ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
-EXACT = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
-DRIVE = moves(
+ROBOT = sim.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+EXACT = sim.ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
+DRIVE = sim.moves(
     "there", [(0.6, 0.5), (-0.3, 0.2)], MoveLimits(speed=0.7, acceleration=2.0, pause=0.1)
 )
-START = AxlePose(0.0, 0.0, 0.0)
+START = sim.AxlePose(0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -41,9 +32,9 @@ START = AxlePose(0.0, 0.0, 0.0)
     ],
 )
 def test_live_and_recorded_are_one(wish: str) -> None:
-    odd = [wished(wish, seed=3).peculiarity]
-    recorded = record(ROBOT, DRIVE, seed=5, start=START, hidden=odd, reference=EXACT)
-    live = LiveRobot(ROBOT, seed=5, start=START, hidden=odd, reference=EXACT)
+    odd = [sim.wished(wish, seed=3).peculiarity]
+    recorded = sim.record(ROBOT, DRIVE, seed=5, start=START, hidden=odd, reference=EXACT)
+    live = sim.LiveRobot(ROBOT, seed=5, start=START, hidden=odd, reference=EXACT)
     radius, base = ROBOT.nominal.wheel_radius, ROBOT.nominal.wheel_separation
     counts, poses = [], []
     ticks, measured = recorded.t_s.tolist(), recorded.reference_t_s.tolist()
@@ -65,7 +56,7 @@ def test_live_and_recorded_are_one(wish: str) -> None:
 
 
 def test_the_gyro_integrates_to_the_turn_and_memory_stays_bounded() -> None:
-    live = LiveRobot(ROBOT, seed=2)
+    live = sim.LiveRobot(ROBOT, seed=2)
     live.command(0.2, 0.8)
     turned, before = 0.0, 0.0
     for step in range(3 * KEPT):
@@ -79,7 +70,7 @@ def test_the_gyro_integrates_to_the_turn_and_memory_stays_bounded() -> None:
 
 
 def test_the_lidar_sees_the_room_from_where_the_robot_is() -> None:
-    live = LiveRobot(ROBOT, seed=2, room=arena(2.6))
+    live = sim.LiveRobot(ROBOT, seed=2, room=arena(2.6))
     live.command(0.4, 0.0)
     turn = 1.0 / live.lidar.rate_hz
     beams = live.lidar.beams
@@ -94,7 +85,7 @@ def test_the_lidar_sees_the_room_from_where_the_robot_is() -> None:
 
 
 def test_a_wish_that_cannot_be_is_told() -> None:
-    with pytest.raises(UnknownEffectError, match="castor_kick"):
-        wished("castor_kik", seed=1)
-    with pytest.raises(StrengthError, match="'much' is not a number"):
-        wished("castor_kick=much", seed=1)
+    with pytest.raises(sim.UnknownEffectError, match="castor_kick"):
+        sim.wished("castor_kik", seed=1)
+    with pytest.raises(sim.StrengthError, match="'much' is not a number"):
+        sim.wished("castor_kick=much", seed=1)

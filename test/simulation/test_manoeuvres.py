@@ -9,27 +9,14 @@ import math
 import numpy as np
 import pytest
 
-from werrimbi_odom.simulation import (
-    Manoeuvre,
-    MoveLimits,
-    arcs,
-    chain,
-    figure_eight,
-    free,
-    moves,
-    out_and_back,
-    pivots,
-    spin,
-    spins,
-    square,
-    start_stop,
-)
+from werrimbi_odom import simulation as sim
 
-CLOSED = [square(), square(sense="cw"), out_and_back(3.0), out_and_back(3.0, turn_round=True),
-          spins(), figure_eight(), arcs(), pivots(), start_stop()]  # fmt: skip
+CLOSED = [sim.square(), sim.square(sense="cw"), sim.out_and_back(3.0),
+          sim.out_and_back(3.0, turn_round=True),
+          sim.spins(), sim.figure_eight(), sim.arcs(), sim.pivots(), sim.start_stop()]  # fmt: skip
 
 
-def commanded_path(manoeuvre: Manoeuvre, step: float = 0.001) -> np.ndarray:
+def commanded_path(manoeuvre: sim.Manoeuvre, step: float = 0.001) -> np.ndarray:
     times = np.arange(0.0, manoeuvre.duration + step, step)
     speed, yaw_rate = manoeuvre.commands(times)
     yaw = np.concatenate(([0.0], np.cumsum(yaw_rate * step)))
@@ -40,21 +27,21 @@ def commanded_path(manoeuvre: Manoeuvre, step: float = 0.001) -> np.ndarray:
 
 
 @pytest.mark.parametrize("manoeuvre", CLOSED, ids=lambda m: m.name)
-def test_closed_manoeuvres_come_home(manoeuvre: Manoeuvre) -> None:
+def test_closed_manoeuvres_come_home(manoeuvre: sim.Manoeuvre) -> None:
     x, y, yaw = commanded_path(manoeuvre)[-1]
     assert math.hypot(x, y) < 1e-4
     assert math.remainder(yaw, 2 * math.pi) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_square_has_its_corners_where_they_belong() -> None:
-    path = commanded_path(square(2.0, "cw"))
+    path = commanded_path(sim.square(2.0, "cw"))
     assert path[:, 0].max() == pytest.approx(2.0, abs=1e-6)
     assert path[:, 1].min() == pytest.approx(-2.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("step", [0.005, 0.0173, 0.4])
 def test_commands_keep_the_way_on_any_time_grid(step: float) -> None:
-    manoeuvre = moves("one", [(1.0, 0.5)])
+    manoeuvre = sim.moves("one", [(1.0, 0.5)])
     times = np.arange(-1.0, manoeuvre.duration + 1.0 + step, step)
     speed, yaw_rate = manoeuvre.commands(times)
     assert speed.sum() * step == pytest.approx(1.0, abs=1e-12)
@@ -63,8 +50,8 @@ def test_commands_keep_the_way_on_any_time_grid(step: float) -> None:
 
 @pytest.mark.parametrize("step", [(0.05, 0.0), (5.0, 0.0), (0.0, 3.0), (2.0, -4.0)])
 def test_a_move_keeps_to_its_pace_and_reaches_it(step: tuple[float, float]) -> None:
-    pace = MoveLimits()
-    knots = np.array(moves("one", [step], pace).knots)
+    pace = sim.MoveLimits()
+    knots = np.array(sim.moves("one", [step], pace).knots)
     t, speed, yaw_rate = knots[np.diff(knots[:, 0], prepend=-1) > 0].T
     used = [
         np.abs(speed).max() / pace.speed,
@@ -76,18 +63,18 @@ def test_a_move_keeps_to_its_pace_and_reaches_it(step: tuple[float, float]) -> N
 
 
 def test_spin_turns_on_the_spot() -> None:
-    path = commanded_path(spin(-2.0))
+    path = commanded_path(sim.spin(-2.0))
     assert np.abs(path[:, :2]).max() == 0.0
     assert path[-1, 2] == pytest.approx(-4 * math.pi)
 
 
 def test_free_driving_differs_by_its_seed_alone() -> None:
-    assert free(seed=1) == free(seed=1)
-    assert free(seed=1) != free(seed=2)
+    assert sim.free(seed=1) == sim.free(seed=1)
+    assert sim.free(seed=1) != sim.free(seed=2)
 
 
 def test_free_driving_goes_every_way() -> None:
-    speed, yaw_rate = free(120.0, seed=3).commands(np.arange(0.0, 120.0, 0.01))
+    speed, yaw_rate = sim.free(120.0, seed=3).commands(np.arange(0.0, 120.0, 0.01))
     assert (speed < -0.05).mean() > 0.05
     assert (speed > 0.05).mean() > 0.4
     assert (yaw_rate > 0.1).mean() > 0.2
@@ -95,12 +82,12 @@ def test_free_driving_goes_every_way() -> None:
 
 
 def test_a_chain_is_its_parts_in_turn() -> None:
-    both = chain("both", spin(1.0), square(1.0))
-    assert both.duration == pytest.approx(spin(1.0).duration + square(1.0).duration)
+    both = sim.chain("both", sim.spin(1.0), sim.square(1.0))
+    assert both.duration == pytest.approx(sim.spin(1.0).duration + sim.square(1.0).duration)
     assert math.hypot(*commanded_path(both)[-1, :2]) < 1e-4
 
 
 def test_a_step_of_the_command_is_allowed() -> None:
-    manoeuvre = Manoeuvre("step", ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (2.0, 1.0, 0.0)))
+    manoeuvre = sim.Manoeuvre("step", ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (2.0, 1.0, 0.0)))
     speed, _ = manoeuvre.commands(np.array([-1.0, 0.0, 1.0, 2.0, 3.0]))
     np.testing.assert_allclose(speed, [0.0, 1.0, 1.0, 0.0])

@@ -13,39 +13,24 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from werrimbi_odom.simulation import (
-    Manoeuvre,
-    Recording,
-    TrueRobot,
-    arcs,
-    engine,
-    figure_eight,
-    free,
-    moves,
-    out_and_back,
-    pivots,
-    record,
-    spin,
-    square,
-    start_stop,
-)
+from werrimbi_odom import simulation as sim
 
 Floats = NDArray[np.float64]
 
-NOMINAL = TrueRobot()
-ODD = TrueRobot(wheel_separation=0.357, left_wheel_radius=0.0505, right_wheel_radius=0.0495)
+NOMINAL = sim.TrueRobot()
+ODD = sim.TrueRobot(wheel_separation=0.357, left_wheel_radius=0.0505, right_wheel_radius=0.0495)
 BRISK = {"speed": 0.8, "yaw_rate": 2.5, "acceleration": 2.0}
 DRIVES = [
-    square(1.0),
-    square(1.0, "cw"),
-    out_and_back(5.0),
-    spin(3.0),
-    figure_eight(0.5),
-    arcs((0.3, 1.0)),
-    pivots(),
-    start_stop(3),
-    free(30.0, seed=1),
-    free(30.0, seed=2, **BRISK),
+    sim.square(1.0),
+    sim.square(1.0, "cw"),
+    sim.out_and_back(5.0),
+    sim.spin(3.0),
+    sim.figure_eight(0.5),
+    sim.arcs((0.3, 1.0)),
+    sim.pivots(),
+    sim.start_stop(3),
+    sim.free(30.0, seed=1),
+    sim.free(30.0, seed=2, **BRISK),
 ]
 
 
@@ -67,12 +52,12 @@ def distance(poses: Floats) -> float:
     return float(np.hypot(np.diff(poses[:, 0]), np.diff(poses[:, 1])).sum())
 
 
-def true_poses(recording: Recording) -> Floats:
+def true_poses(recording: sim.Recording) -> Floats:
     path = recording.true_path
     return np.column_stack((path.x_m, path.y_m, path.yaw_rad))
 
 
-def reckoned_from_angles(recording: Recording, robot: TrueRobot) -> Floats:
+def reckoned_from_angles(recording: sim.Recording, robot: sim.TrueRobot) -> Floats:
     path = recording.true_path
     return exact_arcs(
         path.left_angle_rad * robot.left_wheel_radius,
@@ -86,8 +71,8 @@ def reckoned_from_angles(recording: Recording, robot: TrueRobot) -> Floats:
     "robot", [pytest.param(NOMINAL, marks=pytest.mark.evidence), ODD], ids=["nominal", "odd"]
 )
 @pytest.mark.parametrize("drive", DRIVES, ids=lambda d: d.name)
-def test_rolling_is_exact_dead_reckoning(robot: TrueRobot, drive: Manoeuvre) -> None:
-    recording = record(robot, drive, seed=3)
+def test_rolling_is_exact_dead_reckoning(robot: sim.TrueRobot, drive: sim.Manoeuvre) -> None:
+    recording = sim.record(robot, drive, seed=3)
     error = reckoned_from_angles(recording, robot) - true_poses(recording)
     assert np.hypot(error[:, 0], error[:, 1]).max() < 1.0e-4
     assert np.abs(error[:, 2]).max() < 4.0e-5
@@ -98,7 +83,7 @@ def test_rolling_is_exact_dead_reckoning(robot: TrueRobot, drive: Manoeuvre) -> 
 )
 def test_counters_alone_close_to_a_hundredth_of_a_percent_of_the_distance(seed: int) -> None:
     """The issue asks for 0.2 %. What is left is the counters' rounding to a tick."""
-    recording = record(NOMINAL, free(60.0, seed=seed), seed=seed)
+    recording = sim.record(NOMINAL, sim.free(60.0, seed=seed), seed=seed)
     path = recording.true_path
     tick = 2 * math.pi * NOMINAL.left_wheel_radius / NOMINAL.left_ticks_per_revolution
     first = [np.interp(recording.t_s[0], path.t_s, v) for v in (path.x_m, path.y_m, path.yaw_rad)]
@@ -113,30 +98,30 @@ def test_counters_alone_close_to_a_hundredth_of_a_percent_of_the_distance(seed: 
 
 
 def test_the_robot_drives_where_it_is_told_when_its_beliefs_are_true() -> None:
-    path = record(NOMINAL, square(2.0), seed=5).true_path
+    path = sim.record(NOMINAL, sim.square(2.0), seed=5).true_path
     assert math.hypot(path.x_m[-1] - path.x_m[0], path.y_m[-1] - path.y_m[0]) < 1e-3
     assert path.yaw_rad[-1] - path.yaw_rad[0] == pytest.approx(2 * math.pi, abs=2e-3)
 
 
 def test_a_base_that_is_wider_than_believed_turns_too_little() -> None:
-    path = record(TrueRobot(wheel_separation=0.357), spin(3.0), seed=5).true_path
+    path = sim.record(sim.TrueRobot(wheel_separation=0.357), sim.spin(3.0), seed=5).true_path
     turned = path.yaw_rad[-1] - path.yaw_rad[0]
     assert turned == pytest.approx(6 * math.pi * 0.35 / 0.357, rel=1e-4)
 
 
 def test_larger_wheels_go_further() -> None:
-    robot = TrueRobot(left_wheel_radius=0.051, right_wheel_radius=0.051)
-    path = record(robot, moves("line", [(2.0, 0.0)]), seed=5).true_path
+    robot = sim.TrueRobot(left_wheel_radius=0.051, right_wheel_radius=0.051)
+    path = sim.record(robot, sim.moves("line", [(2.0, 0.0)]), seed=5).true_path
     went = math.hypot(path.x_m[-1] - path.x_m[0], path.y_m[-1] - path.y_m[0])
     assert went == pytest.approx(2.0 * 0.051 / 0.05, rel=1e-4)
 
 
 def test_the_engines_curve_creep_is_what_theory_says(monkeypatch: pytest.MonkeyPatch) -> None:
     """Uncorrected, wheels creep outwards by CURVE_CREEP * speed * yaw rate: 0.45 ms of it."""
-    creep = engine.CURVE_CREEP
+    creep = sim.engine.CURVE_CREEP
     assert creep == pytest.approx(4.5e-4)
-    monkeypatch.setattr(engine, "CURVE_CREEP", 0.0)
-    recording = record(NOMINAL, figure_eight(0.5), seed=1)
+    monkeypatch.setattr(sim.engine, "CURVE_CREEP", 0.0)
+    recording = sim.record(NOMINAL, sim.figure_eight(0.5), seed=1)
     path, reckoned = recording.true_path, reckoned_from_angles(recording, NOMINAL)
     ahead = (reckoned[1:, 2] + reckoned[:-1, 2]) / 2
     step = np.diff(true_poses(recording), axis=0)

@@ -4,15 +4,16 @@
 
 from __future__ import annotations
 
-import argparse
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
 
 import werrimbi_odom.simulation
-from test.cli.commands import complaint
+from test.cli.commands import called
+from test.command_line import Complaint
 from werrimbi_odom.cli import simulate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -25,11 +26,7 @@ from werrimbi_odom.simulation import (
     write_robot_file,
 )
 
-
-def call(*words: str) -> int:
-    parser = argparse.ArgumentParser()
-    simulate.add_arguments(parser)
-    return simulate.run(parser.parse_args(words))
+call = partial(called, simulate)
 
 
 @pytest.fixture
@@ -93,18 +90,16 @@ def test_an_empty_folder_may_be_filled(tmp_path: Path) -> None:
     assert truth["hidden"] == []
 
 
-def test_a_folder_with_something_in_it_is_left_alone(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path, complaint: Complaint) -> None:
     (tmp_path / "thesis.tex").write_text("all of it", encoding="utf-8")
-    assert "not empty" in complaint(capsys, "simulate", "--out", tmp_path)
+    assert "not empty" in complaint("simulate", "--out", tmp_path)
     assert [f.name for f in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_a_file_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_is_left_alone(tmp_path: Path, complaint: Complaint) -> None:
     file = tmp_path / "day"
     file.write_text("mine", encoding="utf-8")
-    assert "is a file" in complaint(capsys, "simulate", "--out", file)
+    assert "is a file" in complaint("simulate", "--out", file)
     assert file.read_text(encoding="utf-8") == "mine"
 
 

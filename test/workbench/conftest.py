@@ -8,7 +8,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,10 +16,10 @@ from typing import Any
 
 import pytest
 
+from test.command_line import ROOT, WERRIMBI
 from test.workbench.session import written
 from werrimbi_odom.report.save import find_browser
 
-ROOT = Path(__file__).parents[2]
 PATIENCE = 240_000
 """For work that takes seconds, on a machine that has other things to do [ms]."""
 
@@ -35,7 +34,7 @@ class Served:
 def begun(folder: Path, words: Sequence[object]) -> subprocess.Popen[str]:
     """The command, in a folder."""
     return subprocess.Popen(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *map(str, words)],
+        [*WERRIMBI, *map(str, words)],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,

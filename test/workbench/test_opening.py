@@ -5,15 +5,13 @@
 from __future__ import annotations
 
 import asyncio
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.command_line import WERRIMBI, ran
 from test.loops import awaited
-from test.workbench.conftest import ROOT
 from test.workbench.session import written
 from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
@@ -24,18 +22,17 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.workbench.job import CancelledError, Job, Open
 from werrimbi_odom.workbench.loaded_input import opened
 from werrimbi_odom.workbench.saving import Target
-from werrimbi_odom.workbench.tab import Opening
+from werrimbi_odom.workbench.tab import Opening, Shared
+
+Day = tuple[RobotFile, list[Run], list[Run]]
 
 
 @pytest.fixture(scope="module")
-def day(tmp_path_factory: pytest.TempPathFactory) -> tuple[RobotFile, list[Run], list[Run]]:
-    robot, train, holdout = written(tmp_path_factory.mktemp("day"))
+def day(tmp_path_factory: pytest.TempPathFactory) -> Day:
+    robot, *drives = written(tmp_path_factory.mktemp("day"))
     source = read_robot_file(robot)
-    return (
-        source,
-        [read_run(path, source) for path in train],
-        [read_run(path, source) for path in holdout],
-    )
+    train, holdout = ([read_run(path, source) for path in paths] for paths in drives)
+    return source, train, holdout
 
 
 def begun(source: RobotFile, runs: list[Run], holdout: list[Run]) -> Opening:
@@ -45,13 +42,29 @@ def begun(source: RobotFile, runs: list[Run], holdout: list[Run]) -> Opening:
     return Opening(job, given, Target(Path("new.yaml")))
 
 
+@pytest.fixture(scope="module")
+def of_two_tabs(day: Day) -> tuple[Opening, Shared]:
+    """An opening that two tabs waited for, of which one left, and what the other one got."""
+
+    async def look() -> tuple[Opening, Shared]:
+        opening = begun(*day)
+        first, second = (asyncio.create_task(opening.result()) for _ in range(2))
+        await asyncio.sleep(0.01)
+        first.cancel()
+        shared = await second
+        assert shared is await opening.result()
+        return opening, shared
+
+    found: tuple[Opening, Shared] = awaited(look())
+    return found
+
+
 def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
-    day: tuple[RobotFile, list[Run], list[Run]],
+    day: Day, of_two_tabs: tuple[Opening, Shared]
 ) -> None:
     """To the last digit those of this process, and the drives hold the very same arrays."""
-    opening = begun(*day)
-    shared = awaited(opening.result())
-    assert opening.shared is shared
+    opening, shared = of_two_tabs
+    assert opening.shared is shared, "one that leaves does not stop it"
     here = opened(opening.given)
     look = here.look(day[0].robot)
     for there, own in ((shared.look.train, look.train), (shared.look.holdout, look.holdout)):
@@ -63,20 +76,7 @@ def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
     assert shared.opened.judged_on == here.judged_on
 
 
-def test_all_tabs_wait_for_one_opening_and_one_that_leaves_does_not_stop_it(
-    day: tuple[RobotFile, list[Run], list[Run]],
-) -> None:
-    async def look() -> None:
-        opening = begun(*day)
-        first, second = (asyncio.create_task(opening.result()) for _ in range(2))
-        await asyncio.sleep(0.01)
-        first.cancel()
-        assert await second is await opening.result()
-
-    awaited(look())
-
-
-def test_an_opening_that_is_stopped_says_so(day: tuple[RobotFile, list[Run], list[Run]]) -> None:
+def test_an_opening_that_is_stopped_says_so(day: Day) -> None:
     async def look() -> None:
         opening = begun(*day)
         opening.job.cancel()
@@ -87,9 +87,7 @@ def test_an_opening_that_is_stopped_says_so(day: tuple[RobotFile, list[Run], lis
     awaited(look())
 
 
-def test_drives_without_a_reference_are_refused_in_a_line(
-    day: tuple[RobotFile, list[Run], list[Run]], tmp_path: Path
-) -> None:
+def test_drives_without_a_reference_are_refused_in_a_line(day: Day, tmp_path: Path) -> None:
     source, runs, _ = day
     bare = Run(runs[0].name, runs[0].path, runs[0].ticks, None)
     with pytest.raises(InputError):
@@ -98,11 +96,7 @@ def test_drives_without_a_reference_are_refused_in_a_line(
     robot, train, _ = written(tmp_path)
     for run in train:
         (run / "reference.csv").unlink()
-    end = subprocess.run(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", "workbench",
-         "--robot", str(robot), *map(str, train)],
-        cwd=ROOT, capture_output=True, text=True, check=False, timeout=120,
-    )  # fmt: skip
+    end = ran([*WERRIMBI, "workbench", "--robot", robot, *train])
     assert end.returncode == 2
     assert len(end.stderr.splitlines()) == 1
     assert "reference" in end.stderr

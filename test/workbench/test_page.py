@@ -14,7 +14,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from test.workbench.conftest import PATIENCE, ROOT, Looked, Served
+from test.command_line import WERRIMBI, ran
+from test.workbench.conftest import PATIENCE, Looked, Served
 from test.workbench.session import HIDDEN, RATIO, ROBOT
 from werrimbi_odom.files.robot_file import read_robot_file
 
@@ -240,11 +241,7 @@ def test_a_port_that_is_taken_and_an_out_that_exists_are_one_line(served: Served
         (["--port", "x"], "is no port"),
         (["--out", str(run / "ticks.csv"), "--force"], "would overwrite"),
     ):
-        end = subprocess.run(
-            [sys.executable, "-m", "werrimbi_odom.cli.main", "workbench",
-             "--robot", str(robot), str(run), *words],
-            cwd=ROOT, capture_output=True, text=True, check=False,
-        )  # fmt: skip
+        end = ran([*WERRIMBI, "workbench", "--robot", robot, run, *words])
         assert end.returncode == 2
         assert len(end.stderr.splitlines()) == 1
         assert said in end.stderr

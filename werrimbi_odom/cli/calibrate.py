@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.options import (
-    Formatter,
     add_recording_arguments,
+    add_verb,
     declare,
-    epilog_of,
     read_recordings,
     remark,
 )
@@ -20,6 +19,7 @@ from werrimbi_odom.cli.outputs import add_file_arguments, write_and_tell
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
+    from werrimbi_odom.files.robot_file import RobotFile
 
 HELP = "base, radii and noise of the wheels, by tape or from drives, with error bars"
 
@@ -32,22 +32,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     for kind, (says, add, _) in KINDS.items():
-        below = kinds.add_parser(
-            kind,
-            help=says,
-            allow_abbrev=False,
-            epilog=epilog_of(f"calibrate {kind}"),
-            formatter_class=Formatter,
-        )
-        add(below)
+        add(add_verb(kinds, kind, says, f"calibrate {kind}"))
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; return 0."""
     _, _, calibrate = KINDS[arguments.kind]
-    result = calibrate(arguments)
-    write_and_tell(arguments, result)
+    write_and_tell(arguments, calibrate(arguments))
     return 0
+
+
+def _robot(arguments: argparse.Namespace) -> RobotFile:
+    from werrimbi_odom.files.robot_file import read_robot_file
+
+    source = read_robot_file(arguments.robot)
+    remark(source)
+    return source
 
 
 def _add_umbmark_arguments(parser: argparse.ArgumentParser) -> None:
@@ -82,10 +82,8 @@ def _add_umbmark_arguments(parser: argparse.ArgumentParser) -> None:
 def _umbmark(arguments: argparse.Namespace) -> Result[Any]:
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.robot_file import read_robot_file
 
-    source = read_robot_file(arguments.robot)
-    remark(source)
+    source = _robot(arguments)
     with share_done("reading squares") as show:
         return calibrate_umbmark(
             source,
@@ -122,12 +120,9 @@ def _add_noise_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _noise(arguments: argparse.Namespace) -> Result[Any]:
     from werrimbi_odom.api.calibrate import calibrate_noise
-    from werrimbi_odom.files.robot_file import read_robot_file
 
-    source = read_robot_file(arguments.robot)
-    remark(source)
     return calibrate_noise(
-        source,
+        _robot(arguments),
         arguments.results,
         arguments.distance,
         turn_round=arguments.turn_round,

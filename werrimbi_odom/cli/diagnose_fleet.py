@@ -6,16 +6,15 @@ from __future__ import annotations
 
 import argparse
 import shutil
-import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.options import how_of, number, read_effects
-from werrimbi_odom.cli.outputs import made_of, tell_written, write_json
+from werrimbi_odom.cli.options import how_of, number, read_effects, warn
+from werrimbi_odom.cli.outputs import tell_written, write_figures
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -122,15 +121,11 @@ def _spread(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[R
     if arguments.scheduler is not None:
         from werrimbi_odom.fleet.cluster import on_cluster
 
-        yield from on_cluster(tasks, arguments.scheduler, _warn)
+        yield from on_cluster(tasks, arguments.scheduler, warn)
         return
     from werrimbi_odom.fleet.process_pool import here, processors
 
     yield from here(tasks, arguments.jobs or processors())
-
-
-def _warn(words: str) -> None:
-    print(f"warning: {words}", file=sys.stderr)
 
 
 def _fleet(rows: Sequence[Row], members: Sequence[Member]) -> Fleet:
@@ -157,28 +152,16 @@ def _bytes(path: Path) -> bytes:
 
 def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
     """Write the requested files, then print words and table."""
-    from werrimbi_odom.report.fleet import words_of
-    from werrimbi_odom.report.fleet_page import fleet_table
+    from werrimbi_odom.report.fleet import fleet_json, words_of
+    from werrimbi_odom.report.fleet_page import fleet_table, write_fleet_page
     from werrimbi_odom.report.terminal import as_text
 
-    written = _write(arguments, fleet)
+    def report(path: Path, made: Mapping[str, str]) -> list[Path]:
+        return write_fleet_page(fleet, path, {"fleet": str(arguments.fleet), **made})
+
+    written = write_figures(arguments, lambda: fleet_json(fleet), report)
     columns = shutil.get_terminal_size((100, 24)).columns
     print(as_text(words_of(fleet)))
     print()
     print(fleet_table(fleet, min(max(columns, _NARROW), _WIDE)))
     tell_written(written)
-
-
-def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
-    from werrimbi_odom.report.fleet import fleet_json
-
-    written = []
-    if arguments.json is not None:
-        write_json(arguments.json, fleet_json(fleet))
-        written.append(arguments.json)
-    if arguments.report is not None:
-        from werrimbi_odom.report.fleet_page import write_fleet_page
-
-        made = {"fleet": str(arguments.fleet), **made_of(arguments)}
-        written += write_fleet_page(fleet, arguments.report, made)
-    return written

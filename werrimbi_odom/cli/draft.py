@@ -7,10 +7,10 @@ from __future__ import annotations
 import argparse
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.options import add_recording_arguments, declare, on_recordings
-from werrimbi_odom.cli.outputs import made_of, tell_written, write_json
+from werrimbi_odom.cli.outputs import tell_written, write_figures
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.recordings import Recordings
@@ -41,16 +41,15 @@ def run(arguments: argparse.Namespace) -> int:
         arguments, "diagnosing", lambda given, show: drafted(given, insist, show)
     )
     files = result.write_package(arguments.out)
-    written = list(files)
-    if arguments.json is not None:
-        figures = result.to_dict()
-        figures["draft"]["files"] = list(map(str, files))
-        write_json(arguments.json, figures)
-        written.append(arguments.json)
-    if arguments.report is not None:
-        written += result.write_report(arguments.report, made_of(arguments))
+
+    def figures() -> dict[str, Any]:
+        found = result.to_dict()
+        found["draft"]["files"] = list(map(str, files))
+        return found
+
+    written = write_figures(arguments, figures, result.write_report)
     print(result.summary())
-    tell_written(written)
+    tell_written([*files, *written])
     print(_next(arguments.out, given, result.found.name))
     return 0
 

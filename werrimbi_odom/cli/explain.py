@@ -8,7 +8,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.cli.options import declare
+from werrimbi_odom.cli.options import declare, read_effects
 from werrimbi_odom.cli.outputs import write_json
 
 if TYPE_CHECKING:
@@ -38,12 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print one page, or the list of all effects; return 0."""
-    from werrimbi_odom.effects import all_effects
     from werrimbi_odom.effects.effect_docstring import as_json
 
-    collection = all_effects(arguments.effects)
-    for warning in collection.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+    collection = read_effects(arguments)
     figures: dict[str, Any]
     if arguments.effect is None:
         figures = {"effects": [as_json(effect) for effect in collection.effects]}

@@ -13,23 +13,14 @@ from importlib import import_module, metadata
 from types import ModuleType
 from typing import NoReturn
 
-from werrimbi_odom.cli.options import Formatter, epilog_of
+from werrimbi_odom.cli.options import add_verb
 from werrimbi_odom.cli.outputs import refuse_files
 from werrimbi_odom.cli.packages import EXTRAS, lacking, refuse_lacking
 from werrimbi_odom.errors import InputError
 
 VERBS = (
-    "info",
-    "odom",
-    "compare",
-    "diagnose",
-    "history",
-    "add",
-    "draft",
-    "workbench",
-    "calibrate",
-    "simulate",
-    "explain",
+    *("info", "odom", "compare", "diagnose", "history", "add", "draft", "workbench", "calibrate"),
+    *("simulate", "explain"),
 )
 """Each is a module in this folder with HELP, `add_arguments(parser)` and `run(arguments)`, which
 returns 0 on success, and raises `InputError` on user errors, with no file half written."""
@@ -109,13 +100,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     for name in VERBS:
         if chosen == name or chosen not in VERBS:
             module = _module(name)
-            below = verbs.add_parser(
-                name,
-                help=module.HELP,
-                allow_abbrev=False,
-                epilog=epilog_of(name),
-                formatter_class=Formatter,
-            )
+            below = add_verb(verbs, name, module.HELP)
             if chosen == name:  # other verbs do not need their options, which cost time
                 module.add_arguments(below)
     return parser

@@ -187,8 +187,13 @@ def on_recordings(
 
 def remark(source: RobotFile, *more: str) -> None:
     """Print what is not used of a robot file, and similar remarks, on stderr."""
-    for words in (*(f"{source.path}: {each}" for each in source.remarks), *more):
-        print(f"warning: {words}", file=sys.stderr)
+    warn(*(f"{source.path}: {each}" for each in source.remarks), *more)
+
+
+def warn(*words: str) -> None:
+    """Print warnings on stderr, each in a line."""
+    for each in words:
+        print(f"warning: {each}", file=sys.stderr)
 
 
 def how_of(arguments: argparse.Namespace) -> DriveOptions:
@@ -220,8 +225,7 @@ def read_effects(arguments: argparse.Namespace) -> Collection:
     from werrimbi_odom.effects.lookup import all_effects
 
     collection = all_effects(arguments.effects)
-    for warning in collection.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+    warn(*collection.warnings)
     return collection
 
 
@@ -251,9 +255,17 @@ EXAMPLES = {
 """Words after `werrimbi`, by verb and kind."""
 
 
-def epilog_of(verb: str) -> str:
-    """Examples of a verb, for the end of its help."""
-    return "\n".join(["example:", *(f"  werrimbi {words}" for words in EXAMPLES[verb])])
+def add_verb(parsers: Any, name: str, says: str, words: str = "") -> argparse.ArgumentParser:
+    """Declare a verb, or a kind of one (`words`: the verb and the kind), with its examples."""
+    shown = (f"  werrimbi {example}" for example in EXAMPLES[words or name])
+    made: argparse.ArgumentParser = parsers.add_parser(
+        name,
+        help=says,
+        allow_abbrev=False,
+        epilog="\n".join(["example:", *shown]),
+        formatter_class=Formatter,
+    )
+    return made
 
 
 class Formatter(argparse.HelpFormatter):

@@ -12,7 +12,7 @@ import argparse
 import json
 import shlex
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -159,11 +159,21 @@ def _write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Pat
     if result.new_robot is not None:
         result.write_robot(arguments.out, force=arguments.force)
         written.append(arguments.out)
+    return written + write_figures(arguments, result.to_dict, result.write_report)
+
+
+def write_figures(
+    arguments: argparse.Namespace,
+    figures: Callable[[], Mapping[str, Any]],
+    report: Callable[[Path, Mapping[str, str]], Sequence[Path]],
+) -> list[Path]:
+    """Write JSON and page if requested, the latter with its provenance; return the paths."""
+    written = []
     if arguments.json is not None:
-        write_json(arguments.json, result.to_dict())
+        write_json(arguments.json, figures())
         written.append(arguments.json)
     if arguments.report is not None:
-        written += result.write_report(arguments.report, made_of(arguments))
+        written += report(arguments.report, made_of(arguments))
     return written
 
 

@@ -29,9 +29,8 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.files.start_pose import start_pose
+from werrimbi_odom.files.start_pose import driven, start_pose
 from werrimbi_odom.model.pose import Pose, wrap
-from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure
 
 if TYPE_CHECKING:
@@ -173,15 +172,7 @@ def _print(
     from rich.console import Console
     from rich.table import Table
 
-    offline = trajectory(
-        robot_file.robot,
-        run.ticks.time,
-        run.ticks.left,
-        run.ticks.right,
-        start=start,
-        tolerance=robot_file.tolerance,
-        limits=robot_file.limits,
-    )
+    offline = driven(run, robot_file, start)
     lasted = float(run.ticks.time[-1] - run.ticks.time[0])
     distance = float(np.sum(np.hypot(np.diff(answers.x), np.diff(answers.y))))
     apart = math.hypot(offline.x[-1] - ending.pose.x, offline.y[-1] - ending.pose.y)

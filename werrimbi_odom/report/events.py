@@ -193,16 +193,15 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
         return None
     figure = style.blank()
     for number, way in enumerate(seen):
-        rows = style.along_path(way.x + 1j * way.y, max(style.MOST // len(seen), 200))
+        path = way.x + 1j * way.y
         add_path(
             figure,
-            style.small(way.x[rows]),
-            style.small(way.y[rows]),
+            path[style.along_path(path, max(style.MOST // len(seen), 200))],
             "measured",
             {"color": style.paled(style.GREY, 0.5), "width": 3},
             said=style.escaped(_name(way)),
-            legendgroup="measured",
-            showlegend=number == 0,
+            group="measured",
+            shown=number == 0,
         )
     _marks(figure, happened, track, [event.place for event in happened.events])
     return style.from_above(figure, 620, zeroline=False)
@@ -215,14 +214,9 @@ def over_time(happened: Events, track: float) -> Figure:
     for way in happened.ways:
         name = style.escaped(_name(way))
         starts[(way.run, way.held_out)] = (name, float(way.time[0]))
-        figure.add_scatter(
-            x=[0.0, float(way.time[-1] - way.time[0])],
-            y=[name, name],
-            mode="lines",
-            line={"color": style.paled(style.GREY, 0.5), "width": 3},
-            showlegend=False,
-            hoverinfo="skip",
-        )
+        line = {"color": style.paled(style.GREY, 0.5), "width": 3}
+        times = [0.0, float(way.time[-1] - way.time[0])]
+        style.plot(figure, times, [name, name], shown=False, line=line)
     places = []
     for event in happened.events:
         name, start = starts[(event.run, event.held_out)]
@@ -241,22 +235,17 @@ def _marks(
 ) -> None:
     for channel, (words, colour, symbol) in _LOOKS.items():
         own = [index for index, event in enumerate(happened.events) if event.channel == channel]
-        if not own:
-            continue
-        figure.add_scatter(
-            x=[places[index][0] for index in own],
-            y=[places[index][1] for index in own],
-            mode="markers",
-            name=words,
-            marker={
-                "color": colour,
-                "symbol": symbol,
-                "size": 12,
-                "line": {"color": style.PAPER, "width": 1.5},
-            },
-            hovertext=[_said(happened, happened.events[index], track) for index in own],
-            hovertemplate="%{hovertext}<extra></extra>",
-        )
+        if own:
+            edge = {"color": style.PAPER, "width": 1.5}
+            style.plot(
+                figure,
+                [places[index][0] for index in own],
+                [places[index][1] for index in own],
+                words,
+                told="%{hovertext}",
+                hovertext=[_said(happened, happened.events[index], track) for index in own],
+                marker={"color": colour, "symbol": symbol, "size": 12, "line": edge},
+            )
 
 
 def _said(happened: Events, event: Event, track: float) -> str:

@@ -55,42 +55,25 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
         before = [1e3 * row.errors[0] for row in rows]
         after = [1e3 * row.errors[1] for row in rows]
         names = [style.escaped(row.robot) for row in rows]
-        common = {"legendgroup": group, "y": names}
         lines: dict[str, list[object]] = {"x": [], "y": []}
         for name, first, last in zip(names, before, after, strict=True):
             lines["x"] += [first, last, None]
             lines["y"] += [name, name, None]
-        figure.add_scatter(
-            **lines,
-            mode="lines",
-            line={"color": colour, "width": 2},
-            legendgroup=group,
-            showlegend=False,
-            hoverinfo="skip",
-        )
-        figure.add_scatter(
-            **common,
-            x=before,
-            mode="markers",
-            marker={
-                "color": style.PAPER,
-                "symbol": mark,
-                "size": 9,
-                "line": {"color": colour, "width": 2},
-            },
-            showlegend=False,
-            hovertemplate="%{y}, as given: %{x:.2f} mm<extra></extra>",
-        )
-        figure.add_scatter(
-            **common,
-            x=after,
-            mode="markers",
-            name=f"{group} ({len(rows)})",
+        line = {"color": colour, "width": 2}
+        style.plot(figure, lines["x"], lines["y"], group=group, shown=False, line=line)
+        hollow = {"color": style.PAPER, "symbol": mark, "size": 9, "line": line}
+        told = "%{y}, as given: %{x:.2f} mm"
+        style.plot(figure, before, names, group=group, shown=False, told=told, marker=hollow)
+        missing = [" ".join("; ".join(missing_words(row)).split()) for row in rows]
+        style.plot(
+            figure,
+            after,
+            names,
+            f"{group} ({len(rows)})",
+            group=group,
+            told="%{y}: %{x:.2f} mm<br>missing: %{customdata}",
+            customdata=list(map(style.escaped, missing)),
             marker={"color": colour, "symbol": mark, "size": 10},
-            customdata=[
-                style.escaped(" ".join("; ".join(missing_words(row)).split())) for row in rows
-            ],
-            hovertemplate="%{y}: %{x:.2f} mm<br>missing: %{customdata}<extra></extra>",
         )
     _axes(figure, shown)
     height = max(150 + (26 if len(shown) <= _CLOSE else 15) * len(shown), 260)

@@ -13,19 +13,10 @@ import numpy as np
 from werrimbi_odom.inference.changes.history import Number
 from werrimbi_odom.inference.changes.parameter_history import Dated, History
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report import history_words as words
 from werrimbi_odom.report import style
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.document import Document, Shown
-from werrimbi_odom.report.history_words import (
-    TITLES,
-    against,
-    alarms,
-    dated_names,
-    table_of,
-    there,
-    told_as,
-    words_of,
-)
 from werrimbi_odom.report.number_format import picked
 from werrimbi_odom.report.style import Figure
 
@@ -40,8 +31,8 @@ def document_of(history: History) -> Document:
     some = bool(history.course.numbers)
     return Document(
         title="What changed" if history.course.changes else "Nothing changed",
-        words=words_of(history),
-        tables=[table_of(history)] if some else (),
+        words=words.words_of(history),
+        tables=[words.table_of(history)] if some else (),
         draw=lambda: _figures(history) if some else (),
     )
 
@@ -64,7 +55,9 @@ def history_figure(history: History) -> Figure:
     from plotly.subplots import make_subplots
 
     numbers = history.course.numbers
-    titles = [f"{TITLES.get(each.name, style.escaped(each.name))}{_unit(each)}" for each in numbers]
+    titles = [
+        f"{words.TITLES.get(each.name, style.escaped(each.name))}{_unit(each)}" for each in numbers
+    ]
     figure = make_subplots(
         rows=len(numbers),
         cols=1,
@@ -73,7 +66,7 @@ def history_figure(history: History) -> Figure:
         subplot_titles=titles,
     )
     dates = _dates(history)
-    names = [style.escaped(name) for name in dated_names(history)]
+    names = [style.escaped(name) for name in words.dated_names(history)]
     for row, number in enumerate(numbers, start=1):
         _panel(figure, row, number, history, dates, names)
     figure = style.plain(figure, height=120 + _HEIGHT * len(numbers))
@@ -90,7 +83,6 @@ def _panel(
     names: list[str],
 ) -> None:
     factor, offset = _scale(number)
-    first = row == 1
     std = number.own_std
     usual = float(np.nanmedian(std))
     told = np.flatnonzero(np.isfinite(number.own) & ~(std > _UNSURE * usual))
@@ -99,57 +91,35 @@ def _panel(
     def drawn(values: Floats) -> list[float]:
         return [float(factor * (value - offset)) for value in values]
 
-    at = {"row": row, "col": 1}
-    figure.add_scatter(
-        x=[dates[index] for index in told],
-        y=drawn(number.own[told]),
-        error_y={
-            "array": [2.0 * factor * float(each) for each in std[told]],
-            "color": style.paled(style.BLUE, 0.4),
-            "thickness": 1,
-            "width": 0,
-        },
-        mode="markers",
-        marker={"color": style.BLUE, "size": 5},
-        name="a drive by itself",
-        legendgroup="own",
-        showlegend=first,
+    at: dict[str, Any] = {"shown": row == 1, "row": row, "col": 1}
+    bars = [2.0 * factor * float(each) for each in std[told]]
+    style.plot(
+        figure,
+        [dates[index] for index in told],
+        drawn(number.own[told]),
+        "a drive by itself",
+        group="own",
+        told="%{text}<br>%{y:.4g}",
         text=[names[index] for index in told],
-        hovertemplate="%{text}<br>%{y:.4g}<extra></extra>",
+        marker={"color": style.BLUE, "size": 5},
+        error_y=style.error_bars(bars, style.paled(style.BLUE, 0.4), 1, 0),
         **at,
     )
-    figure.add_scatter(
-        x=dates,
-        y=drawn(number.level),
-        mode="lines",
-        line={"color": style.ORANGE, "width": 2, "shape": "hv"},
-        name="between the changes",
-        legendgroup="level",
-        showlegend=first,
-        hoverinfo="skip",
-        **at,
-    )
+    line = {"color": style.ORANGE, "width": 2, "shape": "hv"}
+    level = drawn(number.level)
+    style.plot(figure, dates, level, "between the changes", group="level", line=line, **at)
     for value, colour, name in (
         (number.given, style.GREY, "robot file"),
-        *(((there(history, number), style.GREEN, "the other file"),) if history.like else ()),
+        *(((words.there(history, number), style.GREEN, "the other file"),) if history.like else ()),
     ):
-        figure.add_scatter(
-            x=[dates[0], dates[-1]],
-            y=drawn(np.array([value, value])),
-            mode="lines",
-            line={"color": colour, "width": 1, "dash": "dash"},
-            name=name,
-            legendgroup=name,
-            showlegend=first,
-            hoverinfo="skip",
-            **at,
-        )
+        line = {"color": colour, "width": 1, "dash": "dash"}
+        ends, values = [dates[0], dates[-1]], drawn(np.array([value, value]))
+        style.plot(figure, ends, values, name, group=name, line=line, **at)
     changes = (move for move in history.course.changes if _moves(move.what, number.name))
     changed = {int(move.from_run) for move in changes}
     for index in sorted(changed):
-        figure.add_vline(
-            x=dates[index], line={"color": style.GREY, "width": 1, "dash": "dot"}, **at
-        )
+        line = {"color": style.GREY, "width": 1, "dash": "dot"}
+        figure.add_vline(x=dates[index], line=line, row=row, col=1)
 
 
 def _moves(what: str, name: str) -> bool:
@@ -213,11 +183,13 @@ def json_of(history: History) -> dict[str, Any]:
         "changes": [
             {**each, "date": _date(history.drives[int(move.from_run)])}
             for move, each in zip(
-                course.changes, changes_json(told_as(history, paths), history.robot), strict=True
+                course.changes,
+                changes_json(words.told_as(history, paths), history.robot),
+                strict=True,
             )
         ],
-        "alarms": [asdict(alarm) for alarm in alarms(history)],
-        "like": [asdict(each) for each in against(history)],
+        "alarms": [asdict(alarm) for alarm in words.alarms(history)],
+        "like": [asdict(each) for each in words.against(history)],
         "unusable": [picked(each, "run why") for each in history.unusable],
     }
 

@@ -17,7 +17,7 @@ from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.number_format import TIME_OF_DAY, listed
+from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
 from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
@@ -65,7 +65,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     yield from left_out_words(held.left_out)
     if held.run is None:
         return
-    yield from (f"{each[:1].upper()}{each[1:]}." for each in held.run.damage)
+    yield from (f"{capital(each)}." for each in held.run.damage)
     repeated = words_about_held([held.run])
     if repeated:
         yield f"{repeated}."

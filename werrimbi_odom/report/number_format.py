@@ -125,6 +125,11 @@ def listed(words: Sequence[str], last: str = "and") -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
+def capital(words: str) -> str:
+    """Words as the beginning of a sentence."""
+    return words[:1].upper() + words[1:]
+
+
 def plain(value: Any) -> Any:
     """Values as in JSON; null for non-finite numbers, text for a path."""
     if isinstance(value, Mapping):

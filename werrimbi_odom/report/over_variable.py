@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
@@ -40,11 +42,6 @@ _LOOKS = (
 )
 
 
-def _bars(std: Floats, colour: str, thickness: float = 2, width: float = 5) -> dict[str, object]:
-    """Error bars of two standard errors."""
-    return {"array": 2.0 * std, "color": colour, "thickness": thickness, "width": width}
-
-
 def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) -> Figure:
     """Axes with a line at zero; with `turn`, an axis of one turn in degrees."""
     figure.add_hline(y=0.0, line={"color": style.GREY, "width": 1})
@@ -67,37 +64,23 @@ def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
             continue
         amplitude, std, wave = once_a_turn(centre, mean, spread)
         name = style.escaped(comparison.runs[index].run.name)
-        figure.add_scatter(
-            x=centre,
-            y=mean,
-            mode="markers",
-            legendgroup=name,
-            showlegend=False,
+        style.plot(
+            figure,
+            centre,
+            mean,
+            group=name,
+            shown=False,
+            told=f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m",
             marker={"symbol": symbol, "size": 8, "color": style.paled(colour, 0.6)},
-            error_y=_bars(spread, style.paled(colour, 0.3), 1, 0),
-            hovertemplate=(
-                f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m"
-                "<extra></extra>"
-            ),
+            error_y=style.error_bars(2.0 * spread, style.paled(colour, 0.3), 1, 0),
         )
-        figure.add_scatter(
-            x=style.small(FINE),
-            y=style.small(wave),
-            mode="lines",
-            name=f"{name}: once a turn {amplitude:.1f} ± {std:.1f}",
-            legendgroup=name,
-            line={"color": colour, "dash": dash, "width": 2.5},
-            hoverinfo="skip",
-        )
+        line = {"color": colour, "dash": dash, "width": 2.5}
+        words = f"{name}: once a turn {amplitude:.1f} ± {std:.1f}"
+        style.plot(figure, style.small(FINE), style.small(wave), words, group=name, line=line)
     if not figure.data:
-        figure.add_annotation(
-            text="The reference measures no headings and positions this often.",
-            showarrow=False,
-            x=0.5,
-            y=0.5,
-            xref="paper",
-            yref="paper",
-        )
+        words = "The reference measures no headings and positions this often."
+        middle = {"x": 0.5, "y": 0.5, "xref": "paper", "yref": "paper"}
+        figure.add_annotation(text=words, showarrow=False, **middle)
     error = f"error of the {word} wheel's travel [mm per m]"
     return over(figure, f"angle of the {word} wheel [°]", error, 480, turn=True)
 
@@ -135,36 +118,31 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
         error = factor * legs.errors.error[:, column]
         rows = np.flatnonzero(known & np.isfinite(error))
         drawn = rows[style.spread_and_extremes(error[rows], style.MARKS // 2)]
-        figure.add_scatter(
-            x=style.small(values[drawn]),
-            y=style.small(error[drawn]),
-            mode="markers",
-            name="a leg",
-            legendgroup="leg",
-            showlegend=place == 1,
+        at: dict[str, Any] = {"shown": place == 1, "row": place, "col": 1}
+        style.plot(
+            figure,
+            style.small(values[drawn]),
+            style.small(error[drawn]),
+            "a leg",
+            group="leg",
+            told=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}",
             marker={"color": style.paled(style.GREY, 0.55), "size": 5},
-            hovertemplate=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}<extra></extra>",
-            row=place,
-            col=1,
+            **at,
         )
         centre, mean, spread, count = binned(values[rows], error[rows], periodic=is_angle)
-        figure.add_scatter(
-            x=centre,
-            y=mean,
-            mode="lines+markers",
-            name="mean, ± 2 standard errors",
-            legendgroup="mean",
-            showlegend=place == 1,
+        style.plot(
+            figure,
+            centre,
+            mean,
+            "mean, ± 2 standard errors",
+            group="mean",
+            told=f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
+            "<br>%{customdata} legs",
+            customdata=count,
             line={"color": style.BLUE, "width": 2},
             marker={"color": style.BLUE, "size": 8},
-            error_y=_bars(spread, style.BLUE),
-            customdata=count,
-            hovertemplate=(
-                f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
-                "<br>%{customdata} legs<extra></extra>"
-            ),
-            row=place,
-            col=1,
+            error_y=style.error_bars(2.0 * spread, style.BLUE),
+            **at,
         )
         figure.update_yaxes(title=f"{name} [{unit}]", row=place, col=1)
         _range(figure, error[rows], place)
@@ -192,29 +170,22 @@ def before_after_figure(found: BeforeAfter) -> Figure:
     scale = float(np.degrees(1.0)) if found.turns else 1.0
     figure = style.blank()
     words = f"with {found.effect}" if found.effect else ""
+    before = "calibrated alone" if found.effect not in CALIBRATED else "as given"
     for name, item, colour, symbol, dash in (
-        (
-            "before: calibrated alone" if found.effect not in CALIBRATED else "before: as given",
-            found.before,
-            style.ORANGE,
-            "square",
-            "dot",
-        ),
+        (f"before: {before}", found.before, style.ORANGE, "square", "dot"),
         (f"after: {words}", found.after, style.BLUE, "circle", "solid"),
     ):
         if item is None:
             continue
-        figure.add_scatter(
-            x=scale * item.centre,
-            y=factor * item.value,
-            mode="lines+markers",
-            name=name if found.effect else "what the error goes with",
+        style.plot(
+            figure,
+            scale * item.centre,
+            factor * item.value,
+            name if found.effect else "what the error goes with",
+            told=f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>",
             line={"color": colour, "width": 2, "dash": dash},
             marker={"color": colour, "symbol": symbol, "size": 9},
-            error_y=_bars(factor * item.std, colour, 1.5),
-            hovertemplate=(
-                f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>"
-            ),
+            error_y=style.error_bars(2.0 * (factor * item.std), colour, 1.5),
         )
     label = labelled(found.cell)
     if found.turns and found.aligned:

@@ -11,7 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, Figure, blank, styled
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    Figure,
+    blank,
+    places,
+    plot,
+    styled,
+)
 
 Floats = NDArray[np.float64]
 
@@ -69,28 +79,22 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
     magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     if drawing.reference_x is not None and drawing.reference_y is not None:
-        look = {"color": GREY, "width": 5}
-        add_path(figure, drawing.reference_x, drawing.reference_y, "measured", look, opacity=0.55)
+        measured, look = (drawing.reference_x, drawing.reference_y), {"color": GREY, "width": 5}
+        plot(figure, *measured, "measured", told=f"measured{_PLACE}", line=look, opacity=0.55)
     for order, index in enumerate(spread_along_path(drawing.x, drawing.y, ellipses)):
-        outline_x, outline_y = ellipse(
-            float(drawing.x[index]),
-            float(drawing.y[index]),
-            drawing.covariance[index],
-            magnified=magnified,
-        )
-        figure.add_scatter(
-            x=outline_x,
-            y=outline_y,
-            mode="lines",
+        x, y, shape = drawing.x[index], drawing.y[index], drawing.covariance[index]
+        plot(
+            figure,
+            *ellipse(float(x), float(y), shape, magnified=magnified),
+            name,
+            group="ellipse",
+            shown=order == 0,
+            line={"color": ORANGE, "width": 1.2},
             fill="toself",
             fillcolor="rgba(213, 94, 0, 0.16)",
-            line={"color": ORANGE, "width": 1.2},
-            name=name,
-            legendgroup="ellipse",
-            showlegend=order == 0,
-            hoverinfo="skip",
         )
-    add_path(figure, drawing.x, drawing.y, "odometry", {"color": BLUE, "width": 2})
+    look = {"color": BLUE, "width": 2}
+    plot(figure, drawing.x, drawing.y, "odometry", told=f"odometry{_PLACE}", line=look)
     marks = [
         (complex(drawing.x[0], drawing.y[0]), "start", "circle", GREEN),
         (complex(drawing.x[-1], drawing.y[-1]), "end", "square", BLUE),
@@ -106,33 +110,28 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
     return styled(figure, drawing.title, drawing.subtitle, width=1000, height=860)
 
 
-_PLACE = "<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>"
+_PLACE = "<br>x %{x:.3f} m<br>y %{y:.3f} m"
 
 
 def add_path(
     figure: Figure,
-    x: NDArray[Any],
-    y: NDArray[Any],
+    path: NDArray[np.complex128],
     name: str,
     line: Mapping[str, Any],
     *,
-    said: str = "",
-    **more: object,
+    said: str,
+    **more: Any,
 ) -> None:
-    """Add a path on the floor, with its name and position as hover text."""
-    figure.add_scatter(
-        x=x, y=y, mode="lines", name=name, line=line, hovertemplate=(said or name) + _PLACE, **more
-    )
+    """Add a path (x + iy) on the floor, with `said` and the position as hover text."""
+    plot(figure, *places(path), name, told=said + _PLACE, line=line, **more)
 
 
 def add_mark(
-    figure: Figure, at: complex, name: str, marker: Mapping[str, Any], **more: object
+    figure: Figure, at: complex, name: str, marker: Mapping[str, Any], **more: Any
 ) -> None:
     """Add a mark at one point (x + iy), such as a start or an end."""
     x, y = [float(at.real)], [float(at.imag)]
-    figure.add_scatter(
-        x=x, y=y, mode="markers", name=name, marker=marker, hovertemplate=name + _PLACE, **more
-    )
+    plot(figure, x, y, name, told=name + _PLACE, marker=marker, **more)
 
 
 def _last_known(x: Floats, y: Floats) -> tuple[float, float]:

@@ -56,6 +56,42 @@ def blank() -> Figure:
     return Blank()
 
 
+def plot(
+    figure: Figure,
+    x: Any,
+    y: Any,
+    name: str | None = None,
+    *,
+    told: str | None = "",
+    group: str | None = None,
+    shown: bool | None = None,
+    **looks: Any,
+) -> None:
+    """Add lines (if `line` is given), marks (if `marker` is) or both.
+
+    Parameters
+    ----------
+    name, group, shown
+        Name in the legend, its group there, and whether it is listed.
+    told : str, optional
+        Text shown by the pointer, a template of plotly's; "" for none, None for plotly's own.
+    """
+    mode = "+".join(f"{look}s" for look in ("line", "marker") if look in looks)
+    hover = {"hovertemplate": told if told and "<extra>" in told else f"{told}<extra></extra>"}
+    if not told:
+        hover = {} if told is None else {"hoverinfo": "skip"}
+    figure.add_scatter(
+        x=x, y=y, mode=mode, name=name, legendgroup=group, showlegend=shown, **hover, **looks
+    )
+
+
+def error_bars(
+    sizes: Any, colour: str, thickness: float = 2, width: float = 5
+) -> dict[str, object]:
+    """Error bars, for `error_y` of `plot`."""
+    return {"array": sizes, "color": colour, "thickness": thickness, "width": width}
+
+
 def from_above(
     figure: Figure, height: int, x: str = "x [m]", y: str = "y [m]", **axes: object
 ) -> Figure:
@@ -159,6 +195,11 @@ def spread_and_extremes(values: NDArray[np.float64], most: int = MARKS) -> NDArr
     largest = np.argpartition(size, -most // 4)[-most // 4 :]
     every = np.linspace(0, values.size - 1, most - largest.size).round().astype(np.intp)
     return np.unique(np.concatenate([largest, every])).astype(np.intp)
+
+
+def places(at: NDArray[np.complex128]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Places x + iy, apart and in single precision."""
+    return small(at.real), small(at.imag)
 
 
 def small(values: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -22,7 +22,7 @@ from .lidar import Lidar, Sweeps, scanned
 from .recording import Recording
 from .robot import TrueRobot
 from .rooms import around
-from .sensors import ReferenceSensor, count, sampling_times
+from .sensors import ReferenceSensor, counters, sampling_times
 
 Floats = NDArray[np.float64]
 
@@ -183,11 +183,7 @@ def _counted(
     recording: Recording, path: TruePath, robot: TrueRobot, at: Floats, zeros: NDArray[np.int64]
 ) -> Recording:
     """The same recording along another path, with counters read at other times."""
-    sides = (
-        (path.left_angle_rad, robot.left_ticks_per_revolution, zeros[0]),
-        (path.right_angle_rad, robot.right_ticks_per_revolution, zeros[1]),
-    )
-    left, right = (count(path.t_s, angle, at, ticks, int(zero)) for angle, ticks, zero in sides)
+    left, right = counters(path, robot, at, zeros.tolist())
     return replace(
         recording, true_path=path, t_s=at, left_ticks=left, right_ticks=right, channels={}
     )

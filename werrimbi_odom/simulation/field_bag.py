@@ -4,14 +4,11 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import Stores, get_typestore
 
-from .bag import EPOCH
+from .bag import Messages
 from .field import FieldDrive
 from .robot import TrueRobot
 from .robot_file import joints
@@ -60,22 +57,11 @@ def write_field_bag(
     """
     folder = Path(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
-    store = get_typestore(Stores.ROS2_JAZZY)
-    types = store.types
-
-    def made(kind: str, *values: object) -> object:
-        return types[kind](*values)
-
-    def header(stamp: float, frame: str) -> object:
-        time = made("builtin_interfaces/msg/Time", *divmod(_nanoseconds(stamp), 10**9))
-        return made("std_msgs/msg/Header", time, frame)
+    ros = Messages()
+    made, header, facing = ros.made, ros.header, ros.facing
 
     def vector(x: float, y: float, z: float) -> object:
         return made("geometry_msgs/msg/Vector3", x, y, z)
-
-    def facing(yaw: float) -> object:
-        half = 0.5 * yaw
-        return made("geometry_msgs/msg/Quaternion", 0.0, 0.0, math.sin(half), math.cos(half))
 
     def transform(stamp: float, parent: str, child: str, pose: np.ndarray) -> object:
         x, y, yaw = map(float, pose)
@@ -84,32 +70,16 @@ def write_field_bag(
         return made("tf2_msgs/msg/TFMessage", [one])
 
     def odometry(stamp: float, pose: np.ndarray) -> object:
-        x, y, yaw = map(float, pose)
-        point = made("geometry_msgs/msg/Point", x, y, 0.0)
-        unknown = np.zeros(36)
-        place = made("geometry_msgs/msg/Pose", point, facing(yaw))
-        still = made("geometry_msgs/msg/Twist", vector(0.0, 0.0, 0.0), vector(0.0, 0.0, 0.0))
-        return made(
-            "nav_msgs/msg/Odometry",
-            header(stamp, "odom"),
-            "base_link",
-            made("geometry_msgs/msg/PoseWithCovariance", place, unknown),
-            made("geometry_msgs/msg/TwistWithCovariance", still, unknown),
-        )
+        unknown, still = np.zeros(36), vector(0.0, 0.0, 0.0)
+        place = made("geometry_msgs/msg/PoseWithCovariance", ros.pose(*map(float, pose)), unknown)
+        twist = made("geometry_msgs/msg/Twist", still, still)
+        moves = made("geometry_msgs/msg/TwistWithCovariance", twist, unknown)
+        return made(TOPICS["/odom"], header(stamp, "odom"), "base_link", place, moves)
 
     def imu(stamp: float, rate: float) -> object:
-        nothing = np.zeros(9)
-        unknown = np.array([-1.0, *np.zeros(8)])
-        return made(
-            "sensor_msgs/msg/Imu",
-            header(stamp, "imu_link"),
-            facing(0.0),
-            unknown,
-            vector(0.0, 0.0, rate),
-            nothing,
-            vector(0.0, 0.0, 9.81),
-            nothing,
-        )
+        head, none, unknown = header(stamp, "imu_link"), np.zeros(9), np.array([-1.0, *np.zeros(8)])
+        turns, weighs = vector(0.0, 0.0, rate), vector(0.0, 0.0, 9.81)
+        return made(TOPICS["/imu"], head, facing(0.0), unknown, turns, none, weighs, none)
 
     lidar = drive.lidar
 
@@ -122,7 +92,7 @@ def write_field_bag(
         return made(kind, header(stamp, LIDAR_FRAME), *angles, *times, *limits, *seen)
 
     sides = [joints(side, robot.wheels_a_side) for side in ("left", "right")]
-    nothing = np.zeros(0)
+    names = [name for each in sides for name in each]
     first = float(min(drive.wheels[0, 1], drive.imu[0, 1], drive.localiser[0, 1]))
     messages = [(first, "/robot_description", made("std_msgs/msg/String", urdf(robot)))]
     if mounting:
@@ -132,9 +102,7 @@ def write_field_bag(
         messages.append((stamp + 1.0 / lidar.rate_hz, "/scan", scan(stamp, ranges)))
     for (stamp, received, left, right), pose in zip(drive.wheels, drive.odometry, strict=True):
         angles = np.repeat([left, right], [len(each) for each in sides])
-        names = [name for each in sides for name in each]
-        state = made("sensor_msgs/msg/JointState", header(stamp, ""), names, angles, *[nothing] * 2)
-        messages.append((received, "/joint_states", state))
+        messages.append((received, "/joint_states", ros.joints(stamp, names, angles)))
         messages.append((received, "/odom", odometry(stamp, pose)))
         messages.append((received, "/tf", transform(stamp, "odom", "base_link", pose)))
     for stamp, received, rate in drive.imu:
@@ -142,21 +110,12 @@ def write_field_bag(
     for stamp, received, *pose in drive.localiser:
         between = _map_to_odom(drive, float(stamp), np.array(pose))
         messages.append((received, "/tf", transform(stamp, "map", "odom", between)))
-    messages.sort(key=lambda message: message[0])
-    with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        connections = {
-            topic: writer.add_connection(topic, kind, typestore=store)
-            for topic, kind in TOPICS.items()
-            if mounting or topic != "/tf_static"
-        }
-        for received, topic, message in messages:
-            data = store.serialize_cdr(message, TOPICS[topic])
-            writer.write(connections[topic], _nanoseconds(received), data)
+    ros.write(
+        folder,
+        {topic: kind for topic, kind in TOPICS.items() if mounting or topic != "/tf_static"},
+        messages,
+    )
     return folder
-
-
-def _nanoseconds(time: float) -> int:
-    return EPOCH * 10**9 + round(float(time) * 1e9)
 
 
 def _map_to_odom(drive: FieldDrive, stamp: float, pose: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from .lidar import Room, sweeps_at
 from .recorder import counter_zeros, motor_speeds, prepared, stream
 from .recording import Recording
 from .robot import TrueRobot
-from .sensors import ReferenceSensor, count
+from .sensors import ReferenceSensor, counters
 
 Floats = NDArray[np.float64]
 
@@ -122,17 +123,10 @@ class LiveRobot:
 
     def counters(self, time: float) -> tuple[int, int]:
         """Readings of the counters, left and right, at a time within the last second [s]."""
-        path = self._path()
-        at = np.array([time])
-        counted = self._rows[: self._count, 6:]
-        left, right = (
-            count(path.t_s, np.ascontiguousarray(counted[:, side]), at, resolution, zero)
-            for side, resolution, zero in (
-                (0, self._robot.left_ticks_per_revolution, self._zeros[0]),
-                (1, self._robot.right_ticks_per_revolution, self._zeros[1]),
-            )
-        )
-        none = np.empty(0)
+        path, at, none = self._path(), np.array([time]), np.empty(0)
+        angles = np.ascontiguousarray(self._rows[: self._count, 6:].T)
+        counted = replace(path, left_angle_rad=angles[0], right_angle_rad=angles[1])
+        left, right = counters(counted, self._robot, at, self._zeros)
         seen = Recording("live", at, left, right, none, none, none, none, path)
         for odd, rng in zip(self._hidden, self._rngs, strict=True):
             if odd.counted(self._robot) is None:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Literal, overload
+from typing import Literal, get_args, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from .hidden.hidden_effect import Peculiarity
 from .manoeuvre import Manoeuvre
 from .recording import Happened, Recording
 from .robot import TrueRobot
-from .sensors import ReferenceSensor, count, sampling_times
+from .sensors import ReferenceSensor, counters, sampling_times
 from .wheel_noise import wheel_noise
 
 Floats = NDArray[np.float64]
@@ -145,14 +145,7 @@ def _sample(
     """Measurements of encoders and reference along the true path."""
     end = float(path.t_s[-1])
     t = sampling_times(ticks_rate_hz, end, stream(seed, "encoders"))
-    zeros = counter_zeros(robot, seed)
-    left, right = (
-        count(path.t_s, angle, t, resolution, zero)
-        for angle, resolution, zero in (
-            (path.left_angle_rad, robot.left_ticks_per_revolution, zeros[0]),
-            (path.right_angle_rad, robot.right_ticks_per_revolution, zeros[1]),
-        )
-    )
+    left, right = counters(path, robot, t, counter_zeros(robot, seed))
     rng = stream(seed, "reference")
     reference_t = sensor.times(end, rng)
     x, y, yaw = sensor.measure(path, reference_t, rng)
@@ -196,16 +189,8 @@ def motor_speeds(
 
 
 Purpose = Literal["start", "wheel noise", "encoders", "counters", "reference", "hidden"]
-_PURPOSES: tuple[Purpose, ...] = (
-    "start",
-    "wheel noise",
-    "encoders",
-    "counters",
-    "reference",
-    "hidden",
-)
 
 
 def stream(seed: int, purpose: Purpose, number: int = 0) -> np.random.Generator:
     """A new random generator for one purpose in the run `seed`."""
-    return np.random.default_rng([seed, _PURPOSES.index(purpose), number])
+    return np.random.default_rng([seed, get_args(Purpose).index(purpose), number])

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .engine import AxlePose, TruePath
+from .robot import TrueRobot
 
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -86,6 +88,16 @@ def count(
     """
     turns = np.interp(times, path_t, angle) / (2 * math.pi)
     return np.floor(turns * ticks_per_revolution).astype(np.int64) + start
+
+
+def counters(
+    path: TruePath, robot: TrueRobot, times: Floats, zeros: Sequence[int]
+) -> tuple[Counts, Counts]:
+    """Readings of both encoders at `times`, each shape (n,); `zeros` as `start` of `count`."""
+    return (
+        count(path.t_s, path.left_angle_rad, times, robot.left_ticks_per_revolution, zeros[0]),
+        count(path.t_s, path.right_angle_rad, times, robot.right_ticks_per_revolution, zeros[1]),
+    )
 
 
 def wrap(angle: Floats) -> Floats:

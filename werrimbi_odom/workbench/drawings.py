@@ -21,29 +21,15 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report import style
 from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure
 from werrimbi_odom.report.comparison.phrases import leg_when
-from werrimbi_odom.report.style import (
-    BLUE,
-    FEWEST,
-    GREY,
-    IN_THE_DARK,
-    KEPT_HERE,
-    MARKS,
-    ORANGE,
-    Figure,
-    along_path,
-    blank,
-    escaped,
-    plain,
-    small,
-)
 from werrimbi_odom.workbench.session import ModelVersion
 
 BUTTONS = ["select2d", "lasso2d", "autoScale2d", "toImage"]
 """Buttons of plotly's tool bar that are removed."""
 
-_COLOURS = re.compile("|".join(IN_THE_DARK), re.IGNORECASE)
+_COLOURS = re.compile("|".join(style.IN_THE_DARK), re.IGNORECASE)
 WIDTH, HEIGHT, EDGE = 720.0, 400.0, 24.0
 """Size and margin of the drawing of the measured paths [pixels]."""
 
@@ -52,10 +38,10 @@ CHI2_9999 = np.array([np.inf, 15.136705226623606, 18.420680743952367, 21.1075134
 """99.99 % quantiles of chi-squared, by degrees of freedom."""
 
 CLASSES = (
-    ("as promised", BLUE, 2.0, "solid"),
+    ("as promised", style.BLUE, 2.0, "solid"),
     ("more than promised (outside 95 %)", YELLOW, 4.0, "solid"),
-    ("far more (outside 99.99 %)", ORANGE, 6.5, "solid"),
-    ("left out: the reference jumped", GREY, 2.0, "dot"),
+    ("far more (outside 99.99 %)", style.ORANGE, 6.5, "solid"),
+    ("left out: the reference jumped", style.GREY, 2.0, "dot"),
 )
 
 _POINTS = 6000
@@ -64,7 +50,7 @@ _POINTS = 6000
 _LEGS = 2000
 """Limit of drawn legs of each class; beyond it (some hours of driving) a regular selection."""
 
-_TEXTS = MARKS
+_TEXTS = style.MARKS
 """Limit of legs with hover texts; beyond it those with the largest errors."""
 
 
@@ -77,7 +63,7 @@ def classes_of(comparison: Comparison) -> NDArray[np.intp]:
     return np.asarray(np.where(comparison.legs.outlier, 3, grade))
 
 
-def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> Figure:
+def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> style.Figure:
     """The legs on the floor, classified by their error relative to the covariance.
 
     If `which` is given, these legs are highlighted and the rest is faint. Colour, width and dash
@@ -87,39 +73,25 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
     lines = _lines(comparison)
     grade = classes_of(comparison)
     if which is not None:
-        x, y = _joined(lines, np.flatnonzero(~which))
-        figure.add_scatter(
-            x=x,
-            y=y,
-            mode="lines",
-            name="other legs",
-            line={"color": "rgba(128, 128, 128, 0.35)", "width": 1.5},
-            hoverinfo="skip",
-        )
+        line: dict[str, object] = {"color": "rgba(128, 128, 128, 0.35)", "width": 1.5}
+        style.plot(figure, *_joined(lines, np.flatnonzero(~which)), "other legs", line=line)
     chosen = np.ones(grade.size, dtype=np.bool_) if which is None else which
     for index, (name, colour, width, dash) in enumerate(CLASSES):
         members = np.flatnonzero(chosen & (grade == index))
         if members.size == 0:
             continue
-        x, y = _joined(lines, members)
-        figure.add_scatter(
-            x=x,
-            y=y,
-            mode="lines",
-            name=f"{name}: {members.size}",
-            line={"color": colour, "width": width, "dash": dash},
-            hoverinfo="skip",
-        )
+        line = {"color": colour, "width": width, "dash": dash}
+        style.plot(figure, *_joined(lines, members), f"{name}: {members.size}", line=line)
     _add_texts(figure, comparison, chosen, grade)
     return figure
 
 
-def empty_floor() -> Figure:
+def empty_floor() -> style.Figure:
     """An empty floor plan with equal scales, which can be panned."""
-    figure = blank()
+    figure = style.blank()
     figure.update_xaxes(title="x [m]")
     figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
-    plain(figure, height=480).update_xaxes(zeroline=False).update_yaxes(zeroline=False)
+    style.plain(figure, height=480).update_xaxes(zeroline=False).update_yaxes(zeroline=False)
     figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
     return figure
 
@@ -135,14 +107,14 @@ def _add_texts(
     told = np.flatnonzero(chosen & np.isfinite(legs.x) & np.isfinite(legs.end_x))
     if told.size > _TEXTS:
         told = told[np.argsort(-grade[told], kind="stable")[:_TEXTS]]
-    figure.add_scatter(
-        x=small(0.5 * (legs.x + legs.end_x)[told]),
-        y=small(0.5 * (legs.y + legs.end_y)[told]),
-        mode="lines",
-        showlegend=False,
-        line={"width": 0, "color": "rgba(0, 0, 0, 0)"},
+    style.plot(
+        figure,
+        style.small(0.5 * (legs.x + legs.end_x)[told]),
+        style.small(0.5 * (legs.y + legs.end_y)[told]),
+        shown=False,
+        told="%{text}",
         text=[leg_told(comparison, int(index)) for index in told],
-        hovertemplate="%{text}<extra></extra>",
+        line={"width": 0, "color": "rgba(0, 0, 0, 0)"},
     )
 
 
@@ -152,7 +124,7 @@ def leg_told(comparison: Comparison, index: int) -> str:
     run = comparison.runs[legs.run[index]].run.name
     along, sideways, heading = legs.errors.error[index]
     return (
-        f"{escaped(run)}, {leg_when(comparison, index)}, {legs.errors.kind[index]}<br>"
+        f"{style.escaped(run)}, {leg_when(comparison, index)}, {legs.errors.kind[index]}<br>"
         f"measured − predicted: along {1e3 * along:+.1f} mm, "
         f"sideways {1e3 * sideways:+.1f} mm, heading {np.degrees(heading):+.2f}°"
     )
@@ -183,14 +155,14 @@ def _joined(
         which = which[np.linspace(0, which.size - 1, _LEGS).astype(np.intp)]
     parts = [lines[int(index)] for index in which]
     if not parts:
-        return small(np.empty(0)), small(np.empty(0))
+        return style.small(np.empty(0)), style.small(np.empty(0))
     return (
-        small(np.concatenate([piece for x, _ in parts for piece in (x, gap)])),
-        small(np.concatenate([piece for _, y in parts for piece in (y, gap)])),
+        style.small(np.concatenate([piece for x, _ in parts for piece in (x, gap)])),
+        style.small(np.concatenate([piece for _, y in parts for piece in (y, gap)])),
     )
 
 
-def gain_figure(steps: Sequence[ModelVersion]) -> Figure:
+def gain_figure(steps: Sequence[ModelVersion]) -> style.Figure:
     """Errors of held-out and fitted drives, and the error of the former by noise alone."""
     added = steps[-1].added
     explained = added is not None and added.explained
@@ -221,7 +193,7 @@ def measured_drawing(runs: Sequence[Run]) -> str | None:
         (WIDTH - 2 * EDGE) / max(size.real, 1e-9), (HEIGHT - 3 * EDGE) / max(size.imag, 1e-9), 1e6
     )
     left = 0.5 * (WIDTH - scale * size.real)
-    most = max(FEWEST, _POINTS // 2 // len(paths))
+    most = max(style.FEWEST, _POINTS // 2 // len(paths))
     lines = "".join(
         f"M{' '.join(f'{x:.1f} {y:.1f}' for x, y in _drawn(places, most, low, scale, left))}"
         for places in paths
@@ -247,7 +219,7 @@ def _places(run: Run) -> NDArray[np.complex128]:
 def _drawn(
     places: NDArray[np.complex128], most: int, low: complex, scale: float, left: float
 ) -> list[tuple[float, float]]:
-    at = scale * (places[along_path(places, most)] - low)
+    at = scale * (places[style.along_path(places, most)] - low)
     y = HEIGHT - 2 * EDGE - at.imag
     return list(zip((left + at.real).tolist(), y.tolist(), strict=True))
 
@@ -258,11 +230,11 @@ def _round(length: float) -> float:
     return next(step * ten for step in (5.0, 2.0, 1.0) if step * ten <= length * (1.0 + 1e-9))
 
 
-def shown(figure: Figure | str, dark: bool) -> dict[str, Any]:
+def shown(figure: style.Figure | str, dark: bool) -> dict[str, Any]:
     """A figure (or its JSON) for plotly.js; in the dark theme its colours are replaced."""
     words = figure if isinstance(figure, str) else str(figure.to_json())
     if dark:
-        words = _COLOURS.sub(lambda found: IN_THE_DARK[found.group().upper()], words)
+        words = _COLOURS.sub(lambda found: style.IN_THE_DARK[found.group().upper()], words)
     drawn: dict[str, Any] = json.loads(words)
     if dark:
         for name, axis in drawn["layout"].items():
@@ -270,7 +242,7 @@ def shown(figure: Figure | str, dark: bool) -> dict[str, Any]:
                 axis["reversescale"] = True  # the high end of the scale contrasts with the page
     drawn["config"] = {
         "displaylogo": False,
-        **KEPT_HERE,
+        **style.KEPT_HERE,
         "responsive": True,
         "modeBarButtonsToRemove": BUTTONS,
         "scrollZoom": True,

@@ -17,8 +17,9 @@ from werrimbi_odom.workbench.tab import Opening, Shared, Tab, new_tab
 from werrimbi_odom.workbench.views.add import add_view
 from werrimbi_odom.workbench.views.compare import compare_view
 from werrimbi_odom.workbench.views.diagnose import diagnose_view
-from werrimbi_odom.workbench.views.header import failed_view, opening_view, strip, under_way
 from werrimbi_odom.workbench.views.save import save_view
+from werrimbi_odom.workbench.views.steps_bar import steps_bar
+from werrimbi_odom.workbench.views.under_way import failed_view, opening_view, under_way
 
 STYLE = Path(__file__).with_name("page.css")
 VIEW = {
@@ -92,18 +93,18 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
     client = ui.context.client
     status = text("p", "", "status", role="status", aria_live="polite")
     top = box("header")
-    strip_place = box("div", "strip-place")
+    bar = box("div", "steps-bar-place")
     main = box("div", "main", data_key="main")
 
     def draw(focus: str | None) -> None:
         with client:  # the caller's slot may be deleted: a pressed button is redrawn
             tab.actions.clear()
-            for place in (top, strip_place, main):
+            for place in (top, bar, main):
                 place.clear()
             with top:
                 _head(tab, turn_theme)
-            with strip_place:
-                strip(tab)
+            with bar:
+                steps_bar(tab)
             with main:
                 under_way(tab)
                 VIEW[tab.view](tab)
@@ -122,7 +123,7 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
 
     tab = new_tab(shared, draw)
     tab.session, tab.dark = kept.get(_SESSION, tab.session), dark
-    for place in (top, strip_place, main):
+    for place in (top, bar, main):
         listen(place, tab)
     client.on_delete(tab.cancel)
     draw(None)

@@ -150,16 +150,10 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
             hovertemplate=f"%{{x}}, {name}<br>%{{y:.3g}} {unit}<extra></extra>",
         )
     if np.isfinite(floor):
-        figure.add_hline(
-            y=factor * floor, line={"color": style.GREEN, "width": 2.5, "dash": "dash"}
-        )
-        figure.add_scatter(
-            x=[None],
-            y=[None],
-            mode="lines",
-            line={"color": style.GREEN, "width": 2.5, "dash": "dash"},
-            name=f"floor: what noise alone leaves, {factor * floor:.2f} {unit}",
-        )
+        line = {"color": style.GREEN, "width": 2.5, "dash": "dash"}
+        figure.add_hline(y=factor * floor, line=line)
+        words = f"floor: what noise alone leaves, {factor * floor:.2f} {unit}"
+        style.plot(figure, [None], [None], words, told=None, line=line)
     figure.update_yaxes(title=f"error of a leg, rms [{unit}]", range=[0.0, 1.16 * factor * largest])
     figure.update_xaxes(showgrid=False)
     style.plain(figure, height=420)
@@ -197,15 +191,13 @@ def clouds_of_legs(
             continue
         size = np.hypot(known[:, 0], known[:, 1])
         drawn = known[style.spread_and_extremes(size, style.MARKS // 2)]
-        figure.add_scatter(
-            x=style.small(drawn[:, 0]),
-            y=style.small(drawn[:, 1]),
-            mode="markers",
-            name=f"{name}: median {np.median(size):.{digits}f} mm",
+        style.plot(
+            figure,
+            style.small(drawn[:, 0]),
+            style.small(drawn[:, 1]),
+            f"{name}: median {np.median(size):.{digits}f} mm",
             marker={"color": style.paled(colour, 0.75), "symbol": symbol, "size": 8},
-            hovertemplate=(
-                f"{style.escaped(name)}<br>along %{{x:.{digits}f}} mm"
-                f"<br>sideways %{{y:.{digits}f}} mm<extra></extra>"
-            ),
+            told=f"{style.escaped(name)}<br>along %{{x:.{digits}f}} mm"
+            f"<br>sideways %{{y:.{digits}f}} mm",
         )
     return style.from_above(figure, height, "error along [mm]", "error sideways [mm]")

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from werrimbi_odom.report.adding.document import clouds_of_legs
 from werrimbi_odom.report.document import Document, Part, Shown, Table
 from werrimbi_odom.report.page import table_html
 from werrimbi_odom.report.path_figure import Floats, ellipse
-from werrimbi_odom.report.style import BLUE, GREY, ORANGE, Figure, blank, from_above, plain
+from werrimbi_odom.report.style import BLUE, GREY, ORANGE, Figure, blank, from_above, plain, plot
 
 
 def calibration_document(
@@ -73,13 +74,8 @@ def umbmark_figure(before: OffsetCloud, after: OffsetCloud | None) -> Figure:
             ("ccw", cloud.ccw, ORANGE, "circle"),
         ):
             _offsets(figure, f"{sense}, {cloud.name}", offsets, colour, symbol, filled)
-    figure.add_scatter(
-        x=[None],
-        y=[None],
-        mode="markers",
-        name="centres of gravity",
-        marker={"symbol": "x", "size": 13, "color": GREY},
-    )
+    cross = {"symbol": "x", "size": 13, "color": GREY}
+    plot(figure, [None], [None], "centres of gravity", told=None, marker=cross)
     x, y = "x, along the first leg [mm]", "y, to its left [mm]"
     return from_above(figure, 760, x, y, zeroline=True)
 
@@ -88,34 +84,19 @@ def _offsets(
     figure: Figure, name: str, offsets: Floats, colour: str, symbol: str, filled: bool
 ) -> None:
     x, y = _MILLI * offsets.T
-    figure.add_scatter(
-        x=x,
-        y=y,
-        mode="markers",
-        name=name,
-        legendgroup=name,
-        marker={
-            "symbol": symbol if filled else f"{symbol}-open",
-            "size": 10,
-            "color": colour,
-            "opacity": 0.55 if filled else 1.0,
-            "line": {"width": 0.0 if filled else 1.8, "color": colour},
-        },
-        hovertemplate=f"{name}<br>x %{{x:.1f}} mm<br>y %{{y:.1f}} mm<extra></extra>",
-    )
-    centre_x, centre_y = float(x.mean()), float(y.mean())
-    figure.add_scatter(
-        x=[centre_x],
-        y=[centre_y],
-        mode="markers",
-        name="centre of gravity",
-        legendgroup=name,
-        showlegend=False,
-        marker={"symbol": "x", "size": 14, "color": colour, "line": {"width": 1, "color": "white"}},
-        hovertemplate=(
-            f"{name}: centre of gravity<br>x %{{x:.1f}} mm<br>y %{{y:.1f}} mm<extra></extra>"
-        ),
-    )
+    place = "<br>x %{x:.1f} mm<br>y %{y:.1f} mm"
+    marker: dict[str, object] = {
+        "symbol": symbol if filled else f"{symbol}-open",
+        "size": 10,
+        "color": colour,
+        "opacity": 0.55 if filled else 1.0,
+        "line": {"width": 0.0 if filled else 1.8, "color": colour},
+    }
+    plot(figure, x, y, name, group=name, marker=marker, told=f"{name}{place}")
+    marker = {"symbol": "x", "size": 14, "color": colour, "line": {"width": 1, "color": "white"}}
+    centre, told = "centre of gravity", f"{name}: centre of gravity{place}"
+    at = [float(x.mean())], [float(y.mean())]
+    plot(figure, *at, centre, group=name, shown=False, marker=marker, told=told)
 
 
 def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
@@ -124,14 +105,8 @@ def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
     )
     angle = np.linspace(0.0, 2.0 * np.pi, 145)
     name = f"E<sub>max,syst</sub> {cloud.name}: {radius:.{1 if radius < 10.0 else 0}f} mm"
-    figure.add_scatter(
-        x=radius * np.cos(angle),
-        y=radius * np.sin(angle),
-        mode="lines",
-        name=name,
-        line={"color": GREY, "width": 1.3, "dash": dash},
-        hoverinfo="skip",
-    )
+    line = {"color": GREY, "width": 1.3, "dash": dash}
+    plot(figure, radius * np.cos(angle), radius * np.sin(angle), name, line=line)
 
 
 def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
@@ -152,50 +127,22 @@ def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
     scaled = _MILLI * errors
     for column, (across, up) in enumerate(panels, start=1):
         first = column == 1
-        figure.add_scatter(
-            x=scaled[:, across],
-            y=scaled[:, up],
-            mode="markers",
-            name=f"{len(errors)} runs",
-            legendgroup="runs",
-            showlegend=first,
-            marker={"color": GREY, "size": 6, "opacity": 0.7},
-            row=1,
-            col=column,
-        )
+        at: dict[str, Any] = {"row": 1, "col": column}
+        marker, name = {"color": GREY, "size": 6, "opacity": 0.7}, f"{len(errors)} runs"
+        runs = scaled[:, across], scaled[:, up]
+        plot(figure, *runs, name, group="runs", shown=first, told=None, marker=marker, **at)
         for name, covariance, colour, dash in (
             ("95 % ellipse of the runs", data, BLUE, "dash"),
             ("95 % ellipse of the model", model, ORANGE, "solid"),
         ):
-            x, y = ellipse(
-                float(scaled[:, across].mean()),
-                float(scaled[:, up].mean()),
-                _MILLI**2 * covariance[np.ix_((across, up), (across, up))],
-                points=145,
-            )
-            figure.add_scatter(
-                x=x,
-                y=y,
-                mode="lines",
-                name=name,
-                legendgroup=name,
-                showlegend=first,
-                line={"color": colour, "width": 2.2, "dash": dash},
-                hoverinfo="skip",
-                row=1,
-                col=column,
-            )
-        (name_x, unit_x), (name_y, unit_y) = axes[across], axes[up]
-        figure.update_xaxes(
-            title=f"e<sub>{name_x}</sub> [{unit_x}]", zeroline=True, row=1, col=column
-        )
-        figure.update_yaxes(
-            title=f"e<sub>{name_y}</sub> [{unit_y}]",
-            title_standoff=4,
-            zeroline=True,
-            row=1,
-            col=column,
-        )
+            shape = _MILLI**2 * covariance[np.ix_((across, up), (across, up))]
+            middle = float(runs[0].mean()), float(runs[1].mean())
+            x, y = ellipse(*middle, shape, points=145)
+            line = {"color": colour, "width": 2.2, "dash": dash}
+            plot(figure, x, y, name, group=name, shown=first, line=line, **at)
+        titles = [f"e<sub>{name}</sub> [{unit}]" for name, unit in (axes[across], axes[up])]
+        figure.update_xaxes(title=titles[0], zeroline=True, **at)
+        figure.update_yaxes(title=titles[1], title_standoff=4, zeroline=True, **at)
     return plain(figure, height=560)
 
 

@@ -10,7 +10,7 @@ from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.number_format import listed, picked, scaled_with_std
+from werrimbi_odom.report.number_format import capital, listed, picked, scaled_with_std
 
 _MOST = 3  # dependences that are reported
 _UNITS = {
@@ -35,7 +35,7 @@ def fit_in_words(result: Calibration) -> list[Part]:
     if unwritten := [name for name in _UNITS if _strange(result, name)]:
         stays = "stays as it was" if len(unwritten) == 1 else "stay as they were"
         said.append(
-            f"{_capital(listed(unwritten))} {stays} in the robot file: a noise that no wheel has "
+            f"{capital(listed(unwritten))} {stays} in the robot file: a noise that no wheel has "
             "is not written."
         )
     if left_out := _left_out(result):
@@ -74,7 +74,7 @@ def _verdict(result: Calibration) -> tuple[Paragraph, ...]:
     lines = ["Something else is missing: calibration does not explain these drives."]
     lines += [f"- {words}." for words in result.strange]
     strongest = ordered_cells(result.misfit)[:_MOST]
-    lines += [f"- {_capital(dependence_words(cell))}." for cell in strongest]
+    lines += [f"- {capital(dependence_words(cell))}." for cell in strongest]
     return paragraphs(lines)
 
 
@@ -95,10 +95,6 @@ def _values(result: Calibration) -> Table:
             value = f"{noise.value:.2e} {unit}"
         rows.append([name, "" if before is None else f"{before:.2e}", value])
     return Table("Of greatest likelihood", ("parameter", "before", "after"), rows)
-
-
-def _capital(words: str) -> str:
-    return words[0].upper() + words[1:]
 
 
 def fit_json(result: Calibration) -> dict[str, Any]:

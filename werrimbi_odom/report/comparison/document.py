@@ -10,7 +10,7 @@ from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFig
 from werrimbi_odom.inference.comparison.dependence import ByVariable
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.rules import SURE_OF_LEGS
-from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
+from werrimbi_odom.report.comparison.figures import NAMES, legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.document import Document, Part, Shown, Table, paragraphs
@@ -84,7 +84,6 @@ def _paths(comparison: Comparison) -> dict[str, Figure]:
 
 
 _MOST = 3  # variables with their own table
-_NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
 
 
@@ -108,7 +107,7 @@ def _depends(item: ByVariable) -> bool:
 
 def _motions(main: OfLength) -> Table:
     rows = [
-        [_NAMES[kind], *_cells(main.by_motion[kind])]
+        [NAMES[kind], *_cells(main.by_motion[kind])]
         for kind in KINDS
         if main.by_motion[kind].figures.count
     ]

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -57,26 +58,12 @@ def nees_figure(comparison: Comparison) -> Figure:
         if not at:
             continue
         x, y = _bars(at, low, high)
-        figure.add_scatter(
-            x=x,
-            y=y,
-            mode="lines",
-            line={"color": style.paled(style.GREY, 0.45), "width": 16},
-            name="where an honest covariance lies, 19 times in 20",
-            legendgroup="bounds",
-            showlegend=not drawn,
-            hoverinfo="skip",
-        )
+        bar = {"color": style.paled(style.GREY, 0.45), "width": 16}
+        words = "where an honest covariance lies, 19 times in 20"
+        style.plot(figure, x, y, words, group="bounds", shown=not drawn, line=bar)
         drawn = True
-        figure.add_scatter(
-            x=at,
-            y=values,
-            mode="markers",
-            name=NAMES[kind],
-            text=texts,
-            hovertemplate="%{text}<extra></extra>",
-            marker={"color": colour, "symbol": symbol, "size": 12},
-        )
+        marker = {"color": colour, "symbol": symbol, "size": 12}
+        style.plot(figure, at, values, NAMES[kind], told="%{text}", text=texts, marker=marker)
     figure.add_hline(y=1.0, line={"color": style.GREY, "width": 1.5, "dash": "dash"})
     figure.update_xaxes(
         title="length of the legs", tickvals=list(range(len(lengths))), ticktext=lengths
@@ -115,6 +102,7 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
     )
     for place, column in enumerate(columns, start=1):
         name, unit, factor = CHANNELS[column]
+        at: dict[str, Any] = {"row": 1, "col": place}
         for kind in KINDS:
             mine = kept & (legs.errors.kind == kind)
             values = factor * legs.errors.error[mine, column]
@@ -142,22 +130,19 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
                 fillcolor=style.paled(style.BLUE, 0.25),
                 width=0.38,
                 hoverinfo="skip",
-                row=1,
-                col=place,
+                **at,
             )
-            figure.add_scatter(
-                x=[NAMES[kind]],
-                y=[middle],
-                mode="markers",
+            style.plot(
+                figure,
+                [NAMES[kind]],
+                [middle],
+                told=f"{NAMES[kind]}, {name}: {values.size} legs"
+                f"<br>mean {values.mean():+.2f} {unit}"
+                f"<br>95 % of them {low:+.2f} to {high:+.2f} {unit}"
+                f"<br>promised ± {promised:.2f} {unit}",
+                shown=False,
                 marker={"color": style.BLUE, "size": 14, "opacity": 0.0},
-                showlegend=False,
-                hovertemplate=(
-                    f"{NAMES[kind]}, {name}: {values.size} legs<br>mean {values.mean():+.2f} {unit}"
-                    f"<br>95 % of them {low:+.2f} to {high:+.2f} {unit}"
-                    f"<br>promised ± {promised:.2f} {unit}<extra></extra>"
-                ),
-                row=1,
-                col=place,
+                **at,
             )
     figure.update_xaxes(categoryorder="array", categoryarray=list(NAMES.values()))
     figure.update_yaxes(zeroline=True)

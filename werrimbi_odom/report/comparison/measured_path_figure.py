@@ -60,26 +60,24 @@ def _paths(
     measured = np.insert(path.measured[rows], pieces, np.nan)
     add_path(
         figure,
-        style.small(measured.real),
-        style.small(measured.imag),
+        measured,
         "measured",
         {"color": style.paled(style.GREY, 0.5), "width": 7},
         said=f"{name}, measured",
-        legendgroup="measured",
-        showlegend=first,
+        group="measured",
+        shown=first,
     )
     if not predicted:
         return
     model = path.predicted[style.along_path(path.predicted, most)]
     add_path(
         figure,
-        style.small(model.real),
-        style.small(model.imag),
+        model,
         "model (dead reckoning from the start)",
         {"color": style.BLUE, "width": 2},
         said=f"{name}, model",
-        legendgroup="model",
-        showlegend=first,
+        group="model",
+        shown=first,
     )
 
 
@@ -96,7 +94,7 @@ def _ends(figure: Figure, comparison: Comparison, index: int, *, first: bool) ->
     ):
         edge = {"width": 1.5, "color": style.PAPER}
         marker = {"symbol": symbol, "size": 12, "color": colour, "line": edge}
-        add_mark(figure, at, name, marker, legendgroup=name, showlegend=first)
+        add_mark(figure, at, name, marker, group=name, shown=first)
 
 
 def leg_errors_to_colour(comparison: Comparison) -> tuple[Floats, str]:
@@ -120,29 +118,23 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
     rows = rows[np.argsort(size[rows])]
     texts = [_told(comparison, row) for row in rows.tolist()]
     middle = middles(comparison)[rows]
-    figure.add_scatter(
-        x=style.small(middle.real),
-        y=style.small(middle.imag),
-        mode="markers",
-        showlegend=False,
+    marker: dict[str, object] = {
+        "color": style.small(size[rows]),
+        "coloraxis": "coloraxis",
+        "size": style.small(8.0 + 8.0 * np.clip(size[rows] / max(top, 1e-9), 0.0, 1.0)),
+        "line": {"width": 1, "color": style.PAPER},
+    }
+    style.plot(
+        figure,
+        *style.places(middle),
+        shown=False,
         text=texts,
-        hovertemplate="%{text}<extra></extra>",
-        marker={
-            "color": style.small(size[rows]),
-            "coloraxis": "coloraxis",
-            "size": style.small(8.0 + 8.0 * np.clip(size[rows] / max(top, 1e-9), 0.0, 1.0)),
-            "line": {"width": 1, "color": style.PAPER},
-        },
+        told="%{text}",
+        marker=marker,
     )
     # Only for the legend, where a marker with many colours is black and invisible on a dark page.
-    figure.add_scatter(
-        x=[None],
-        y=[None],
-        mode="markers",
-        name="leg, coloured by its error",
-        marker={"color": style.GREY, "size": 12},
-        hoverinfo="skip",
-    )
+    marker = {"color": style.GREY, "size": 12}
+    style.plot(figure, [None], [None], "leg, coloured by its error", marker=marker)
     style.coloured(figure, max(top, 1e-9), f"error of<br>a leg [{unit}]")
 
 
@@ -172,13 +164,12 @@ def _ellipses(figure: Figure, comparison: Comparison, index: int) -> None:
         for at, shape in zip(places[chosen].tolist(), covariance, strict=True)
     ]
     x, y = np.concatenate(outlines, axis=1)
-    figure.add_scatter(
-        x=style.small(x),
-        y=style.small(y),
-        mode="lines",
-        name="where the truth should be (95 % ellipse)",
+    style.plot(
+        figure,
+        style.small(x),
+        style.small(y),
+        "where the truth should be (95 % ellipse)",
         line={"color": style.ORANGE, "width": 1.5},
         fill="toself",
         fillcolor=style.paled(style.ORANGE, 0.13),
-        hoverinfo="skip",
     )

@@ -14,7 +14,7 @@ from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.number_format import counted, listed, two_digits
+from werrimbi_odom.report.number_format import capital, counted, listed, two_digits
 from werrimbi_odom.report.phrases import left_out_words, remark_words
 
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
@@ -184,9 +184,7 @@ def _dependence(item: Depends, others: list[str]) -> str:
     channels = listed([_CHANNELS[channel] for channel in (item.channel, *others)])
     verb = "go" if others or item.channel == "size" else "goes"
     verb = "goes" if item.channel == "size" and not others else verb
-    return (
-        f"{channels[0].upper()}{channels[1:]} {verb} with the {variable} ({_chance(item.p_value)})."
-    )
+    return f"{capital(channels)} {verb} with the {variable} ({_chance(item.p_value)})."
 
 
 def _chance(p_value: float) -> str:

@@ -30,6 +30,7 @@ from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.events import on_the_path, over_time
+from werrimbi_odom.report.number_format import capital
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.report.sketches import effect_sketch
 
@@ -217,7 +218,7 @@ def _next(diagnosis: Diagnosis, manoeuvre: ProposedManoeuvre | None) -> list[Sho
     if manoeuvre is None:
         return []
     ideal = ideal_of(manoeuvre.name)
-    why = manoeuvre.why[:1].upper() + manoeuvre.why[1:]
+    why = capital(manoeuvre.why)
     time = f" For about {manoeuvre.minutes:.0f} min." if manoeuvre.minutes else ""
     do = f"<p><strong>Do this:</strong> {html.escape(manoeuvre.do)}.{time}</p>"
     if ideal is None:

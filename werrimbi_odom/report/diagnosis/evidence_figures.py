@@ -77,18 +77,17 @@ def evidence_map_figure(cells: Sequence[Dependence], *, opens: str = "") -> Figu
     # Marks have an outline on a light disc, so that they are legible on any colour.
     marked = [cell for row in grid for cell in row if cell and cell.p_value < VERY_SURE]
     stars = [_worth(cell) == top for cell in marked]
-    figure.add_scatter(
-        x=[label_of(cell.variable.name) for cell in marked],
-        y=[cell.channel for cell in marked],
-        mode="markers",
+    style.plot(
+        figure,
+        [label_of(cell.variable.name) for cell in marked],
+        [cell.channel for cell in marked],
+        shown=False,
         marker={
             "symbol": ["star" if star else "circle" for star in stars],
             "size": [17 if star else 9 for star in stars],
             "color": "#FFFFFE",
             "line": {"width": 1.5, "color": "#000001"},
         },
-        hoverinfo="skip",
-        showlegend=False,
     )
     full = float(np.sqrt(max(top, FAINTEST)))
     shown = _ticks(max(top, FAINTEST))
@@ -159,25 +158,24 @@ def _curve(figure: Figure, cell: Dependence, unit: str, factor: float) -> None:
     values = cell.variable.left
     functions = left
     if not cell.variable.shared:
-        values, functions = (
-            np.concatenate([values, cell.variable.right]),
-            np.concatenate([left, right]),
-        )
+        values = np.concatenate([values, cell.variable.right])
+        functions = np.concatenate([left, right])
     order = np.argsort(values)
     chosen = np.unique(order[np.linspace(0, values.size - 1, _POINTS).astype(int)])
     chosen = chosen[np.argsort(values[chosen])]
-    figure.add_scatter(
-        x=style.small(values[chosen]),
-        y=style.small(factor * (functions[chosen] @ cell.coefficients)),
-        mode="lines",
-        line={"color": style.BLUE, "width": 3},
-        name=cell.form,
-        hovertemplate=f"%{{x:.3g}}: %{{y:+.3g}} {unit}<extra></extra>",
-        showlegend=False,
+    line = {"color": style.BLUE, "width": 3}
+    style.plot(
+        figure,
+        style.small(values[chosen]),
+        style.small(factor * (functions[chosen] @ cell.coefficients)),
+        cell.form,
+        told=f"%{{x:.3g}}: %{{y:+.3g}} {unit}",
+        shown=False,
+        line=line,
     )
     if cell.variable.name == CONSTANT:
         level = factor * float(cell.coefficients[0])
-        figure.add_hline(y=level, line={"color": style.BLUE, "width": 3})
+        figure.add_hline(y=level, line=line)
         figure.add_annotation(
             text=f"{level:+.3g} {unit}, whatever is driven",
             x=0.5,
@@ -206,14 +204,14 @@ def _turns(
     own = np.atleast_2d(cell.coefficients)
     for number, (coefficients, (colour, dash)) in enumerate(zip(own, looks, strict=False)):
         name = run_names[number] if cell.variable.per_run and number < len(run_names) else ""
-        figure.add_scatter(
-            x=style.small(np.degrees(angle)),
-            y=style.small(factor * (waves @ coefficients)),
-            mode="lines",
+        style.plot(
+            figure,
+            style.small(np.degrees(angle)),
+            style.small(factor * (waves @ coefficients)),
+            style.escaped(name),
+            told=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}",
+            shown=bool(name),
             line={"color": colour, "width": 2.5, "dash": dash},
-            name=style.escaped(name),
-            showlegend=bool(name),
-            hovertemplate=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}<extra></extra>",
         )
 
 
@@ -230,11 +228,13 @@ def _floor(cell: Dependence) -> Figure:
         ("more than predicted", error > 0.0, "triangle-up"),
         ("less than predicted", error <= 0.0, "triangle-down"),
     ):
-        figure.add_scatter(
-            x=style.small(x[which]),
-            y=style.small(y[which]),
-            mode="markers",
-            name=name,
+        style.plot(
+            figure,
+            style.small(x[which]),
+            style.small(y[which]),
+            name,
+            told=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}",
+            customdata=style.small(error[which]),
             marker={
                 "symbol": symbol,
                 "size": style.small(5.0 + 7.0 * np.abs(error[which]) / largest),
@@ -242,9 +242,6 @@ def _floor(cell: Dependence) -> Figure:
                 "coloraxis": "coloraxis",
                 "line": {"width": 0},
             },
-            customdata=style.small(error[which]),
-            hovertemplate=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}"
-            "<extra></extra>",
         )
     style.coloured(figure, largest, f"{error_of(cell.amount)}<br>[{unit}]")
     return style.from_above(figure, 480)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -133,18 +134,15 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
         measured, predicted = _legs(diagnosis, robot)
         rows = np.linspace(0, runs.count - 1, min(runs.count, style.MARKS // 4)).astype(int)
         for place, column, factor, unit in ((1, 2, float(np.degrees(1.0)), "°"), (2, 0, 1.0, "m")):
-            figure.add_scatter(
-                x=style.small(factor * predicted[rows, column]),
-                y=style.small(factor * measured[rows, column]),
-                mode="markers",
-                name=name,
-                legendgroup=name,
-                showlegend=place == 1,
+            style.plot(
+                figure,
+                style.small(factor * predicted[rows, column]),
+                style.small(factor * measured[rows, column]),
+                name,
+                group=name,
+                shown=place == 1,
+                told=f"{name}<br>predicted %{{x:.2f}} {unit}, measured %{{y:.2f}} {unit}",
                 marker={"color": style.paled(colour, 0.7), "symbol": symbol, "size": 7},
-                hovertemplate=(
-                    f"{name}<br>predicted %{{x:.2f}} {unit}, measured %{{y:.2f}} {unit}"
-                    "<extra></extra>"
-                ),
                 row=1,
                 col=place,
             )
@@ -156,20 +154,12 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
             for values in (trace.x, trace.y)
         ]
         largest = max((float(np.nanmax(span, initial=0.0)) for span in spans), default=1.0)
-        figure.add_scatter(
-            x=[-largest, largest],
-            y=[-largest, largest],
-            mode="lines",
-            line={"color": style.GREEN, "width": 2, "dash": "dash"},
-            name="measured as predicted",
-            legendgroup="right",
-            showlegend=place == 1,
-            hoverinfo="skip",
-            row=1,
-            col=place,
-        )
-        figure.update_xaxes(title="predicted", row=1, col=place)
-        figure.update_yaxes(title="measured", row=1, col=place)
+        line, ends = {"color": style.GREEN, "width": 2, "dash": "dash"}, [-largest, largest]
+        at: dict[str, Any] = {"row": 1, "col": place}
+        words = "measured as predicted"
+        style.plot(figure, ends, ends, words, group="right", shown=place == 1, line=line, **at)
+        figure.update_xaxes(title="predicted", **at)
+        figure.update_yaxes(title="measured", **at)
     style.plain(figure, height=470)
     return figure.update_layout(margin={"t": 80}, legend={"y": 1.12})
 
@@ -212,22 +202,16 @@ def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: DrivingLimits) -> Figure:
     time = reference.time
     half = 0.5 * robot.track
     figure = style.blank()
-    for side, colour, name in (
-        (1.0, style.BLUE, "left wheel"),
-        (-1.0, style.ORANGE, "right wheel"),
-    ):
+    wheels = ((1.0, style.BLUE, "left wheel"), (-1.0, style.ORANGE, "right wheel"))
+    for side, colour, name in wheels:
         track = place + side * half * 1j * np.exp(1j * yaw)
-        figure.add_scatter(
-            x=style.small(track.real),
-            y=style.small(track.imag),
-            mode="lines",
-            name=f"track of the {name}",
-            line={"color": style.paled(colour, 0.75), "width": 2},
+        style.plot(
+            figure,
+            *style.places(track),
+            f"track of the {name}",
+            told=f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<br>after %{{customdata:.0f}} s",
             customdata=style.small(time),
-            hovertemplate=(
-                f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<br>after %{{customdata:.0f}} s"
-                "<extra></extra>"
-            ),
+            line={"color": style.paled(colour, 0.75), "width": 2},
         )
     _arrows(figure, place, yaw, half)
     _robot(figure, half)
@@ -243,19 +227,9 @@ def _arrows(figure: Figure, place: np.ndarray, yaw: Floats, half: float) -> None
     wanted = (np.arange(_ARROWS) + 0.5) / _ARROWS * length[-1]
     at = np.clip(np.searchsorted(length, wanted), 1, place.size - 1)
     course = np.degrees(np.angle(place[at] - place[at - 1]))
-    figure.add_scatter(
-        x=style.small(place[at].real),
-        y=style.small(place[at].imag),
-        mode="markers",
-        name="way of the robot",
-        marker={
-            "symbol": "arrow",
-            "size": 13,
-            "angle": (90.0 - course).tolist(),
-            "color": style.GREEN,
-        },
-        hoverinfo="skip",
-    )
+    angle = (90.0 - course).tolist()
+    marker = {"symbol": "arrow", "size": 13, "angle": angle, "color": style.GREEN}
+    style.plot(figure, *style.places(place[at]), "way of the robot", marker=marker)
 
 
 def _robot(figure: Figure, half: float) -> None:
@@ -263,25 +237,14 @@ def _robot(figure: Figure, half: float) -> None:
     body = half * np.array(
         [-1.3 - 0.85j, 1.0 - 0.85j, 1.5 + 0j, 1.0 + 0.85j, -1.3 + 0.85j, -1.3 - 0.85j]
     )
-    parts: list[np.ndarray] = [body]
-    for side in (1.0, -1.0):
-        parts.append(
-            half
-            * (
-                np.array([-0.5, 0.5, 0.5, -0.5, -0.5])
-                + 1j * side
-                + 0.12j * np.array([-1, -1, 1, 1, -1])
-            )
-        )
+    tyre = np.array([-0.5, 0.5, 0.5, -0.5, -0.5]) + 0.12j * np.array([-1, -1, 1, 1, -1])
+    parts = [body, *(half * (tyre + 1j * side) for side in (1.0, -1.0))]
     gap = np.array([np.nan + 0j])
-    line = np.concatenate([piece for part in parts for piece in (part, gap)])
-    figure.add_scatter(
-        x=style.small(line.real),
-        y=style.small(line.imag),
-        mode="lines",
-        name="the robot at the start, to scale",
+    style.plot(
+        figure,
+        *style.places(np.concatenate([piece for part in parts for piece in (part, gap)])),
+        "the robot at the start, to scale",
         line={"color": style.INK, "width": 2},
         fill="toself",
         fillcolor=style.paled(style.GREY, 0.25),
-        hoverinfo="skip",
     )

@@ -19,36 +19,11 @@ from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedMa
 from werrimbi_odom.inference.rules import POWER
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
+from werrimbi_odom.report.diagnosis import phrases, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.phrases import (
-    about,
-    also,
-    by_sizes_alone,
-    cost,
-    judged,
-    ruler,
-    sizes,
-    sizes_found,
-    whole,
-)
-from werrimbi_odom.report.diagnosis.remarks import (
-    at_bounds_told,
-    by_headings_alone,
-    coarse_counters,
-    drowned,
-    instead_of_held,
-    law,
-    nearest,
-    not_shown,
-    otherwise,
-    outdated_told,
-    scatter,
-    wandering,
-    without_events,
-)
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.number_format import chance_words, error_words, listed
+from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
 
@@ -68,13 +43,13 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     """All sentences, and the commands of the next step."""
     diagnosis = told.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
-    said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
-    suspect = either_side(diagnosis.ahead_or_behind) + wandering(diagnosis)
+    said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *remarks.otherwise(diagnosis)]
+    suspect = either_side(diagnosis.ahead_or_behind) + remarks.wandering(diagnosis)
     suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
-    left_out += without_events(told) + coarse_counters(diagnosis)
+    left_out += remarks.without_events(told) + remarks.coarse_counters(diagnosis)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out
@@ -117,36 +92,33 @@ _HEADS += ["Next", "But", "Why"]
 
 def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
-    hidden = [sight for sight in told.sights if sight.hidden]
     wanders = reference_wanders(diagnosis)
-    large = drowned(told)
-    old = outdated_told(told)
+    large = remarks.drowned(told)
+    old = remarks.outdated_told(told)
     alike = diagnosis.happened.alike is not None
     noise = not (diagnosis.misfit or wanders or large or old or alike)
     ending = ": the model explains them to their noise." if noise else "."
     if old:
         ending = ", but values of effects in the robot file are off."
-    lines = [f"Nothing is missing that these drives could show{ending}", *old, *law(told)]
+    lines = [f"Nothing is missing that these drives could show{ending}", *old, *remarks.law(told)]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
         like = ", and they look like noise" if noise else ""
-        lines.append(f"Its errors on {judged(told)} are {errors}{like}.")
+        lines.append(f"Its errors on {phrases.judged(told)} are {errors}{like}.")
         lines += large
-    lines += instead_of_held(diagnosis)
+    lines += remarks.instead_of_held(diagnosis)
     if wanders:
         lines.append(
             "But: for seconds together the errors are alike, more than noise is, and the parts of "
             "the drives do not agree on what they go with. So errs a reference that wanders (a "
             "camera, a map that is matched); what is smaller than that is not seen."
         )
-    seen = [sight for sight in told.sights if not sight.hidden]
-    if seen:
+    if not all(sight.hidden for sight in told.sights):
         lines.append(
             "How well that is known: the table says from which size on each effect would have been "
             "seen."
         )
-    if hidden:
-        lines += not_shown(told)
+    lines += remarks.not_shown(told)
     if old:
         return [
             *lines,
@@ -169,16 +141,22 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
         lines.append(f"One thing is missing: {things[0]}." if len(things) == 1 else
                      f"{_count(len(things))} things are missing: "
                      f"{listed(things)}. The most important one first.")  # fmt: skip
-    lines += about(told, name)
+    lines += phrases.about(told, name)
     for other in diagnosis.found[1:]:
         if other not in mistakes(diagnosis):
-            lines += also(told, other)
-    sizes = sizes_found(diagnosis)
-    if sizes:
+            lines += phrases.also(told, other)
+    if sizes := phrases.sizes_found(diagnosis):
         lines.append(f"On the robot: {sizes}.")
-    lines += [*whole(told), *law(told), *scatter(told), *at_bounds_told(diagnosis)]
-    lines += _next_add(told, steps)
-    return [*lines, *by_headings_alone(told.diagnosis), *not_shown(told)]
+    it = "it" if len(diagnosis.found) == 1 else "all of it"
+    return [
+        *lines,
+        *phrases.whole(told),
+        *_remainder(told),
+        f"Next: add {it} to the model, fitted together with all calibration:",
+        f"    {steps.add(diagnosis.found)}",
+        *remarks.by_headings_alone(diagnosis),
+        *remarks.not_shown(told),
+    ]
 
 
 def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
@@ -206,12 +184,11 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     for name in rivals:
         effect = diagnosis.effect_named(name)
         if effect is not None:
-            size = sizes(diagnosis, name, believed=True)
+            size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
-    lines += by_headings_alone(diagnosis)
-    lines += cost(told, rivals[0])
-    move = told.manoeuvre
-    if move is not None:
+    lines += remarks.by_headings_alone(diagnosis)
+    lines += phrases.cost(told, rivals[0])
+    if (move := told.manoeuvre) is not None:
         lines.append(f"Why: {move.why}.")
         lines.append(" ".join((f"Next: {move.do} ({move.name}).", *how_long(move, steps.diagnose))))
     else:
@@ -222,11 +199,11 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     command = steps.add([rivals[0], *rest])
     lines += ["Or, if you know which it is, add it, for example:", f"    {command}"]
     for name in rivals[:3]:
-        lines += ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
+        lines += phrases.ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
-            lines += also(told, other)
-    return [*lines, *law(told), *scatter(told), *at_bounds_told(diagnosis)]
+            lines += phrases.also(told, other)
+    return [*lines, *_remainder(told)]
 
 
 def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
@@ -240,22 +217,19 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     yield f"Then give that drive to `{diagnose}` together with these."
 
 
-def _of_the_same(diagnosis: Diagnosis) -> str:
-    unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
-    return " Give the reference of the same drive." if unrelated else ""
-
-
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     if diagnosis.of_another_drive:
+        unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
+        mend = " Give the reference of the same drive." if unrelated else ""
         return [
             "Nothing can be told of the robot from these drives.",
             "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
-            f"--report draws both paths.{_of_the_same(diagnosis)}",
+            f"--report draws both paths.{mend}",
         ]
     lines = _set_up(diagnosis)
     cells = significant(diagnosis)
-    lines += by_sizes_alone(told)
+    lines += phrases.by_sizes_alone(told)
     lines.append("Something is missing that no effect of the library explains.")
     if cells:
         lines.append(
@@ -272,8 +246,8 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched "
             "scans begin anew with each drive. Motion capture or a localiser's map shows it."
         )
-    lines += nearest(diagnosis)
-    lines += at_bounds_told(diagnosis)
+    lines += remarks.nearest(diagnosis)
+    lines += remarks.at_bounds_told(diagnosis)
     if cells:
         lines.append("Next: write it as an effect of your own, from what these drives show:")
         lines.append(f"    {steps.draft}")
@@ -283,8 +257,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
             "part of a second, a reference that loses its place, or one of another drive look so."
         )
-    if told.manoeuvre is not None:
-        move = told.manoeuvre
+    if (move := told.manoeuvre) is not None:
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
     return lines
 
@@ -294,12 +267,10 @@ def _things(diagnosis: Diagnosis) -> list[str]:
     side = one_wheel(diagnosis)
     if side is None:
         return list(diagnosis.found)
-    radii = [name for name in diagnosis.found if name in _OF_A_WHEEL]
+    of_a_wheel = ("unequal_wheel_radii", "wheel_radius_scale")
+    radii = [name for name in diagnosis.found if name in of_a_wheel]
     told = {radii[0]: f"the size of the {side} wheel ({' with '.join(radii)})", radii[1]: ""}
     return [words for name in diagnosis.found if (words := told.get(name, name))]
-
-
-_OF_A_WHEEL = ("unequal_wheel_radii", "wheel_radius_scale")
 
 
 def _set_up(diagnosis: Diagnosis) -> list[str]:
@@ -309,7 +280,7 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     lines = ["Something is set up wrongly:"] if wrong else []
     for finding in wrong:
         words = finding.words.rstrip(".")
-        lines.append(f"- {words[0].upper()}{words[1:]}: {finding.effect}.")
+        lines.append(f"- {capital(words)}: {finding.effect}.")
     skids = [finding for finding in findings if finding not in wrong]
     return [
         *lines,
@@ -317,13 +288,10 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _next_add(told: Told, steps: NextSteps) -> list[str]:
-    diagnosis = told.diagnosis
-    it = "it" if len(diagnosis.found) == 1 else "all of it"
-    return [
-        f"Next: add {it} to the model, fitted together with all calibration:",
-        f"    {steps.add(diagnosis.found)}",
-    ]
+def _remainder(told: Told) -> list[str]:
+    """What speaks against the model with everything found put in."""
+    bounds = remarks.at_bounds_told(told.diagnosis)
+    return [*remarks.law(told), *remarks.scatter(told), *bounds]
 
 
 def _count(number: int) -> str:

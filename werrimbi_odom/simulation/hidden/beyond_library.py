@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..chassis import Chassis
+from ..chassis import Chassis, WheelPlan
 from ..engine import Engine, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
-from .hidden_effect import Peculiarity
-from .tyres import payloads, weighed, with_channel
+from .hidden_effect import Peculiarity, Rng, resized
+from .tyres import course, payloads, weighed, with_channel
 from .wheels import Side
 
 Floats = NDArray[np.float64]
@@ -28,29 +28,23 @@ class OneTyreByPressure(Peculiarity):
     per_kpa: float
     """Relative increase of that wheel's radius per kilopascal above 180 [1/kPa]."""
 
-    def _pressure(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """Times [s] and pressures [kPa] of a run, to be interpolated linearly."""
-        times = np.concatenate(([0.0], np.cumsum(rng.uniform(6.0, 18.0, 60))))
-        return times, rng.uniform(160.0, 200.0, len(times))
+    def _pressure(self, rng: Rng) -> tuple[Floats, Floats]:
+        """Times [s] and pressures [kPa] of a run."""
+        return course((6.0, 18.0), 60, (160.0, 200.0), rng)
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radius of the wheel with the pressure."""
-        times, pressures = self._pressure(rng)
-        wheel = chassis.left if self.side == "left" else chassis.right
+        pressures = self._pressure(rng)
 
-        def reshape(engine: Engine, stride: Stride) -> None:
-            beyond = float(np.interp(stride.time, times, pressures)) - 180.0
-            engine.set_radius(self.side, wheel.radius * (1 + self.per_kpa * beyond))
+        def factor(stride: Stride) -> float:
+            return 1 + self.per_kpa * (float(np.interp(stride.time, *pressures)) - 180.0)
 
-        return reshape
+        return resized([getattr(chassis, self.side)], factor)
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the column of the pressure gauge."""
-        measured = np.interp(recording.t_s, *self._pressure(rng))
-        measured = measured + 0.3 * rng.standard_normal(len(measured))
-        return with_channel(recording, f"{self.side}_tyre_kpa", measured)
+        pressure = np.interp(recording.t_s, *self._pressure(rng))
+        return with_channel(recording, f"{self.side}_tyre_kpa", pressure, 0.3, rng)
 
 
 @dataclass(frozen=True)
@@ -63,7 +57,7 @@ class BaseByPayload(Peculiarity):
     broadening: float
     """Relative increase of the base per kilogram [1/kg]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Subtract the part of the turn that the wider base does not make."""
         times, loads = payloads(rng)
 
@@ -74,9 +68,7 @@ class BaseByPayload(Peculiarity):
 
         return shift
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the column of the scale."""
         return weighed(recording, np.interp(recording.t_s, *payloads(rng)), rng)
 
@@ -89,9 +81,9 @@ class OneTyreBackwards(Peculiarity):
     loss: float
     """Relative decrease of its radius while it rolls backwards."""
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radius of the wheel with its direction of rolling."""
-        wheel = chassis.left if self.side == "left" else chassis.right
+        wheel: WheelPlan = getattr(chassis, self.side)
 
         def reshape(engine: Engine, stride: Stride) -> None:
             travel = stride.left if self.side == "left" else stride.right
@@ -112,13 +104,11 @@ class SlideByTiltAndPayload(Peculiarity):
     creep: float
     """Creep to the right per metre driven, per radian of tilt and kilogram [1/(rad kg)]."""
 
-    def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
-        """Times [s] and payloads [kg]; times [s] and tilts [rad]; to be interpolated."""
-        loads = payloads(rng)
-        times = np.concatenate(([0.0], np.cumsum(rng.uniform(2.0, 8.0, 120))))
-        return loads, (times, rng.uniform(-0.12, 0.12, len(times)))
+    def _measured(self, rng: Rng) -> tuple[tuple[Floats, Floats], ...]:
+        """Times [s] and payloads [kg]; times [s] and tilts [rad] of a run."""
+        return payloads(rng), course((2.0, 8.0), 120, (-0.12, 0.12), rng)
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Creep to the right along the whole path."""
         loads, tilts = self._measured(rng)
 
@@ -128,15 +118,12 @@ class SlideByTiltAndPayload(Peculiarity):
 
         return shift
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the columns of scale and inclinometer."""
-        loads, (times, tilts) = self._measured(rng)
+        loads, tilts = self._measured(rng)
         weighed_too = weighed(recording, np.interp(recording.t_s, *loads), rng)
-        measured = np.interp(recording.t_s, times, tilts)
-        measured = measured + 1e-3 * rng.standard_normal(len(measured))
-        return with_channel(weighed_too, "tilt_rad", measured)
+        tilt = np.interp(recording.t_s, *tilts)
+        return with_channel(weighed_too, "tilt_rad", tilt, 1e-3, rng)
 
 
 @dataclass(frozen=True)
@@ -150,29 +137,23 @@ class OneTyreByLoadOverPressure(Peculiarity):
     flattening: float
     """Relative decrease of that wheel's radius per payload over pressure [kPa/kg]."""
 
-    def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
+    def _measured(self, rng: Rng) -> tuple[tuple[Floats, Floats], ...]:
         """Times [s] and payloads [kg]; times [s] and pressures [kPa] of a run."""
-        loads = payloads(rng)
-        times = np.concatenate(([0.0], np.cumsum(rng.uniform(6.0, 18.0, 60))))
-        return loads, (times, rng.uniform(60.0, 240.0, len(times)))
+        return payloads(rng), course((6.0, 18.0), 60, (60.0, 240.0), rng)
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radius of the wheel with payload and pressure."""
         loads, pressures = self._measured(rng)
-        wheel = chassis.left if self.side == "left" else chassis.right
 
-        def reshape(engine: Engine, stride: Stride) -> None:
-            pressed = float(np.interp(stride.time, *loads) / np.interp(stride.time, *pressures))
-            engine.set_radius(self.side, wheel.radius * (1 - self.flattening * pressed))
+        def factor(stride: Stride) -> float:
+            pressed = np.interp(stride.time, *loads) / np.interp(stride.time, *pressures)
+            return 1 - self.flattening * float(pressed)
 
-        return reshape
+        return resized([getattr(chassis, self.side)], factor)
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the columns of scale and pressure gauge."""
-        loads, (times, pressures) = self._measured(rng)
+        loads, pressures = self._measured(rng)
         weighed_too = weighed(recording, np.interp(recording.t_s, *loads), rng)
-        measured = np.interp(recording.t_s, times, pressures)
-        measured = measured + 0.3 * rng.standard_normal(len(measured))
-        return with_channel(weighed_too, f"{self.side}_tyre_kpa", measured)
+        pressure = np.interp(recording.t_s, *pressures)
+        return with_channel(weighed_too, f"{self.side}_tyre_kpa", pressure, 0.3, rng)

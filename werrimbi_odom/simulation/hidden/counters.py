@@ -8,20 +8,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..recording import Recording
 from ..robot import TrueRobot
-from ..sensors import count
-from .hidden_effect import Counted, Peculiarity
+from ..sensors import Counts, count
+from .hidden_effect import Counted, Peculiarity, Rng
 from .wheels import Side
-
-Floats = NDArray[np.float64]
-
-
-def _angle(recording: Recording, side: Side) -> Floats:
-    path = recording.true_path
-    return path.left_angle_rad if side == "left" else path.right_angle_rad
 
 
 def _rows(recording: Recording) -> Iterator[tuple[float, float, float]]:
@@ -33,18 +25,10 @@ def _rows(recording: Recording) -> Iterator[tuple[float, float, float]]:
     )
 
 
-def _ticks(recording: Recording, side: Side) -> NDArray[np.int64]:
-    return recording.left_ticks if side == "left" else recording.right_ticks
-
-
-def _with_ticks(recording: Recording, side: Side, ticks: NDArray[np.int64]) -> Recording:
+def _with_ticks(recording: Recording, side: Side, ticks: Counts) -> Recording:
     if side == "left":
         return replace(recording, left_ticks=ticks)
     return replace(recording, right_ticks=ticks)
-
-
-def _resolution(robot: TrueRobot, side: Side) -> float:
-    return robot.left_ticks_per_revolution if side == "left" else robot.right_ticks_per_revolution
 
 
 @dataclass(frozen=True)
@@ -60,18 +44,17 @@ class MissedTicks(Peculiarity):
     above: float
     """Threshold of the rim speed [m/s]."""
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Remove the lost counts."""
-        t, angle = recording.true_path.t_s, _angle(recording, self.side)
-        seen = self.counted(robot)
-        counted = np.array([seen(*row) for row in _rows(recording)])
-        resolution = _resolution(robot, self.side)
-        missing = count(t, angle, recording.t_s, resolution) - count(
-            t, counted[:, 0 if self.side == "left" else 1], recording.t_s, resolution
+        path, seen = recording.true_path, self.counted(robot)
+        counted = np.array([seen(*row) for row in _rows(recording)])[:, int(self.side == "right")]
+        resolution: float = getattr(robot, f"{self.side}_ticks_per_revolution")
+        exact, lossy = (
+            count(path.t_s, angle, recording.t_s, resolution)
+            for angle in (getattr(path, f"{self.side}_angle_rad"), counted)
         )
-        return _with_ticks(recording, self.side, _ticks(recording, self.side) - missing)
+        ticks: Counts = getattr(recording, f"{self.side}_ticks")
+        return _with_ticks(recording, self.side, ticks - (exact - lossy))
 
     def counted(self, robot: TrueRobot) -> Counted:
         """Both shaft angles, that of this side reduced by the loss so far."""
@@ -105,9 +88,7 @@ class EncoderSkew(Peculiarity):
         """Time from the stamp to the later reading [s]."""
         return max(self.delay, 0.0)
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Shift the right counter by the delay."""
         t, angle = recording.true_path.t_s, recording.true_path.right_angle_rad
         resolution = robot.right_ticks_per_revolution
@@ -120,9 +101,7 @@ class EncoderSkew(Peculiarity):
 class WheelsSwapped(Peculiarity):
     """Left and right counters are exchanged."""
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Exchange the columns."""
         left, right = recording.left_ticks, recording.right_ticks
         return replace(recording, left_ticks=right, right_ticks=left)
@@ -134,8 +113,6 @@ class WheelReversed(Peculiarity):
 
     side: Side
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Negate the counter."""
-        return _with_ticks(recording, self.side, -_ticks(recording, self.side))
+        return _with_ticks(recording, self.side, -getattr(recording, f"{self.side}_ticks"))

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..engine import Shift, Shifter, Stride
 from ..robot import TrueRobot
-from .hidden_effect import Peculiarity
+from .hidden_effect import MovesEachStride, Peculiarity, Rng
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class LongitudinalSlip(Peculiarity):
     """Share of the travel lost per acceleration of the wheel [s^2/m]. For a tyre of stiffness C
     under a mass m it is m / C."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Each wheel lags by coefficient * acceleration * path."""
         return _falling_back(self.coefficient, 0.0, robot)
 
@@ -39,7 +39,7 @@ class CoulombSlip(Peculiarity):
     above: float
     """Threshold of the wheel's acceleration [m/s^2]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Each wheel lags by coefficient * (|acceleration| - above) * path."""
         return _falling_back(self.coefficient, self.above, robot)
 
@@ -61,25 +61,21 @@ def _falling_back(coefficient: float, above: float, robot: TrueRobot) -> Shifter
 
 
 @dataclass(frozen=True)
-class LateralSlip(Peculiarity):
+class LateralSlip(MovesEachStride):
     """Tyres creep outwards in curves."""
 
     creep: float
     """Outward speed per centripetal acceleration (speed times yaw rate) [s]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
         """Sideways motion of -creep * speed * turn."""
-
-        def shift(stride: Stride) -> Shift:
-            speed = (stride.left + stride.right) / 2 / stride.period
-            turn = (stride.right - stride.left) / robot.wheel_separation
-            return Shift(0.0, -self.creep * speed * turn, 0.0)
-
-        return shift
+        speed = (stride.left + stride.right) / 2 / stride.period
+        turn = (stride.right - stride.left) / robot.wheel_separation
+        return Shift(0.0, -self.creep * speed * turn, 0.0)
 
 
 @dataclass(frozen=True)
-class TurnDependentTrack(Peculiarity):
+class TurnDependentTrack(MovesEachStride):
     """The effective wheel base depends on the kind of turn."""
 
     coefficient: float
@@ -88,19 +84,15 @@ class TurnDependentTrack(Peculiarity):
     on: Literal["sharpness", "sense"]
     """Sharpness is |R - L| / (|R| + |L|): 0 on a line, 1 in pivots and spins."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
         """Subtract the part of the turn that the wider base does not make."""
-
-        def shift(stride: Stride) -> Shift:
-            difference = stride.right - stride.left
-            total = abs(stride.right) + abs(stride.left)
-            if total < 1e-9:
-                return Shift(0.0, 0.0, 0.0)
-            how = abs(difference) / total if self.on == "sharpness" else np.sign(difference)
-            grown = 1 + self.coefficient * float(how)
-            return Shift(0.0, 0.0, difference / robot.wheel_separation * (1 / grown - 1))
-
-        return shift
+        difference = stride.right - stride.left
+        total = abs(stride.right) + abs(stride.left)
+        if total < 1e-9:
+            return Shift(0.0, 0.0, 0.0)
+        how = abs(difference) / total if self.on == "sharpness" else np.sign(difference)
+        grown = 1 + self.coefficient * float(how)
+        return Shift(0.0, 0.0, difference / robot.wheel_separation * (1 / grown - 1))
 
 
 @dataclass(frozen=True)
@@ -116,7 +108,7 @@ class CastorKick(Peculiarity):
     lead: float = 2e-3
     """Travel that counts as a reversal [m]; excludes the settling of a motor at a stop."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Distribute the change of heading over the path after a reversal."""
         direction = 0.0
         against = 0.0

@@ -7,15 +7,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from ..engine import Shift, Shifter, Stride
+from ..engine import Shift, Stride
 from ..robot import TrueRobot
-from .hidden_effect import Peculiarity
+from .hidden_effect import MovesEachStride
 
 
 @dataclass(frozen=True)
-class FloorSlope(Peculiarity):
+class FloorSlope(MovesEachStride):
     """On a slope tyres creep downhill while they roll."""
 
     creep: float
@@ -23,19 +21,15 @@ class FloorSlope(Peculiarity):
     downhill: float
     """Downhill direction in the world [rad]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
         """Drift in a fixed direction of the world."""
-
-        def shift(stride: Stride) -> Shift:
-            drift = self.creep * abs(stride.left + stride.right) / 2
-            bearing = self.downhill - stride.pose.yaw
-            return Shift(drift * math.cos(bearing), drift * math.sin(bearing), 0.0)
-
-        return shift
+        drift = self.creep * abs(stride.left + stride.right) / 2
+        bearing = self.downhill - stride.pose.yaw
+        return Shift(drift * math.cos(bearing), drift * math.sin(bearing), 0.0)
 
 
 @dataclass(frozen=True)
-class GrainedFloor(Peculiarity):
+class GrainedFloor(MovesEachStride):
     """A ribbed floor: across the ribs a wheel's contact path is longer than the way travelled."""
 
     gain: float
@@ -43,19 +37,15 @@ class GrainedFloor(Peculiarity):
     grain: float
     """Direction of the grain in the world [rad]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
         """Change of the distance by the direction of motion relative to the grain."""
-
-        def shift(stride: Stride) -> Shift:
-            along = (stride.left + stride.right) / 2
-            off = stride.pose.yaw - self.grain
-            return Shift(self.gain * along * (math.cos(off) ** 2 - math.sin(off) ** 2), 0.0, 0.0)
-
-        return shift
+        along = (stride.left + stride.right) / 2
+        off = stride.pose.yaw - self.grain
+        return Shift(self.gain * along * (math.cos(off) ** 2 - math.sin(off) ** 2), 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class SlipperySpot(Peculiarity):
+class SlipperySpot(MovesEachStride):
     """An oil stain: a wheel on it travels less than it rolls. Outside the library."""
 
     loss: float
@@ -65,26 +55,22 @@ class SlipperySpot(Peculiarity):
     radius: float
     """Centre in the world, and radius [m]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
         """Loss of each wheel by its position."""
         half = robot.wheel_separation / 2
 
-        def lost(travel: float, stride: Stride, along_axle: float) -> float:
+        def lost(travel: float, along_axle: float) -> float:
             x = stride.pose.x - along_axle * math.sin(stride.pose.yaw)
             y = stride.pose.y + along_axle * math.cos(stride.pose.yaw)
             on_it = math.hypot(x - self.x, y - self.y) < self.radius
             return self.loss * travel if on_it else 0.0
 
-        def shift(stride: Stride) -> Shift:
-            left = -lost(stride.left, stride, half)
-            right = -lost(stride.right, stride, -half)
-            return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
-
-        return shift
+        left, right = -lost(stride.left, half), -lost(stride.right, -half)
+        return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
 
 
 @dataclass(frozen=True)
-class CablePull(Peculiarity):
+class CablePull(MovesEachStride):
     """A dragged cable turns the robot towards one direction. Outside the library."""
 
     rate: float
@@ -92,11 +78,7 @@ class CablePull(Peculiarity):
     towards: float
     """The direction in the world [rad]."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
         """Turn proportional to the sine of the angle to that direction."""
-
-        def shift(stride: Stride) -> Shift:
-            path = abs(stride.left + stride.right) / 2
-            return Shift(0.0, 0.0, self.rate * path * math.sin(self.towards - stride.pose.yaw))
-
-        return shift
+        path = abs(stride.left + stride.right) / 2
+        return Shift(0.0, 0.0, self.rate * path * math.sin(self.towards - stride.pose.yaw))

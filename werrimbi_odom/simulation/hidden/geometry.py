@@ -13,8 +13,9 @@ PLAUSIBLE = 1.15
 """Largest plausible factor: beyond it, the error is in the robot file and not in the robot."""
 
 
-def _believable(factor: float) -> bool:
-    return 1 / PLAUSIBLE <= factor <= PLAUSIBLE
+def _of_robot_and_file(factor: float) -> tuple[float, float]:
+    """Factors of the true robot, and of what its file says: the other one is 1."""
+    return (factor, 1.0) if 1 / PLAUSIBLE <= factor <= PLAUSIBLE else (1.0, factor)
 
 
 @dataclass(frozen=True)
@@ -25,15 +26,12 @@ class TrackWidth(Peculiarity):
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
         """Change the true base, if the factor is plausible."""
-        if not _believable(self.multiplier):
-            return robot
-        return replace(robot, wheel_separation=robot.wheel_separation * self.multiplier)
+        true, _ = _of_robot_and_file(self.multiplier)
+        return replace(robot, wheel_separation=robot.wheel_separation * true)
 
     def written(self, robot: TrueRobot) -> TrueRobot:
         """Otherwise a wrong base in the robot file, for example half the base or millimetres."""
-        if _believable(self.multiplier):
-            return robot
-        base = robot.nominal.wheel_separation / self.multiplier
+        base = robot.nominal.wheel_separation / _of_robot_and_file(self.multiplier)[1]
         return replace(robot, nominal=replace(robot.nominal, wheel_separation=base))
 
 
@@ -45,19 +43,13 @@ class WheelRadiusScale(Peculiarity):
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
         """Change the true radii, if the factor is plausible."""
-        if not _believable(self.multiplier):
-            return robot
-        return replace(
-            robot,
-            left_wheel_radius=robot.left_wheel_radius * self.multiplier,
-            right_wheel_radius=robot.right_wheel_radius * self.multiplier,
-        )
+        true, _ = _of_robot_and_file(self.multiplier)
+        left, right = robot.left_wheel_radius * true, robot.right_wheel_radius * true
+        return replace(robot, left_wheel_radius=left, right_wheel_radius=right)
 
     def written(self, robot: TrueRobot) -> TrueRobot:
         """Otherwise a wrong radius in the robot file, for example the diameter or millimetres."""
-        if _believable(self.multiplier):
-            return robot
-        radius = robot.nominal.wheel_radius / self.multiplier
+        radius = robot.nominal.wheel_radius / _of_robot_and_file(self.multiplier)[1]
         return replace(robot, nominal=replace(robot.nominal, wheel_radius=radius))
 
 

@@ -4,16 +4,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..chassis import Chassis
-from ..engine import Reshaper, Shifter
+from ..chassis import Chassis, WheelPlan
+from ..engine import Engine, Reshaper, Shift, Shifter, Stride
 from ..recording import Happened, Recording
 from ..robot import TrueRobot
 from ..sensors import ReferenceSensor
+
+Rng = np.random.Generator
 
 Counted = Callable[[float, float, float], tuple[float, float]]
 """Maps time and both shaft angles, period by period, to the angles that are counted."""
@@ -39,11 +41,11 @@ class Peculiarity:
         """The body in the engine."""
         return chassis
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter | None:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter | None:
         """Motion in addition to rolling, without forces."""
         return None
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper | None:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper | None:
         """Changes of the body during the drive."""
         return None
 
@@ -63,14 +65,34 @@ class Peculiarity:
         """Largest time by which a record is later than its own stamp [s]."""
         return 0.0
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """The recording."""
         return recording
 
-    def happened(
-        self, until: float, robot: TrueRobot, rng: np.random.Generator
-    ) -> tuple[Happened, ...]:
+    def happened(self, until: float, robot: TrueRobot, rng: Rng) -> tuple[Happened, ...]:
         """Abrupt events of a drive up to `until` [s], for truth.json."""
         return ()
+
+
+class MovesEachStride(Peculiarity):
+    """A hidden effect that moves the robot in each stride, whatever came before."""
+
+    def shift(self, stride: Stride, robot: TrueRobot) -> Shift:
+        """Motion in addition to rolling."""
+        raise NotImplementedError
+
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
+        """`shift` for this robot."""
+        return lambda stride: self.shift(stride, robot)
+
+
+def resized(wheels: Iterable[WheelPlan], factor: Callable[[Stride], float]) -> Reshaper:
+    """Give wheels their first radius times a factor, which may change with each stride."""
+    wheels = tuple(wheels)
+
+    def reshape(engine: Engine, stride: Stride) -> None:
+        by = factor(stride)
+        for wheel in wheels:
+            engine.set_radius(wheel.side, wheel.radius * by)
+
+    return reshape

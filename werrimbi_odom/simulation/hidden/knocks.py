@@ -16,7 +16,7 @@ import numpy as np
 from ..engine import PERIOD, Shift, Shifter, Stride
 from ..recording import Happened, Recording
 from ..robot import TrueRobot
-from .hidden_effect import Peculiarity
+from .hidden_effect import Peculiarity, Rng
 
 Kind = Literal["push", "heading_kick", "bump", "wheel_slip"]
 
@@ -24,7 +24,7 @@ FIRST, APART = 3.0, 5.0
 """Earliest time of the first event, and least time between two events [s]."""
 
 
-def instants(every: float, until: float, rng: np.random.Generator) -> list[tuple[float, float]]:
+def instants(every: float, until: float, rng: Rng) -> list[tuple[float, float]]:
     """Random times [s] and signs (+1 or -1) of events, one in `every` seconds on average."""
     found = []
     time = FIRST + float(rng.uniform(0.0, every))
@@ -58,7 +58,7 @@ class Knock(Peculiarity):
             return Shift(side * self.size, 0.0, 0.0)
         return Shift(-self.size / 2, 0.0, side * self.size / robot.wheel_separation)
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Motion of each event in equal parts over its duration."""
         knocks = instants(self.every, 3600.0, rng)
         parts = round(self.lasts / PERIOD)
@@ -77,9 +77,7 @@ class Knock(Peculiarity):
 
         return shift
 
-    def happened(
-        self, until: float, robot: TrueRobot, rng: np.random.Generator
-    ) -> tuple[Happened, ...]:
+    def happened(self, until: float, robot: TrueRobot, rng: Rng) -> tuple[Happened, ...]:
         """Events at the middle of their duration."""
         return tuple(
             Happened(self.kind, time + self.lasts / 2, *self._moved(side, robot))
@@ -98,34 +96,26 @@ class ReferenceJump(Peculiarity):
     every: float = 25.0
     """Mean time between jumps [s]."""
 
-    def _jumps(self, until: float, rng: np.random.Generator) -> list[tuple[float, float]]:
-        """Times [s] and directions [rad] of the jumps."""
+    def _jumps(self, until: float, rng: Rng) -> list[tuple[float, complex]]:
+        """Times [s] and sizes x + iy [m] of the jumps."""
         found = instants(self.every, until, rng)
-        return [(time, float(rng.uniform(-math.pi, math.pi))) for time, _ in found]
+        way = [float(rng.uniform(-math.pi, math.pi)) for _ in found]
+        jumps = [complex(self.size * math.cos(at), self.size * math.sin(at)) for at in way]
+        return [(time, jump) for (time, _), jump in zip(found, jumps, strict=True)]
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Displace poses of the reference."""
         x, y = recording.reference_x_m.copy(), recording.reference_y_m.copy()
-        for time, direction in self._jumps(float(recording.t_s[-1]), rng):
+        for time, jump in self._jumps(float(recording.t_s[-1]), rng):
             first = int(np.searchsorted(recording.reference_t_s, time))
             rows = slice(first, None if self.stays else first + 1)
-            x[rows] += self.size * math.cos(direction)
-            y[rows] += self.size * math.sin(direction)
+            x[rows] += jump.real
+            y[rows] += jump.imag
         return replace(recording, reference_x_m=x, reference_y_m=y)
 
-    def happened(
-        self, until: float, robot: TrueRobot, rng: np.random.Generator
-    ) -> tuple[Happened, ...]:
+    def happened(self, until: float, robot: TrueRobot, rng: Rng) -> tuple[Happened, ...]:
         """Jumps in the reference's frame."""
         return tuple(
-            Happened(
-                "reference_jump",
-                time,
-                self.size * math.cos(direction),
-                self.size * math.sin(direction),
-                0.0,
-            )
-            for time, direction in self._jumps(until, rng)
+            Happened("reference_jump", time, jump.real, jump.imag, 0.0)
+            for time, jump in self._jumps(until, rng)
         )

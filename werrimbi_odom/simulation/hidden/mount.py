@@ -13,7 +13,7 @@ from ..engine import AxlePose
 from ..recording import Recording
 from ..robot import TrueRobot
 from ..sensors import ReferenceSensor, wrap
-from .hidden_effect import Peculiarity
+from .hidden_effect import Peculiarity, Rng
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,7 @@ class WarmingGyro(Peculiarity):
     unrest: float = 0.5
     """Additional random walk of the bias over one second, as a share of its drift in one second."""
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the integral of the bias to the measured yaw."""
         rate = self.rate * float(rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 1.5))
         time = recording.reference_t_s

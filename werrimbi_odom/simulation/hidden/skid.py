@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..engine import Shift, Shifter, Stride
 from ..robot import TrueRobot
-from .hidden_effect import Peculiarity
+from .hidden_effect import Peculiarity, Rng
 
 LENGTH = 0.35
 """Distance from the rear to the front wheels [m]."""
@@ -43,7 +43,7 @@ class SkidSteer(Peculiarity):
         """List two wheels per side, as the user knows their number."""
         return replace(robot, wheels_a_side=2)
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Motion by the force balance minus the motion by rolling of the engine's two wheels."""
         along, sideways, turn = self.spin(robot.wheel_separation)
         rolled = 2.0 / robot.wheel_separation
@@ -80,7 +80,7 @@ class SkidSteer(Peculiarity):
         return np.asarray(np.linalg.solve(matrix, pushed))
 
 
-def skid_steer(multiplier: float, rng: np.random.Generator) -> SkidSteer:
+def skid_steer(multiplier: float, rng: Rng) -> SkidSteer:
     """A robot with its centre of mass near the middle."""
     front, left = rng.uniform(*SIDE_BY_SIDE, 2)
     return SkidSteer(multiplier, float(front), float(left))

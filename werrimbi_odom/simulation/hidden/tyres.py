@@ -13,7 +13,7 @@ from ..chassis import Chassis
 from ..engine import Engine, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
-from .hidden_effect import Peculiarity
+from .hidden_effect import Peculiarity, Rng, resized
 
 Floats = NDArray[np.float64]
 
@@ -21,20 +21,30 @@ GRAVITY = 9.81
 """Acceleration of gravity [m/s^2]."""
 
 
-def with_channel(recording: Recording, name: str, values: Floats) -> Recording:
-    """The recording with an additional column."""
-    return replace(recording, channels={**recording.channels, name: values})
+def with_channel(
+    recording: Recording, name: str, values: Floats, noise: float, rng: Rng
+) -> Recording:
+    """The recording with a column that is measured with white noise of this size."""
+    measured = values + noise * rng.standard_normal(len(values))
+    return replace(recording, channels={**recording.channels, name: measured})
 
 
-def payloads(rng: np.random.Generator) -> tuple[Floats, Floats]:
+def course(
+    every: tuple[float, float], count: int, among: tuple[float, float], rng: Rng
+) -> tuple[Floats, Floats]:
+    """Random times [s], so far apart, and values of a run, to be interpolated linearly."""
+    times = np.concatenate(([0.0], np.cumsum(rng.uniform(*every, count))))
+    return times, rng.uniform(*among, len(times))
+
+
+def payloads(rng: Rng) -> tuple[Floats, Floats]:
     """Times [s] and payloads [kg] of a run."""
-    times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
-    return times, rng.uniform(0.0, 10.0, len(times))
+    return course((8.0, 20.0), 60, (0.0, 10.0), rng)
 
 
-def weighed(recording: Recording, loads: Floats, rng: np.random.Generator) -> Recording:
+def weighed(recording: Recording, loads: Floats, rng: Rng) -> Recording:
     """The recording with the column of a scale that has a noise of 50 g."""
-    return with_channel(recording, "payload_kg", loads + 0.05 * rng.standard_normal(len(loads)))
+    return with_channel(recording, "payload_kg", loads, 0.05, rng)
 
 
 @dataclass(frozen=True)
@@ -44,32 +54,28 @@ class RadiusFollowsTemperature(Peculiarity):
     expansion: float
     """Relative increase per kelvin above 20 degrees Celsius [1/K]."""
 
-    def _temperature(self, rng: np.random.Generator) -> tuple[float, float, float, float]:
+    def _temperature(self, rng: Rng) -> tuple[float, float, float, float]:
         """Temperature of a run: mean [C], swing [K], angular frequency [rad/s], phase [rad]."""
         mean, swing, period, phase = rng.uniform(
             (16.0, 3.0, 20.0, 0.0), (30.0, 9.0, 60.0, 2 * np.pi)
         )
         return float(mean), float(swing), float(2 * np.pi / period), float(phase)
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radii with the temperature."""
         mean, swing, frequency, phase = self._temperature(rng)
 
-        def reshape(engine: Engine, stride: Stride) -> None:
+        def factor(stride: Stride) -> float:
             warmth = mean + swing * np.sin(frequency * stride.time + phase) - 20.0
-            for wheel in chassis.wheels:
-                engine.set_radius(wheel.side, wheel.radius * float(1 + self.expansion * warmth))
+            return float(1 + self.expansion * warmth)
 
-        return reshape
+        return resized(chassis.wheels, factor)
 
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the column of the thermometer."""
         mean, swing, frequency, phase = self._temperature(rng)
-        measured = mean + swing * np.sin(frequency * recording.t_s + phase)
-        measured += 0.1 * rng.standard_normal(len(measured))
-        return with_channel(recording, "wheel_temperature_c", measured)
+        warmth = mean + swing * np.sin(frequency * recording.t_s + phase)
+        return with_channel(recording, "wheel_temperature_c", warmth, 0.1, rng)
 
 
 @dataclass(frozen=True)
@@ -86,20 +92,15 @@ class RadiusFollowsPayload(Peculiarity):
         values = np.column_stack((loads[:-1], loads[1:])).ravel()
         return np.asarray(np.interp(at, knots, values))
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radii with the payload."""
-        times, loads = payloads(rng)
+        loads = payloads(rng)
+        return resized(
+            chassis.wheels,
+            lambda stride: 1 - self.yielding * float(self._load(stride.time, *loads)),
+        )
 
-        def reshape(engine: Engine, stride: Stride) -> None:
-            load = float(self._load(stride.time, times, loads))
-            for wheel in chassis.wheels:
-                engine.set_radius(wheel.side, wheel.radius * (1 - self.yielding * load))
-
-        return reshape
-
-    def recording(
-        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
-    ) -> Recording:
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Add the column of the scale."""
         return weighed(recording, self._load(recording.t_s, *payloads(rng)), rng)
 
@@ -112,7 +113,7 @@ class TyreSquash(Peculiarity):
     """Relative decrease of the radius at the angular speed of a wheel of the initial radius at 1
     m/s; negative for an increase. Centrifugal force and relaxation depend on angular speed."""
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radius of each wheel with its own speed."""
 
         def reshape(engine: Engine, stride: Stride) -> None:
@@ -141,7 +142,7 @@ class LoadTransfer(Peculiarity):
     """The same height over the distance from axle to skid, for the longitudinal part; negative if
     the driven wheels are unloaded as the robot accelerates; 0 for none."""
 
-    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Each wheel travels less or more by the change of its radius."""
         before = 0.0
 

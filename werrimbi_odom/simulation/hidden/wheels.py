@@ -12,13 +12,14 @@ import numpy as np
 
 from ..chassis import Chassis, WheelPlan
 from ..engine import Engine, Reshaper, Shift, Stride
-from .hidden_effect import Peculiarity
+from .hidden_effect import Peculiarity, Rng, resized
 
 Side = Literal["left", "right"]
 
 
-def with_wheel(chassis: Chassis, side: Side, wheel: WheelPlan) -> Chassis:
+def with_wheel(chassis: Chassis, side: Side, **changes: float) -> Chassis:
     """`chassis` with another wheel on one side."""
+    wheel: WheelPlan = replace(getattr(chassis, side), **changes)
     return replace(chassis, left=wheel) if side == "left" else replace(chassis, right=wheel)
 
 
@@ -35,8 +36,7 @@ class EccentricWheel(Peculiarity):
 
     def chassis(self, chassis: Chassis) -> Chassis:
         """Offset the wheel from its axle."""
-        wheel = replace(getattr(chassis, self.side), offset=self.amplitude, phase=self.phase)
-        return with_wheel(chassis, self.side, wheel)
+        return with_wheel(chassis, self.side, offset=self.amplitude, phase=self.phase)
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,7 @@ class OvalWheel(Peculiarity):
     def chassis(self, chassis: Chassis) -> Chassis:
         """Replace the sphere by an ellipsoid."""
         wheel: WheelPlan = getattr(chassis, self.side)
-        oval = replace(wheel, ovality=self.amplitude / wheel.radius)
-        return with_wheel(chassis, self.side, oval)
+        return with_wheel(chassis, self.side, ovality=self.amplitude / wheel.radius)
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class TreadBump(Peculiarity):
         ahead, behind = (min(max(end, -1.0), 1.0) for end in ends)
         return self.thickness * 0.25 * (3.0 * (ahead - behind) - (ahead**3 - behind**3))
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Move the robot by the additional travel while the hub is higher.
 
         If its radius changes within a revolution, a rigid wheel of the engine loses contact, and
@@ -112,7 +111,7 @@ class Backlash(Peculiarity):
     def chassis(self, chassis: Chassis) -> Chassis:
         """Add play between wheel and shaft."""
         wheel: WheelPlan = getattr(chassis, self.side)
-        return with_wheel(chassis, self.side, replace(wheel, play=self.travel / wheel.radius))
+        return with_wheel(chassis, self.side, play=self.travel / wheel.radius)
 
 
 @dataclass(frozen=True)
@@ -123,15 +122,13 @@ class RadiusDrift(Peculiarity):
     """Relative increase per metre of path or per second."""
     per: Literal["metre", "second"]
 
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+    def reshaper(self, chassis: Chassis, rng: Rng) -> Reshaper:
         """Change the radii a little after each period."""
         distance = 0.0
 
-        def reshape(engine: Engine, stride: Stride) -> None:
+        def factor(stride: Stride) -> float:
             nonlocal distance
             distance += abs(stride.left + stride.right) / 2
-            grown = 1 + self.rate * (distance if self.per == "metre" else stride.time)
-            for wheel in chassis.wheels:
-                engine.set_radius(wheel.side, wheel.radius * grown)
+            return 1 + self.rate * (distance if self.per == "metre" else stride.time)
 
-        return reshape
+        return resized(chassis.wheels, factor)

@@ -14,7 +14,7 @@ from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
-from werrimbi_odom.report.number_format import chance_words, error_words, listed
+from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.leg_selection import CellPart
 from werrimbi_odom.workbench.session import Diagnosed
@@ -177,7 +177,7 @@ def _following(tab: Tab, found: Diagnosed) -> None:
         return
     text("h3", "What to do next")
     minutes = f", for about {manoeuvre.minutes:.0f} min" if manoeuvre.minutes else ""
-    text("p", f"{manoeuvre.do[0].upper()}{manoeuvre.do[1:]}{minutes}: {manoeuvre.why}.")
+    text("p", f"{capital(manoeuvre.do)}{minutes}: {manoeuvre.why}.")
     if "manoeuvre" in found.figures:
         figure(
             found.figures["manoeuvre"],
@@ -258,8 +258,8 @@ def _map(tab: Tab, diagnosis: Diagnosis) -> None:
             with box("div", "right"):
                 pressed = best.get((tab.part.variable, tab.part.channel))
                 if pressed is not None:
-                    words = dependence_words(pressed)
-                    text("p", f"{words[0].upper()}{words[1:]} ({chance_words(pressed.p_value)}).")
+                    words = capital(dependence_words(pressed))
+                    text("p", f"{words} ({chance_words(pressed.p_value)}).")
                 floor(tab)
 
 

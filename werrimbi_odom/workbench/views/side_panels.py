@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from nicegui import ui
 
 from werrimbi_odom.effects.effect_docstring import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.document import Table
+from werrimbi_odom.report.number_format import capital
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
@@ -31,7 +33,7 @@ def floor(tab: Tab) -> None:
     else:
         rest = figures_of(comparison, ~chosen)
         told = (
-            f"{part.words[0].upper()}{part.words[1:]}: {figures.count} legs, {error} rms; "
+            f"{capital(part.words)}: {figures.count} legs, {error} rms; "
             f"the other {rest.count}: {millimetres(rest.rmse_position_m)}."
         )
     with box("section", "floor", aria_label="The floor"):
@@ -65,16 +67,12 @@ def _which_drives(tab: Tab) -> None:
         tab.changed("drives-held" if held_out else "drives-fitted")
 
     with box("div", "tabs", role="group", aria_label="Which drives"):
-        button(
-            tab,
-            "fitted drives", lambda: choose(False), key="drives-fitted",
-            aria_pressed="false" if tab.held_out else "true",
-        )  # fmt: skip
-        button(
-            tab,
-            "held-out drives", lambda: choose(True), key="drives-held",
-            aria_pressed="true" if tab.held_out else "false",
-        )  # fmt: skip
+        for held_out, words, key in (
+            (False, "fitted drives", "drives-fitted"),
+            (True, "held-out drives", "drives-held"),
+        ):
+            pressed = str(tab.held_out == held_out).lower()
+            button(tab, words, partial(choose, held_out), key=key, aria_pressed=pressed)
 
 
 def why(tab: Tab, name: str) -> None:
@@ -86,7 +84,9 @@ def why(tab: Tab, name: str) -> None:
     page = page_of(effect)
     with box("section", "why", aria_label=f"About {name}", tabindex="0"):
         text("h3", f"What is {name}?", tabindex="-1", data_key=f"page-{name}")
-        _sketch(effect)
+        drawn = effect_sketch(effect)  # trusted: it holds no text of a record
+        if drawn is not None:
+            ui.html(drawn, sanitize=False)
         for paragraph in page.physics:
             text("p", paragraph)
         with box("dl"):
@@ -101,10 +101,3 @@ def why(tab: Tab, name: str) -> None:
                 unit = f" [{item.unit}]" if item.unit else ""
                 text("dt", f"{parameter}{unit}")
                 text("dd", f"{item.says}; {numbers(effect, parameter)}")
-
-
-def _sketch(effect: Effect) -> None:
-    """The sketch of an effect, if any; trusted HTML without text of a record."""
-    drawn = effect_sketch(effect)
-    if drawn is not None:
-        ui.html(drawn, sanitize=False)

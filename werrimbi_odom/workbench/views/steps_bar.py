@@ -1,41 +1,30 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The strip with the four steps, the held-out error, undo and redo; and the page while opening."""
+"""The bar that is always visible: the four steps, the held-out error, undo and redo."""
 
 from __future__ import annotations
 
-import time
-from typing import Any
-
 import numpy as np
-from nicegui import ui
 
-from werrimbi_odom.workbench.drawings import measured_drawing
 from werrimbi_odom.workbench.html import box, button, text
-from werrimbi_odom.workbench.tab import VIEWS, Opening, Tab, millimetres, percent
+from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
 
 TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
 
 
-def strip(tab: Tab) -> None:
-    """The whole strip."""
-    with box("div", "strip"):
+def steps_bar(tab: Tab) -> None:
+    """The whole bar."""
+    with box("div", "steps-bar"):
         with box("nav", "steps", aria_label="The four steps"):
             for number, view in enumerate(VIEWS, start=1):
                 _step(tab, number, view)
         _meter(tab)
         busy = tab.job is not None
         with box("div", "history", role="group", aria_label="History"):
-            button(
-                tab,
-                "↶ Undo", tab.undo, key="undo", disabled=busy or not tab.session.can_undo,
-                title="take the last effect out again",
-            )  # fmt: skip
-            button(
-                tab,
-                "↷ Redo", tab.redo, key="redo", disabled=busy or not tab.session.can_redo,
-                title="put it in again",
-            )  # fmt: skip
+            off, title = busy or not tab.session.can_undo, "take the last effect out again"
+            button(tab, "↶ Undo", tab.undo, key="undo", disabled=off, title=title)
+            off, title = busy or not tab.session.can_redo, "put it in again"
+            button(tab, "↷ Redo", tab.redo, key="redo", disabled=off, title=title)
 
 
 def _step(tab: Tab, number: int, view: str) -> None:
@@ -96,59 +85,11 @@ def _bars(tab: Tab, errors: list[float]) -> None:
     top = max((error for error in every if np.isfinite(error)), default=0.0)
     if len(every) < 2 or not top > 0.0:
         return
-    names = [step.name for step in tab.session.steps]
-    told = ", ".join(
-        f"{name} {millimetres(error)}" for name, error in zip(names, every, strict=True)
-    )
+    pairs = list(zip([step.name for step in tab.session.steps], every, strict=True))
+    told = ", ".join(f"{name} {millimetres(error)}" for name, error in pairs)
     with box("div", "bars", role="img", aria_label=f"Bar by bar: {told}"):
-        for index, (name, error) in enumerate(zip(names, every, strict=True)):
+        for index, (name, error) in enumerate(pairs):
             kind = "bar" if index < len(errors) else "bar undone"
             height = 100.0 * error / top if np.isfinite(error) else 0.0
             bar = box("div", kind, title=f"{name}: {millimetres(error)}")
             bar.style(f"height: {height:.0f}%")
-
-
-def under_way(tab: Tab) -> None:
-    """Running work: its progress, and a button to cancel it."""
-    job = tab.job
-    if job is None:
-        return
-    name = "Diagnosing" if type(job.task).__name__ == "Diagnose" else "Fitting"
-    with box("section", "work", aria_label="Work under way"):
-        words = text("p", f"{name} …")
-        bar: Any = box("progress", max="1", value="0", aria_label=f"{name}, share done")
-        button(tab, "Cancel", tab.cancel, key="cancel")
-
-    def look() -> None:
-        seconds = time.monotonic() - job.begun
-        words.set_text(f"{name}: {job.words} ({100.0 * job.share:.0f} %, {seconds:.0f} s)")
-        bar.props["value"] = f"{job.share:.3f}"
-
-    ui.timer(0.2, look)
-
-
-def opening_view(opening: Opening) -> None:
-    """The page before the comparison is done: the measured paths."""
-    with box("header"), box("div", "title"):
-        text("h1", "werrimbi workbench")
-        runs = (*opening.given.runs, *opening.given.holdout)
-        text("p", f"{opening.given.source.path.name}: {len(runs)} drives.")
-    with box("section", "work", aria_label="Work under way"):
-        words = text("p", "Comparing …")
-        bar: Any = box("progress", max="1", value="0", aria_label="Comparing, share done")
-    drawn = measured_drawing(runs)
-    if drawn is not None:
-        text("h2", "Measured paths; where the model fails on them is being worked out")
-        ui.html(drawn, sanitize=False)
-
-    def look() -> None:
-        words.set_text(f"Comparing: {opening.job.words} ({100.0 * opening.job.share:.0f} %)")
-        bar.props["value"] = f"{opening.job.share:.3f}"
-
-    ui.timer(0.2, look)
-
-
-def failed_view(reason: str) -> None:
-    """The error on opening; the command prints the same and ends."""
-    text("h1", "werrimbi workbench")
-    text("p", f"These drives cannot be opened: {reason}", "verdict", role="alert")
