@@ -165,7 +165,7 @@ def test_it_is_named_and_lasts() -> None:
 
 
 def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> None:
-    """It was *unknown*, or a reference mounted askew: the rates, each drive's own, counted as none."""
+    """It was *unknown*, or a reference askew: the rates, each drive's own, counted as none."""
     runs = []
     for run, rate in zip(runs_of(PLAIN, (1, 2, 3, 4), 60), (8e-5, 12e-5, 10e-5, 9e-5), strict=True):
         assert run.reference is not None
