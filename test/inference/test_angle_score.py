@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.run_phases import fitted_per_run
 from werrimbi_odom.inference.fitting.score_tests import Candidate, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
-from werrimbi_odom.inference.rules import SURE
+from werrimbi_odom.inference.rules import LITTLE_OF_A_LAW, SURE
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.terminal import as_text
@@ -35,6 +35,8 @@ from werrimbi_odom.report.terminal import as_text
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 PLACES = (0.3, 1.9, -2.0, 3.0)
 RATES = (6e-5, -4e-5, 3e-5, -7e-5)
+SETTLES = 20.0
+"""Time constant of a chip's warmth [s]."""
 TRIES = np.array(find("left_tread_bump").parameters["place"].tries)
 
 
@@ -160,6 +162,23 @@ def test_it_is_named_and_lasts() -> None:
     laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
     best = search_round(laid, fit_calibration(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
     assert homogeneity_of_effect(laid, best.tried[0], "reference_gyro_drift") < SURE
+
+
+def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> None:
+    """It was *unknown*, or a reference askew: the rates, each drive's own, counted as none."""
+    runs = []
+    for run, rate in zip(runs_of(PLAIN, (1, 2, 3, 4), 60), (8e-5, 12e-5, 10e-5, 9e-5), strict=True):
+        assert run.reference is not None
+        since = run.reference.time - run.ticks.time[0]
+        bias = rate * SETTLES * (since - SETTLES * (1.0 - np.exp(-since / SETTLES)))
+        runs.append(replace(run, reference=replace(run.reference, yaw=run.reference.yaw + bias)))
+    drift = replace(find("reference_gyro_drift").using(), unknown=("rate",))
+    told = diagnose(runs[:3], replace(PLAIN, effects=(drift,)), effects=LIBRARY, holdout=runs[3:])
+    assert told.verdict == "none"
+    assert told.misfit is not None
+    assert told.misfit.effect == "reference_gyro_drift"
+    assert told.misfit.share is not None
+    assert told.misfit.share < LITTLE_OF_A_LAW
 
 
 def test_matched_scans_have_neither_a_gyro_nor_headings_that_come_later() -> None:

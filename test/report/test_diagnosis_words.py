@@ -13,7 +13,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.report.diagnosis import phrases
+from werrimbi_odom.report.diagnosis import phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
 from werrimbi_odom.report.diagnosis.remarks import drowned, nearest, not_shown
 
@@ -134,3 +134,19 @@ def test_one_that_is_known_says_it_all() -> None:
     assert hang_together([value(0.040, 0.004), value(-0.075, 0.071)]) == ""
     assert hang_together([value(0.040, 0.044)]) == ""
     assert hang_together([value(0.04, 0.044), value(0.1, 0.2, determined=False)]) == ""
+
+
+@pytest.mark.parametrize(
+    ("own_axes", "verdict", "or_the_floor"),
+    [(True, "none", True), (True, "unknown", False), (False, "none", False)],
+)
+def test_by_scans_a_change_may_be_the_floor_s(
+    monkeypatch: pytest.MonkeyPatch, own_axes: bool, verdict: str, or_the_floor: bool
+) -> None:
+    """A floor's grain was told as a lidar mounted otherwise, and the floor not named at all."""
+    monkeypatch.setattr(words, "changes_words", lambda *_: ["In arcs alone it was otherwise."])
+    runs = SimpleNamespace(runs=(SimpleNamespace(name="arcs"),), own_axes=own_axes)
+    diagnosis = SimpleNamespace(runs=runs, robot=ROBOT, verdict=verdict)
+    told: Any = SimpleNamespace(diagnosis=diagnosis, changes=(SimpleNamespace(surely_from="arcs"),))
+    said = " ".join(words._changes(told))
+    assert ("Or the floor is why. What lies on the floor" in said) == or_the_floor

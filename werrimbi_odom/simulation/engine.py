@@ -13,7 +13,15 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from .chassis import IMPEDANCE, STEP, TIME_CONSTANT, Chassis, shaft_joint, to_mjcf
+from .chassis import (
+    IMPEDANCE,
+    SKID_BEHIND,
+    STEP,
+    TIME_CONSTANT,
+    Chassis,
+    shaft_joint,
+    to_mjcf,
+)
 
 Floats = NDArray[np.float64]
 
@@ -90,11 +98,13 @@ class Engine:
         # Views of the engine's memory: a new look-up in each step would cost as much as the step.
         self._q, self._v, self._speeds = self._data.qpos, self._data.qvel, self._data.ctrl
         self._x, self._y, self._yaw = (self._place(name) for name in ("x", "y", "yaw"))
+        self._z, self._pitch, self._roll = (self._place(name) for name in ("z", "pitch", "roll"))
         self._wheels = [self._place(wheel.side) for wheel in chassis.wheels]
         self._shafts = [self._place(shaft_joint(wheel)) for wheel in chassis.wheels]
         giving = chassis.giving
         self._gives = [self._place(f"{giving.side}_give")] if giving else []
         self._radii = {wheel.side: wheel.radius for wheel in chassis.wheels}
+        self._hubs = {wheel.side: wheel.y for wheel in chassis.wheels}
         self._data.qpos[self._wheels] = angles
         self._data.qpos[self._shafts] = angles
         self._data.act[:] = angles
@@ -149,9 +159,21 @@ class Engine:
         return self._radii[side]
 
     def set_radius(self, side: str, radius: float) -> None:
-        """Change the rolling radius of a wheel to `radius` [m]."""
-        self._grow(side, radius - self._radii[side])
+        """Change the rolling radius of a wheel to `radius` [m].
+
+        Its hub rises by as much, and the other tyre and the skid stay on the floor; wheels roll as
+        the body tilts. Contacts are micrometres deep: a tyre that shrank under a hub at rest would
+        lose the floor, and slip until the hub has fallen as far.
+        """
+        by = radius - self._radii[side]
+        self._grow(side, by)
         self._radii[side] = radius
+        own, other = self._hubs[side], next(y for at, y in self._hubs.items() if at != side)
+        roll = by / (own - other)
+        rise = -roll * other
+        pitch = -rise / SKID_BEHIND
+        self._q[[self._z, self._pitch, self._roll]] += (rise, pitch, roll)
+        self.move([Shift(radius * pitch, 0.0, 0.0)])
 
     def advance(self, left_speed: float, right_speed: float) -> None:
         """Hold the commanded motor speeds [rad/s] for one PERIOD."""

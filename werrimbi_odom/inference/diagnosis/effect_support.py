@@ -35,6 +35,8 @@ class Support(NamedTuple):
 def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
     """Support of a candidate, by evaluation on the steps of recorded runs."""
     effect = candidate.effect
+    if effect.stage == "reference" and _view_of(effect).wander != 0.0:
+        return _OF_A_GYRO
     if effect.stage not in ("wheels", "body"):
         return Support(frozenset(), frozenset())
     seen = watched(drive)
@@ -77,9 +79,15 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
 
 def _of_a_gyro(effect: Effect) -> bool:
     """Whether an effect is of headings that another sensor gives than places."""
-    usual = {name: item.typical for name, item in effect.parameters.items()}
-    view = effect.apply(View(), **usual)
+    view = _view_of(effect)
     return bool(view.heading_delay != 0.0 or view.wander != 0.0)
+
+
+def _view_of(effect: Effect) -> View:
+    """The view of a reference with an effect of the usual size."""
+    usual = {name: item.typical for name, item in effect.parameters.items()}
+    view: View = effect.apply(View(), **usual)
+    return view
 
 
 def _without(
@@ -93,6 +101,10 @@ def _reads(effect: Effect, inputs: frozenset[str], drive: Drive[Floats]) -> bool
     shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
     return not inputs.isdisjoint(support_of(Candidate(effect, shape), drive).inputs)
 
+
+_OF_A_GYRO = Support(frozenset({"time"}), frozenset({"sideways", "heading"}))
+"""Of a heading that drifts with time: in axes that turn, what is driven ahead goes sideways. Other
+views of a reference are geometry, exact, and leave nothing of a law."""
 
 _OF_WHEELS = {
     (False, False): frozenset[str](),

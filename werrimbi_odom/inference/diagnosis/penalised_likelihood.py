@@ -328,8 +328,8 @@ def wald_statistic(name: str, design: Design, covariance: Floats, point: Point) 
             continue
         applied = next(item for item in point.model.robot.effects if item.name == name)
         declared = applied.effect.parameters[parameter]
-        if declared.tries or declared.per_run:
-            continue
+        if declared.tries or parameter in (applied.effect.quadrature or ())[1:]:
+            continue  # a shape, or a phase: it has no null
         chosen.append(index)
         away.append(point.model.value(number, max(run, 0)) - declared.null)
     if not chosen:

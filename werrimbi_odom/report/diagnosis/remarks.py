@@ -62,6 +62,16 @@ def little_words(misfit: Misfit) -> str:
     )
 
 
+def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
+    """That effects of the floor are not among those asked for, where axes begin anew."""
+    if not diagnosis.runs.own_axes:
+        return []
+    return [
+        "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched scans "
+        "begin anew with each drive. Motion capture or a localiser's map shows it."
+    ]
+
+
 def wandering(diagnosis: Diagnosis) -> list[str]:
     """Remark that the reference was taken as absolute, and wanders."""
     wander = diagnosis.wander

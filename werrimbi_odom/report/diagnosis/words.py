@@ -76,9 +76,11 @@ def _changes(told: Told) -> list[str]:
     drives = [run.name for run in told.diagnosis.runs.runs]
     last = max(drives.index(change.surely_from) for change in told.changes)
     alone = " That alone may be why no effect explains them all."
+    floor = [] if told.diagnosis.verdict == "unknown" else remarks.floor_not_asked(told.diagnosis)
     return [
         "The robot was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
+        *(f"Or the floor is why. {words}" for words in floor),
         "What follows takes them for one robot, the mean of both. For what it is now, ask again "
         f"with the drives from {drives[last]} on alone."
         + (alone if told.diagnosis.verdict == "unknown" else ""),
@@ -241,11 +243,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
                 f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
                 "the one may go with the other because of how it was driven."
             )
-    if diagnosis.runs.own_axes:
-        lines.append(
-            "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched "
-            "scans begin anew with each drive. Motion capture or a localiser's map shows it."
-        )
+    lines += remarks.floor_not_asked(diagnosis)
     lines += remarks.nearest(diagnosis)
     lines += remarks.at_bounds_told(diagnosis)
     if cells:
