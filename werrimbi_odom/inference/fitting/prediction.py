@@ -227,14 +227,16 @@ def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> 
     turn = path.yaw[end] - path.yaw[begin]
     moved = np.exp(-1j * path.yaw[begin]) * (path.position[end] - path.position[begin])
     point = complex(view.ahead, view.left)
-    first, last = np.full(runs.count, view.yaw), np.full(runs.count, view.yaw)
+    first = last = view.yaw
     if view.heading_delay != 0.0:
-        first += _late(path, runs, begin, view.heading_delay)
-        last += _late(path, runs, end, view.heading_delay)
+        first = first + _late(path, runs, begin, view.heading_delay)
+        last = last + _late(path, runs, end, view.heading_delay)
     if np.any(view.wander):
-        first += view.drifted(_since_start(runs, begin))
-        last += view.drifted(_since_start(runs, end))
-    shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
+        first = first + view.drifted(_since_start(runs, begin))
+        last = last + view.drifted(_since_start(runs, end))
+    if point:
+        moved = moved + (np.exp(1j * turn) - 1.0) * point
+    shown = np.exp(-1j * first) * moved
     turned = turn + last - first
     if runs.headings_alone:
         turned = view.scale * turned
