@@ -62,6 +62,6 @@ def castor_kick(
                spins as well, so drive spins both ways
     """
     since = drive.since_reversal
-    swing = (exp(-since.start / length) - exp(-since.end / length)) * (drive.reversals > 0.0)
+    swing = (exp(since.start / -length) - exp(since.end / -length)) * (drive.reversals > 0.0)
     kick = angle + alternating * drive.direction
     return motion._replace(turn=motion.turn + kick * swing)

@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from functools import cache, partial
+from itertools import pairwise
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -206,43 +207,48 @@ def _smooth(means: Floats, duration: Floats) -> Span[Floats]:
 def _shuttled(travel: Floats, flicker: float) -> _Shuttled:
     """Travel since reversal over a whole run; the same as `drive_memory` step by step.
 
-    Only steps that set a new extreme or reverse matter. Between reversals the farthest point is a
-    running extreme, so the loop runs over reversals and not over steps.
+    Between reversals the farthest point is a running extreme.
     """
     position = np.cumsum(travel)
-    count = position.size
-    since_start, since_end = np.zeros(count), np.zeros(count)
-    direction, reversals = np.zeros(count), np.zeros(count)
+    size = position.size
     moved = np.flatnonzero(np.abs(position) > flicker)
-    if moved.size == 0:
-        return _Shuttled(Span(since_start, since_end), direction, reversals)
-    begin, turned_at = int(moved[0]), 0.0
-    sign, number = (1.0 if position[begin] > 0.0 else -1.0), 0
-    while begin < count:
-        end, farthest = _until_reversal(position, begin, sign, flicker)
-        leg = slice(begin, end)
-        since_end[leg] = np.abs(farthest - turned_at)
-        since_start[leg] = np.concatenate([[0.0], since_end[begin : end - 1]])
-        direction[leg], reversals[leg] = sign, number
-        if end < count:
-            turned_at, sign, number = float(farthest[-1]), -sign, number + 1
-        begin = end
-    return _Shuttled(Span(since_start, since_end), direction, reversals)
+    begins = [] if moved.size == 0 else [int(moved[0])]
+    signs, turned_at = [0.0], [0.0]
+    if begins:
+        signs.append(1.0 if position[begins[0]] > 0.0 else -1.0)
+        turned_at.append(0.0)
+        for begin, at in _reversals(position, travel, begins[0], signs[1], flicker):
+            begins.append(begin)
+            signs.append(-signs[-1])
+            turned_at.append(at)
+    bounds = [0, *begins, size]
+    counts = np.diff(bounds)
+    direction = np.repeat(signs, counts)
+    reversals = np.repeat(np.maximum(np.arange(-1.0, counts.size - 1), 0.0), counts)
+    since = direction * (position - np.repeat(turned_at, counts))
+    for first, last in pairwise(bounds):
+        np.maximum.accumulate(since[first:last], out=since[first:last])
+    before = np.concatenate([np.zeros(1), since[:-1]])
+    before[begins] = 0.0
+    return _Shuttled(Span(before, since), direction, reversals)
 
 
-def _until_reversal(
-    position: Floats, begin: int, sign: float, flicker: float
-) -> tuple[int, Floats]:
-    """First step after `begin` that has reversed, and the farthest point until then."""
-    window = 256
-    while True:
-        end = min(begin + window, position.size)
-        ahead = sign * position[begin:end]
-        farthest = np.maximum.accumulate(ahead)
-        back = farthest - ahead > flicker
-        first = int(back.argmax())
-        if back[first]:
-            return begin + first, sign * farthest[:first]
-        if end == position.size:
-            return end, sign * farthest
-        window *= 4
+def _reversals(
+    position: Floats, travel: Floats, begin: int, sign: float, flicker: float
+) -> Iterator[tuple[int, float]]:
+    """Yield the first step of each reversal after `begin`, and the farthest point before it.
+
+    Only where the travel changes its sign can a farthest point be, so the loop runs over these.
+    """
+    rolled = begin + np.flatnonzero(travel[begin:])
+    ends = rolled[:-1][travel[rolled[:-1]] * travel[rolled[1:]] < 0.0]
+    ends = np.append(ends, position.size - 1)
+    first, farthest = begin, float(position[begin])
+    for end, place in zip(ends.tolist(), position[ends].tolist(), strict=True):
+        if sign * (place - farthest) > 0.0:
+            farthest = place
+        elif sign * (farthest - place) > flicker:
+            beyond = sign * (farthest - position[first : end + 1]) > flicker
+            yield first + int(beyond.argmax()), farthest
+            sign, farthest = -sign, place
+        first = end

@@ -143,13 +143,14 @@ def followed(motion: BodyMotion[Floats]) -> tuple[NDArray[np.complex128], Floats
 
     For repeated passes over one run.
     """
-    position = np.zeros(motion.turn.size + 1, dtype=np.complex128)
+    position = np.empty(motion.turn.size + 1, dtype=np.complex128)
     machine = compiled_for(motion.turn.size, follow, again=True)
     if machine is None:
         x, y, yaw = integrated(Pose(), motion)
         position.real, position.imag = x, y
     else:
-        yaw = np.zeros(position.size)
+        yaw = np.empty(position.size)
+        position[0] = yaw[0] = 0.0
         steps = BodyMotion(*map(np.ascontiguousarray, motion))
         machine(steps, position.view(np.float64).reshape(-1, 2), yaw)
     return position, yaw

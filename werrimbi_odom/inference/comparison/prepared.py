@@ -249,8 +249,12 @@ def _group(
 
 def jumped_in(group: ReferenceGroup, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
     """Legs that a jump of the reference invalidates, shape (m,)."""
-    both = zip(group.jumps, runs.runs, strict=True)
-    return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
+
+    def of_each(runs: Concatenated) -> NDArray[np.bool_]:
+        both = zip(group.jumps, runs.runs, strict=True)
+        return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
+
+    return runs.known(("jumped", kind), of_each)
 
 
 def judged_by(prepared: PreparedRuns) -> Literal["position", "heading"]:

@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter, Model
 from werrimbi_odom.inference.fitting.identifiable import Directions
-from werrimbi_odom.inference.fitting.prediction import predict_all, predicted_legs, turns_over
+from werrimbi_odom.inference.fitting.prediction import predict_all, predicted_on_path, turns_over
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.model.pose import Floats
@@ -33,7 +33,7 @@ def gauss_newton(
             return point, number > 0
         for shorter in _shorter_steps(design, ways, step):
             tried = replace(point, model=moved(point.model, design, shorter))
-            ahead = replace(prediction, relative=predicted_legs(tried.model, runs))
+            ahead = replace(prediction, relative=predicted_on_path(tried.model, runs))
             if not turns_over(prediction.relative, ahead.relative):
                 cost = float(np.sum(unexpected(runs, tried, ahead).whitened() ** 2))
                 if cost < best:

@@ -82,6 +82,13 @@ def predicted_legs(model: Model, runs: Concatenated, looked_at: Robot | None = N
     return _shown(path, runs, view, model.drifts)
 
 
+def predicted_on_path(model: Model, runs: Concatenated) -> Floats:
+    """As `predicted_legs`, by a path that is kept: for a model whose noise is asked for next."""
+    view = extrinsics_of(model, runs)
+    runs = runs.delayed(view.delay)
+    return _shown(path_of(model, runs), runs, view, model.drifts)
+
+
 def turns_over(before: Floats, after: Floats) -> bool:
     """Whether a leg turns by a whole turn more or less than before, relative poses (m, 3).
 
@@ -99,7 +106,7 @@ def predict_all(model: Model, runs: Concatenated) -> Prediction:
 def _predicted(model: Model, runs: Concatenated) -> Prediction:
     view = extrinsics_of(model, runs)
     runs = runs.delayed(view.delay)
-    path = _path_of(model, runs)
+    path = path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
         *noise_of_legs(path, runs, model.robot.track, view),
@@ -227,14 +234,17 @@ def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> 
     turn = path.yaw[end] - path.yaw[begin]
     moved = np.exp(-1j * path.yaw[begin]) * (path.position[end] - path.position[begin])
     point = complex(view.ahead, view.left)
-    first, last = np.full(runs.count, view.yaw), np.full(runs.count, view.yaw)
+    first: float | Floats = view.yaw
+    last: float | Floats = view.yaw
     if view.heading_delay != 0.0:
-        first += _late(path, runs, begin, view.heading_delay)
-        last += _late(path, runs, end, view.heading_delay)
+        first = first + _late(path, runs, begin, view.heading_delay)
+        last = last + _late(path, runs, end, view.heading_delay)
     if np.any(view.wander):
-        first += view.drifted(_since_start(runs, begin))
-        last += view.drifted(_since_start(runs, end))
-    shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
+        first = first + view.drifted(_since_start(runs, begin))
+        last = last + view.drifted(_since_start(runs, end))
+    if point:
+        moved = moved + (np.exp(1j * turn) - 1.0) * point
+    shown = np.exp(-1j * first) * moved
     turned = turn + last - first
     if runs.headings_alone:
         turned = view.scale * turned
