@@ -60,7 +60,7 @@ def test_a_direction_that_the_fit_held_takes_no_part() -> None:
     runs = laid_out(GIVEN, range(1, 3))
     fit = fit_calibration(runs, GIVEN)
     white, slopes = fit.design.flat()
-    almost = slopes[:, 0] + 1e-4 * np.random.default_rng(2).normal(size=white.size)
+    almost = slopes[:, 0] * (1.0 + 1e-3 * np.random.default_rng(2).normal(size=white.size))
     design = replace(
         fit.design,
         slopes=np.column_stack([slopes, almost]).reshape(*fit.design.white.shape, -1),
