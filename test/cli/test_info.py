@@ -386,10 +386,8 @@ def test_coarse_counts_at_one_speed_are_counts() -> None:
     assert found.ticks == 20.0
 
 
-def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """In the middle of a hall a lidar sees nothing; the command that is printed works."""
+def in_a_hall(folder: Path, *scans: str, gyro: bool = True) -> Path:
+    """A bag with a gyro, or none, and lidars that see nothing."""
     ros, lidar = Messages(), Lidar()
     run = run_of(ROBOT, 1, 40)
     assert run.reference is not None
@@ -401,10 +399,17 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     rates = np.gradient(np.unwrap(run.reference.yaw), run.reference.time)
     for time, rate in zip(run.reference.time, rates, strict=True):
         stamp = round(1e9 * (DAY + time))
-        entries.append(("/imu", stamp, ros.imu(stamp, rate)))
+        entries += [("/imu", stamp, ros.imu(stamp, rate))] if gyro else []
         nothing = np.full(lidar.beams, np.inf)
-        entries.append(("/scan", stamp, ros.scan(stamp, lidar, nothing)))
-    bag = ros.write(tmp_path / "hall", sorted(entries, key=lambda entry: entry[1]))
+        entries += [(scan, stamp, ros.scan(stamp, lidar, nothing)) for scan in scans]
+    return ros.write(folder, sorted(entries, key=lambda entry: entry[1]))
+
+
+def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In the middle of a hall a lidar sees nothing; the command that is printed works."""
+    bag = in_a_hall(tmp_path / "hall", "/scan")
     assert main(["info", str(bag), "--reference-topic", "/scan"]) == 0
     printed = capsys.readouterr().out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
@@ -412,6 +417,18 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     said = " ".join(capsys.readouterr().out.split())
     assert "its yaw rate is integrated). It is taken." in said
     assert "It can show what happens at reversals" in said
+
+
+def test_what_cannot_be_judged_either_does_not_lead_back(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The folder is called as a ROS 1 bag's file is: `ros2 bag record -o hall.bag`."""
+    bag = in_a_hall(tmp_path / "hall.bag", "/scan", "/stable_scan", gyro=False)
+    assert main(["info", str(bag)]) == 0
+    printed = capsys.readouterr().out
+    assert "By /scan nothing can be judged" in " ".join(printed.split())
+    assert main(shlex.split(printed.splitlines()[-1].strip())[1:]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "Nothing of it can be judged."
 
 
 def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(
