@@ -247,21 +247,37 @@ def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> N
     assert "Whether it can show base and radii is said once --robot gives their sizes." in said
 
 
+def in_a_hall(folder: Path, *scans: str, turning: bool = True) -> Path:
+    """A bag with a gyro, or none, and lidars that see nothing."""
+    ros, lidar, run = Messages(), Lidar(), run_of(ROBOT, 1, 40)
+    turned = list(gyro(ros, run))
+    nothing = np.full(lidar.beams, np.inf)
+    seen = [(scan, at, ros.scan(at, lidar, nothing)) for _, at, _ in turned for scan in scans]
+    entries = [*joints(ros, run), *(turned if turning else []), *seen]
+    return ros.write(folder, sorted(entries, key=lambda entry: entry[1]))
+
+
 def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """In the middle of a hall a lidar sees nothing; the command that is printed works."""
-    ros, lidar, run = Messages(), Lidar(), run_of(ROBOT, 1, 40)
-    turned = list(gyro(ros, run))
-    nothing = np.full(lidar.beams, np.inf)
-    seen = [("/scan", at, ros.scan(at, lidar, nothing)) for _, at, _ in turned]
-    entries = sorted([*joints(ros, run), *turned, *seen], key=lambda entry: entry[1])
-    bag = ros.write(tmp_path / "hall", entries)
+    bag = in_a_hall(tmp_path / "hall", "/scan")
     printed = werrimbi("info", bag, "--reference-topic", "/scan").out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
     said = werrimbi(*shlex.split(printed.splitlines()[-1].strip())[1:]).words
     assert "its yaw rate is integrated). It is taken." in said
     assert "It can show what happens at reversals" in said
+
+
+def test_what_cannot_be_judged_either_does_not_lead_back(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """The folder is called as a ROS 1 bag's file is: `ros2 bag record -o hall.bag`."""
+    bag = in_a_hall(tmp_path / "hall.bag", "/scan", "/stable_scan", turning=False)
+    printed = werrimbi("info", bag).out
+    assert "By /scan nothing can be judged" in " ".join(printed.split())
+    again = werrimbi(*shlex.split(printed.splitlines()[-1].strip())[1:]).out
+    assert again.splitlines()[-1] == "Nothing of it can be judged."
 
 
 def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(

@@ -15,10 +15,11 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.free_parameters import START_YAW
+from werrimbi_odom.inference.fitting.free_parameters import START_YAW, changed
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, turns_over
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
@@ -67,6 +68,26 @@ def test_positions_of_a_point_far_from_the_axle_start_in_its_direction(wrong: fl
     found = complex(effect.values["x"], effect.values["y"]) / ANTENNA
     assert 0.5 < abs(found) < 1.5  # where a fit starts
     assert abs(np.angle(found)) < 0.5
+
+
+def test_sizes_that_stood_in_for_a_lever_arm_do_not_stay() -> None:
+    """Spins on the spot do not tell unequal wheels from a point beside the axle."""
+    spin = run_by(ROBOT, np.full(600, 0.002), np.full(600, -0.39), seed=1)
+    seen = spin.reference
+    assert seen is not None
+    east, north = (0.36 * swing(seen.yaw) for swing in (np.cos, np.sin))
+    ahead = replace(spin, reference=replace(seen, x=seen.x + east, y=seen.y + north))
+    runs = concatenated(match_for_fit([ahead], ROBOT, 1.0))
+    before = fit_calibration(runs, ROBOT)
+    model = before.point.model
+    apart = {"left_wheel_radius_multiplier": 0.7, "right_wheel_radius_multiplier": 1.3}
+    point = replace(before.point, model=replace(model, robot=changed(model.robot, apart)))
+    astray = replace(before, point=point, calibrated=())
+    (fit,) = search_round(runs, astray, [find("reference_lever_arm")], ROBOT).tried
+    (effect,) = fit.point.model.robot.effects
+    assert not fit.at_bound
+    assert effect.values["x"] == pytest.approx(0.36, abs=2e-3)
+    assert effect.values["y"] == pytest.approx(0.0, abs=2e-3)
 
 
 @pytest.mark.parametrize("point", [0.063 - 0.04j, -0.02 + 0.06j])

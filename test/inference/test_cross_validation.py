@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
@@ -54,6 +55,22 @@ def test_an_effect_that_is_there_holds() -> None:
     assert promised == pytest.approx(fall, rel=0.1)
 
 
+def test_a_direction_that_the_fit_held_takes_no_part() -> None:
+    """A spin hardly tells a point beside the axle from unequal wheels: one of them is held."""
+    runs = laid_out(GIVEN, range(1, 3))
+    fit = fit_calibration(runs, GIVEN)
+    white, slopes = fit.design.flat()
+    almost = slopes[:, 0] * (1.0 + 1e-3 * np.random.default_rng(2).normal(size=white.size))
+    design = replace(
+        fit.design,
+        slopes=np.column_stack([slopes, almost]).reshape(*fit.design.white.shape, -1),
+        columns=(*fit.design.columns, fit.design.columns[0]),
+    )
+    moves = np.vstack([fit.moves, np.zeros(fit.moves.shape[1])])
+    with_held = replace(fit, design=design, moves=moves)
+    assert cross_validated_cost(runs, with_held) == pytest.approx(cross_validated_cost(runs, fit))
+
+
 def test_leaving_a_fold_out_is_what_refitting_without_it_gives() -> None:
     """The linear short cut against least squares done anew for every fold."""
     runs = laid_out(GIVEN, range(1, 3))
@@ -92,7 +109,9 @@ def losses_with(column_of: Callable[[np.ndarray], np.ndarray], run: int) -> list
             slopes=wide.reshape(*fit.design.white.shape, -1),
             columns=(*fit.design.columns, (fit.design.columns[0][0], run)),
         )
-        more = replace(fit, design=design, cost=fit.cost + float(left @ left - white @ white))
+        sum_of_squares = float(left @ left - white @ white)
+        moves = block_diag(fit.moves, 1.0)
+        more = replace(fit, design=design, moves=moves, cost=fit.cost + sum_of_squares)
         losses.append(cross_validated_cost(runs, more) - alone)
     return losses
 

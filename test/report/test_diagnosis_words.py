@@ -72,9 +72,9 @@ def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
 ) -> None:
     """Radii 13 % too large, and something unknown besides (a car with rear encoders)."""
     sizes = "both wheels 12.7 % smaller"
-    factor = 0.873
+    factor, unsure = 0.873, 0.01
     monkeypatch.setattr(phrases, "sizes_found", lambda _: sizes)
-    monkeypatch.setattr(phrases, "best_sizes", lambda _: {"left": (factor, 0.01)})
+    monkeypatch.setattr(phrases, "best_sizes", lambda _: {"left": (factor, unsure)})
     ranking = [
         SimpleNamespace(effect=name, holdout=Sides(0.103, after))
         for name, after in (("wheel_radius_scale", 0.030), ("reference_heading_delay", 0.024))
@@ -95,7 +95,9 @@ def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
     assert not nearest(diagnosis)
     factor = 2.1  # wheels exchanged, perhaps, and too few poses to tell
     assert not by_sizes_alone(told)
-    factor, diagnosis.holdout = 0.873, Sides(0.103, 0.103)
+    factor, unsure = 1.098, 0.089  # a spin of a few legs, by a gyro
+    assert not by_sizes_alone(told)
+    factor, unsure, diagnosis.holdout = 0.873, 0.01, Sides(0.103, 0.103)
     assert not by_sizes_alone(told)
 
 

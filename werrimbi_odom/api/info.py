@@ -16,7 +16,7 @@ import numpy as np
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of
+from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of, preference
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.columns import without_zeros
 from werrimbi_odom.files.controller_wheels import of_controller
@@ -190,10 +190,9 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
     """The requested reference, or the independent one that measures most."""
     if wish is not None:
         return next((each for each in references if each.name == wish), None)
-    order = ("poses", "positions", "yaw")
     usable = [each for each in references if each.independent and each.messages >= FEW_POSES]
     usable = usable or [each for each in references if each.independent]
-    return min(usable, key=lambda each: (each.aboard, order.index(each.measures)), default=None)
+    return min(usable, key=preference, default=None)
 
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:

@@ -110,7 +110,7 @@ def opened_bag(path: Path) -> Iterator[Bag]:
             'pip install "werrimbi_odom[tools]"'
         ) from missing
     reader: Any = None
-    ros1 = path.suffix == ROS1
+    ros1 = path.suffix == ROS1 and not path.is_dir()  # `ros2 bag record -o drive.bag`: a folder
     try:
         if path.is_dir():
             _refuse_repeated(path)

@@ -127,6 +127,16 @@ class Contents:
         """References that are independent of the wheels."""
         return tuple(each for each in self.references if each.independent)
 
+    @property
+    def preferred(self) -> tuple[Measured, ...]:
+        """Those that are independent of the wheels; the one that measures most first."""
+        return tuple(sorted(self.independent, key=preference))
+
+
+def preference(each: Measured) -> tuple[bool, int]:
+    """Sort key of references: what measures more comes first, and what the robot sees last."""
+    return each.aboard, ("poses", "positions", "yaw").index(each.measures)
+
 
 def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     """Analyse an open bag.

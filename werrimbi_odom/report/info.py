@@ -109,7 +109,10 @@ def _otherwise(found: Info) -> tuple[str, str]:
     for held in found.held:
         if held.contents is None or held.reference is None:
             continue
-        others = [each.name for each in held.contents.independent if each != held.reference]
+        known = held.contents.preferred
+        # Those before it may have led here: the commands would go round in a circle.
+        first = known.index(held.reference) + 1 if held.reference in known else 0
+        others = [each.name for each in known[first:]]
         if others:
             words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
             robot = [] if found.given is None else ["--robot", str(found.given)]

@@ -30,13 +30,16 @@ def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
     fitted to the fold itself, at a penalty of 2 each (Akaike): one for what the fit took from the
     noise, one for what it would take from new noise. The same holds for a per-run parameter about
     which the fold has more information than all others together: carried over from them it would
-    cost more than 2 by the noise alone (`FOLD_TELLS`).
+    cost more than 2 by the noise alone (`FOLD_TELLS`). Directions that the fit did not move
+    stay: the runs do not determine them, and other folds would send them anywhere.
     """
-    white, slopes = fit.design.flat()
+    white, flat = fit.design.flat()
+    slopes = flat @ fit.moves
     rows = np.repeat(fold_of_leg(runs), 3)
     size = np.sqrt(np.sum(slopes**2, axis=0))
     scaled = slopes[:, size > 0.0] / size[size > 0.0]
-    of_run = np.array([run >= 0 for _, run in fit.design.columns])[size > 0.0]
+    own_columns = np.array([run >= 0 for _, run in fit.design.columns])
+    of_run = np.any(fit.moves[own_columns], axis=0)[size > 0.0]
     change = 0.0
     for fold in range(FOLDS):
         here = rows == fold

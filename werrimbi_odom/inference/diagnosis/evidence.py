@@ -36,14 +36,14 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
-from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
+from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
-from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
+from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR, NOISE_NUMBERS
 from werrimbi_odom.model.pose import Floats
 
 BATCH = 500_000
@@ -115,7 +115,8 @@ def dependences(
 ) -> tuple[Dependence, ...]:
     """The evidence map of a model: all cells, most significant first.
 
-    `numbers` are the nuisance parameters: what they can explain is no evidence.
+    `numbers` are the nuisance parameters: what they can explain is no evidence. Where too few data
+    determine the noise, the tests are Fisher's, as those of the effects are (`p_values.chance`).
     """
     runs.forget_steps()
     frame, rest = residual_innovations(runs, point, numbers, predict_all(point.model, runs))
@@ -133,6 +134,8 @@ def dependences(
             tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
+    spare = runs.data - frame.basis.shape[1] if runs.data < NOISE_NUMBERS else math.inf
+    whole = float(rest @ rest)
     shares = shares_of_steps(path_of(point.model, runs), runs.drive(point.model.robot).duration)
     cells = [
         Dependence(
@@ -144,7 +147,7 @@ def dependences(
             else test.coefficients,
             test.gain,
             test.degrees,
-            bonferroni(len(found), chi2_survival(test.gain, test.degrees)),
+            bonferroni(len(found), _chance(test, whole, spare)),
             shares[amount],
         )
         for amount, variable, form, test in found
@@ -155,6 +158,13 @@ def dependences(
 def fall_of_cost(gain: float, data: int) -> float:
     """Cost reduction for a fall of the squared innovations, with the noise re-estimated."""
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
+
+
+def _chance(test: ScoreTest, whole: float, spare: float) -> float:
+    """P-value of a cell's gain, of `whole` squared innovations with `spare` degrees of freedom."""
+    below = max(spare - test.degrees, 1.0)
+    scatter = max((whole - test.gain) / below, 1.0)
+    return fisher_survival(test.gain / test.degrees / scatter, test.degrees, below)
 
 
 def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:

@@ -188,9 +188,10 @@ def _scores_in_place_of_sizes(
     """Best score of each effect without the calibration, where not all of it is determined.
 
     On one circle a lever arm does what a radius, the ratio and a mount askew do together. A fit
-    that starts with these stays with them.
+    that starts with these stays with them. So it does where they stood in for the lever arm without
+    being needed: spins on the spot took the ratio to 1.2, and from there the fit went astray.
     """
-    if not before.calibrated or not set(before.held) & set(CALIBRATED):
+    if not set(before.held) & set(CALIBRATED):
         return {}
     point = _as_given(before.point, given)
     numbers = (*before.numbers, *point.model.nuisance_parameters)

@@ -43,10 +43,14 @@ def _headline(added: Added) -> str:
     way = "lower" if share > 0 else "higher" if sides.rose else "higher, which is chance"
     change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {way}"
     names = listed([effect.name for effect in added.effects])
-    text = (
-        f"With {names} the error of the held-out drives is {_told(sides.after, sides.unit)} where "
-        f"it was {_told(sides.before, sides.unit)} ({change}; rms over legs of {leg:g} m)."
-    )
+    if math.isfinite(sides.before) and math.isfinite(sides.after):
+        text = (
+            f"With {names} the error of the held-out drives is {_told(sides.after, sides.unit)} "
+            f"where it was {_told(sides.before, sides.unit)} ({change}; rms over legs of "
+            f"{leg:g} m)."
+        )
+    else:
+        text = f"What {names} does to the error of the held-out drives is not known."
     if added.also:
         text += f" Put right with it, as one set-up: {', '.join(added.also)}."
     if added.objection is not None:

@@ -210,14 +210,18 @@ def whole(told: Told) -> list[str]:
 def by_sizes_alone(told: Told) -> list[str]:
     """Of errors that base and radii lower, where something else is missing as well.
 
-    Sizes that are off by more than calibration may stand in for what is missing.
+    Sizes that are off by more than calibration may stand in for what is missing, and sizes that are
+    as uncertain as they are off are not said to be off.
     """
     diagnosis = told.diagnosis
     sides, words = diagnosis.holdout, sizes_found(diagnosis)
-    ratios = [
-        value / getattr(diagnosis.given, n) for n, (value, _) in best_sizes(diagnosis).items()
+    sizes = [
+        (value, getattr(diagnosis.given, name), std)
+        for name, (value, std) in best_sizes(diagnosis).items()
     ]
-    if not (words and sides.fell and all(1.0 / ORDINARY < each < ORDINARY for each in ratios)):
+    usual = all(1.0 / ORDINARY < value / given < ORDINARY for value, given, _ in sizes)
+    seen = any(abs(value - given) > SIGNIFICANT * (std or 0.0) for value, given, std in sizes)
+    if not (words and sides.fell and usual and seen):
         return []
     before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
     return [

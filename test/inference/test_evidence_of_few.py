@@ -1,0 +1,41 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Of few legs the scatter is hardly known: what errors go with is as uncertain as what they do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from test.inference.driven import run_by
+from test.model.drives import ROBOT
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference.diagnosis.evidence import dependences
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.fit import fit_model, start_point
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
+from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.inference.rules import NOISE_NUMBERS, VERY_SURE
+
+GYRO = EvaluationOptions(reference_kind="incremental")
+
+
+def likeliest_by_chance(seed: int) -> float:
+    """Smallest p-value of what the errors of a spin go with, by a gyro noisier than is assumed."""
+    random = np.random.default_rng(seed)
+    spin = run_by(ROBOT, np.zeros(200), np.full(200, 0.5), seed=seed)
+    seen = spin.reference
+    assert seen is not None
+    wandering = 0.02 * np.cumsum(random.normal(size=seen.time.size))
+    nowhere = np.full(seen.time.size, np.nan)
+    turned = replace(seen, x=nowhere, y=nowhere, yaw=seen.yaw + wandering)
+    runs = concatenated(match_for_fit([replace(spin, reference=turned)], ROBOT, 1.0))
+    assert 8 <= runs.data < NOISE_NUMBERS
+    point = fit_model(runs, start_point(runs, ROBOT, GYRO), CALIBRATION).point
+    return dependences(runs, point, CALIBRATION)[0].p_value
+
+
+def test_noise_larger_than_assumed_is_no_dependence() -> None:
+    found = [likeliest_by_chance(seed) for seed in range(6)]
+    assert min(found) > VERY_SURE, found
