@@ -4,19 +4,24 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from test.inference.driven import runs_of
+from test.inference.driven import run_by, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
+from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.diagnosis.words import NextSteps
@@ -237,3 +242,36 @@ def test_headings_alone_are_judged_by_headings_beside_the_gyros_drift() -> None:
     assert "nan" not in words
     assert "°" in words.splitlines()[0]
     assert figures["holdout"]["rmse_yaw_rad"]["after"] == found.holdout.sides.after
+
+
+SPIN = np.full(800, 0.002), np.full(800, -0.39)
+"""On the spot, as nearly as robots do: speed [m/s] and yaw rate [rad/s], 20 of each a second."""
+
+
+def test_sizes_do_not_stand_in_for_a_point_beside_the_axle() -> None:
+    """A spin does not part them; what was asked for is fitted, and the file's sizes stay."""
+    spin, noise = run_by(PLAIN, *SPIN, seed=1), np.random.default_rng(1)
+    seen = spin.reference
+    assert seen is not None
+    point = (0.356 + 0.05j) * np.exp(1j * seen.yaw)
+    east, north = (part + noise.normal(0.0, 6e-3, part.size) for part in (point.real, point.imag))
+    ahead = replace(spin, reference=replace(seen, x=seen.x + east, y=seen.y + north))
+    found = add_effects([find("reference_lever_arm")], [ahead], PLAIN)
+    assert found.objection is None
+    x, y = (found.parameters[name] for name in "xy")
+    assert x.value == pytest.approx(0.356, abs=4e-3)
+    assert y.value == pytest.approx(0.05, abs=5e-3)
+    assert found.robot.left_wheel_radius_multiplier == 1.0
+    assert found.robot.right_wheel_radius_multiplier == 1.0
+
+
+@pytest.mark.parametrize("asked_for", [True, False])
+def test_where_nothing_held_out_was_measured_the_fitted_drives_decide(asked_for: bool) -> None:
+    """As in the diagnosis that printed the command."""
+    nothing = Sides(math.nan, math.nan)
+    worth = Worth(nothing, nothing, asked_for, 1e-9, held=False, others=())
+    effect = find("reference_lever_arm")
+    x = FittedParameter(effect.parameters["x"], 0.3, 0.01, None)
+    said = objection(effect, {"x": x}, worth, SetUp((), PLAIN))
+    assert (said is None) == asked_for
+    assert asked_for or "no leg that was measured" in str(said)

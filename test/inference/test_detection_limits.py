@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import NOISE_XY, NOISE_YAW, runs_of
+from test.inference.driven import NOISE_XY, NOISE_YAW, run_by, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -124,6 +124,16 @@ def test_what_leaves_no_trace_has_no_limit() -> None:
     found = limits(("reference_yaw_offset", "lateral_slip"), positions)
     assert found["reference_yaw_offset"]["angle"] == np.inf
     assert np.isfinite(found["lateral_slip"]["creep"])
+
+
+def test_no_limit_is_beyond_what_is_physically_possible() -> None:
+    """A spin hardly shows a mount askew: "seen from 80 rad" is never."""
+    spin = run_by(ROBOT, np.full(800, 1e-4), np.full(800, 0.5))
+    names = ("sideways_drift", "load_transfer", "unequal_wheel_radii", "castor_kick", "track_width")
+    for name, found in limits(names, [spin]).items():
+        for parameter, size in found.items():
+            assert size == np.inf or size <= find(name).parameters[parameter].reach
+    assert np.isfinite(limits(("reference_lever_arm",), [spin])["reference_lever_arm"]["x"])
 
 
 def test_the_noncentrality_gives_the_power() -> None:

@@ -56,6 +56,11 @@ class Parameter:
         """Typical distance from null on real robots; for a shape parameter its typical size."""
         return abs(self.typical) if self.tries else abs(self.typical - self.null)
 
+    @property
+    def reach(self) -> float:
+        """Largest distance from null that is physically possible."""
+        return max(abs(bound - self.null) for bound in self.bounds)
+
     def combined(self, one: float, more: float) -> float:
         """Combine two successive values of the parameter: factors multiply, others add.
 

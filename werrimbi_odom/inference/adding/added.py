@@ -63,10 +63,11 @@ class JudgedSide:
     def promised(self) -> float:
         """Root mean square error that the covariance of the final model predicts, in the same unit.
 
-        Without the few legs that begin with an unknown heading. It is the error by noise alone if
-        the model explains the drives (`Added.noise_alone`).
+        Without the few legs that begin with an unknown heading, or hold an abrupt event. It is the
+        error by noise alone if the model explains the drives (`Added.noise_alone`).
         """
-        errors = self.after.errors.chosen(~self.after.outlier)
+        quiet = self.after.quiet
+        errors = quiet.errors.chosen(~quiet.outlier)
         if self.unit == "rad":
             promised = errors.covariance[np.isfinite(errors.error[:, 2]), 2, 2]
         else:

@@ -25,6 +25,7 @@ from werrimbi_odom.inference.adding.start_values import (
     start_of_held,
     starts,
 )
+from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import Model, changed
@@ -125,7 +126,9 @@ def fits_of(
     count = len(waiting)
     while waiting:
         show(0.65 - 0.3 * len(waiting) / count, ", ".join(effect.name for effect in waiting))
-        options = {effect.name: starts(drives, fit, effect, fit.numbers) for effect in waiting}
+        options = {
+            effect.name: starts(drives, fit, effect, fit.numbers, given) for effect in waiting
+        }
         gains = {
             name: max((start.gain for start in each), default=-1.0)
             for name, each in options.items()
@@ -177,11 +180,13 @@ def _well(drives: FitDrives, start: Start, given: Robot) -> Fitted:
 def _pruned(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     """Backward elimination of parameters that do not pay the penalty.
 
-    A length or threshold that the drives do not determine stays at its typical value.
+    A length or threshold that the drives do not determine stays at its typical value. Where sizes
+    are not determined, they would stand in for a parameter: it is weighed beside those sizes alone
+    that the drives need.
     """
     limit = math.sqrt(fit.penalty_of_one)
     while True:
-        found = parameters_of(effect, fit, given)
+        found = parameters_of(effect, _with_needed_sizes(drives, fit, given), given)
         name = undetermined(effect, found) or weakest(effect, found, limit)
         if name is None:
             return fit
@@ -191,3 +196,9 @@ def _pruned(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fit
         numbers = tuple(number for number in fit.numbers if number.name != key)
         point = replace(fit.point, model=Model(at_null, model.own))
         fit = drives.fit(point, fit.names, numbers, given)
+
+
+def _with_needed_sizes(drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
+    if not set(fit.held) & set(CALIBRATED):
+        return fit
+    return with_sizes(drives.laid, fit, given, sizes_needed(fit, given, ()))

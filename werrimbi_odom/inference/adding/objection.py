@@ -54,7 +54,7 @@ def objection(
                 f"{name} would need {key} = {item.value:g}{_in(item)}, the limit of what is "
                 f"physically possible; so it is not that effect{hint}"
             )
-    if not np.isfinite(after):
+    if not (np.isfinite(after) or worth.asked_for):
         return f"{name} cannot be judged: the held-out drives have no leg that was measured"
     if (against := _not_lower(worth.kept, worth)) is not None:
         return f"{name} does not lower the error of the held-out drives ({figures}){against}{hint}"

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
+from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -130,21 +131,38 @@ def with_set_up(
 
 
 def starts(
-    drives: FitDrives, before: Fitted, effect: Effect, numbers: Sequence[FreeParameter]
+    drives: FitDrives,
+    before: Fitted,
+    effect: Effect,
+    numbers: Sequence[FreeParameter],
+    given: Robot,
 ) -> tuple[Start, ...]:
-    """Starts for fits of an effect: at the values of its score, for the best of its shapes."""
-    found = scored(drives, before, [effect], numbers)
-    return tuple(start_at(drives.laid, before, score, numbers) for score in _best_shapes(found))
+    """Starts for fits of an effect: at the values of its score, for the best of its shapes.
+
+    Where not all of the calibration is determined, it may stand in for the effect, and a fit that
+    starts with it stays with it. Then there is also a start at the given robot's sizes, as in a
+    diagnosis.
+    """
+    begun = [(before, (*CALIBRATION, *numbers))]
+    if set(before.held) & set(CALIBRATED):
+        point = as_given(before.point, given)
+        nuisances = point.model.nuisance_parameters
+        begun.append((replace(before, point=point), (*numbers, *nuisances)))
+    return tuple(
+        start_at(drives.laid, at, score, numbers)
+        for at, beside in begun
+        for score in _best_shapes(scored(drives, at, [effect], beside))
+    )
 
 
 def scored(
-    drives: FitDrives, before: Fitted, effects: Sequence[Effect], numbers: Sequence[FreeParameter]
+    drives: FitDrives, before: Fitted, effects: Sequence[Effect], beside: Sequence[FreeParameter]
 ) -> tuple[Score, ...]:
-    """Score tests of effects beside a model: each shape of each effect."""
+    """Score tests of effects in a model, beside nuisances: each shape of each effect."""
     runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     tried = candidates(effects, (), channels, len(runs.runs), asked=True)
-    return scores(runs, before.point, (*CALIBRATION, *numbers), tried)
+    return scores(runs, before.point, beside, tried)
 
 
 def start_at(

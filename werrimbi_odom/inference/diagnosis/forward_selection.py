@@ -106,7 +106,7 @@ def instead_of_calibration(
     The multipliers are fixed at the given robot's.
     """
     model = calibrated.point.model
-    point = _as_given(calibrated.point, given)
+    point = as_given(calibrated.point, given)
     nuisances = model.nuisance_parameters
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
@@ -162,7 +162,7 @@ def search_round(
         if variants:
             options.append((point, max(variants, key=lambda other: other.gain)))
         if score.candidate.name in instead:
-            options.append((_as_given(point, given), instead[score.candidate.name]))
+            options.append((as_given(point, given), instead[score.candidate.name]))
         fits = [fitted_from(started_with(runs, begin, option), option) for begin, option in options]
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
@@ -176,7 +176,7 @@ def search_round(
     )
 
 
-def _as_given(point: Point, given: Robot) -> Point:
+def as_given(point: Point, given: Robot) -> Point:
     """A point with the multipliers of the given robot."""
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     return replace(point, model=Model(changed(point.model.robot, back), point.model.own))
@@ -193,7 +193,7 @@ def _scores_in_place_of_sizes(
     """
     if not set(before.held) & set(CALIBRATED):
         return {}
-    point = _as_given(before.point, given)
+    point = as_given(before.point, given)
     numbers = (*before.numbers, *point.model.nuisance_parameters)
     best = best_of_each(scores(runs, point, numbers, looked_at))
     return {score.candidate.name: score for score in best}

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.law_forms import Form, Seen
 from werrimbi_odom.inference.drafting.source import name_of, source_of
 from werrimbi_odom.inference.drafting.variable_source import rounded
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.score_tests import Score
 from werrimbi_odom.inference.rules import WIDER_THAN_FITTED
@@ -77,7 +78,7 @@ def by_score(
     before = replace(base, point=replace(base.point, variances=noise))
     found = []
     for plan in plans:
-        scores = scored(drives, before, [plan.effect], base.numbers)
+        scores = scored(drives, before, [plan.effect], (*CALIBRATION, *base.numbers))
         if scores:
             best = max(scores, key=lambda each: each.gain)
             paid = base.penalty_of_one * plan.form.numbers

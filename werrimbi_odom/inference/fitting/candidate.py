@@ -47,20 +47,12 @@ class Candidate:
     @property
     def reach(self) -> tuple[float, ...]:
         """Largest physical distance from null along each coordinate, in steps."""
-        effect, null = self.effect, self.effect.nulls
-        if effect.quadrature is not None:
-            names = [effect.quadrature[0]] * 2
+        parameters = self.effect.parameters
+        if self.effect.quadrature is not None:
+            items = [parameters[self.effect.quadrature[0]]] * 2
         else:
-            names = [
-                name
-                for name, item in effect.parameters.items()
-                if not item.tries and not item.as_base
-            ]
-        items = [(effect.parameters[name], null[name]) for name in names]
-        return tuple(
-            max(abs(bound - zero) for bound in item.bounds) / (STEP * item.scale)
-            for item, zero in items
-        )
+            items = [item for item in parameters.values() if not item.tries and not item.as_base]
+        return tuple(item.reach / (STEP * item.scale) for item in items)
 
     @property
     def place(self) -> str | None:

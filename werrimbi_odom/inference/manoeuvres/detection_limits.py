@@ -59,7 +59,7 @@ class DetectionLimit:
     unit: str
     null: float
     minimum_detectable: float
-    """Distance from null; infinite where it leaves no trace."""
+    """Distance from null; infinite where none that is physically possible would be seen."""
     typical: float
     """Typical distance from null on robots."""
     shown_by: str | None = None
@@ -217,7 +217,8 @@ def _limits(
     for name, of_step in zip(names, information.tolist(), strict=True):
         item = effect.parameters[name]
         size = STEP * item.scale * math.sqrt(wanted / of_step) if of_step > 0.0 else math.inf
-        yield DetectionLimit(effect.name, name, item.unit, item.null, size, item.scale)
+        seen = size if size <= item.reach else math.inf
+        yield DetectionLimit(effect.name, name, item.unit, item.null, seen, item.scale)
 
 
 def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool) -> dict[str, str]:

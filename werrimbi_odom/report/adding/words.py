@@ -218,6 +218,8 @@ def _told(error: float, unit: str) -> str:
 
 
 def _number(error: float, unit: str) -> str:
+    if not math.isfinite(error):
+        return "-"
     value = 1e3 * error if unit == "m" else math.degrees(error)
     return f"{value:.2f}" if value < 100.0 else f"{value:.0f}"
 
