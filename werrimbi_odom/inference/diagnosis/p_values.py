@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
@@ -47,8 +45,8 @@ def disagreeing(fit: Fitted, name: str) -> bool:
 def p_value_of_size(fit: Fitted, name: str) -> float:
     """P-value of a calibration effect's importance.
 
-    Where the parts disagree, by Fisher's F with the degrees of freedom in which they tell their
-    scatter, as few parts estimate it poorly.
+    By Fisher's F. Where the parts disagree, with the degrees of freedom in which they tell their
+    scatter, as few parts estimate it poorly; else with those of the noise, as `chance`.
     """
-    freedom = fit.freedom[name] if fit.doubts[name] > 1.0 else math.inf
+    freedom = fit.freedom[name] if fit.doubts[name] > 1.0 else fit.spare
     return fisher_survival(fit.importance.get(name, 0.0), 1, freedom)
