@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.report.diagnosis import phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
-from werrimbi_odom.report.diagnosis.remarks import drowned, nearest, not_shown
+from werrimbi_odom.report.diagnosis.remarks import drowned, like_noise, nearest, not_shown
 
 
 def told_of(after: float) -> Any:
@@ -65,6 +66,15 @@ def test_nothing_is_missing_beside_errors_of_a_third_of_the_way(sides: Sides, sa
     told: Any = SimpleNamespace(diagnosis=SimpleNamespace(holdout=sides), leg=1.0)
     words = " ".join(drowned(told))
     assert said in words if said else not words
+
+
+def test_what_was_put_aside_and_errs_far_more_is_not_noise_alone() -> None:
+    """A half turn by a gyro whose stamps jitter: 4.12° put aside, 0.88° fitted."""
+    fitted, aside = (Sides(math.radians(each), math.radians(each), "rad") for each in (0.88, 4.12))
+    odd: Any = SimpleNamespace(train=fitted, holdout=aside)
+    assert like_noise(odd) == "; of what was fitted they are 0.88°, so they are not noise alone"
+    odd.holdout = Sides(1.5 * fitted.before, 1.5 * fitted.after, "rad")
+    assert like_noise(odd) == ", and they look like noise"
 
 
 def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(

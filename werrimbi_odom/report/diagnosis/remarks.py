@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
-from werrimbi_odom.inference.rules import WRONG_OF_A_LEG
+from werrimbi_odom.inference.rules import UNLIKE, WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.number_format import (
@@ -241,6 +241,15 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
         "allows: it is not that effect."
         for name, value in at_bounds_words(diagnosis).items()
     ]
+
+
+def like_noise(diagnosis: Diagnosis) -> str:
+    """That held-out errors look like noise, or that they are larger than those of the fitted."""
+    held, fitted = diagnosis.holdout, diagnosis.train
+    if held.before > UNLIKE * fitted.before:
+        error = error_words(fitted.before, fitted.unit)
+        return f"; of what was fitted they are {error}, so they are not noise alone"
+    return ", and they look like noise"
 
 
 def drowned(told: Told) -> list[str]:

@@ -105,7 +105,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     lines = [f"Nothing is missing that these drives could show{ending}", *old, *remarks.law(told)]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
-        like = ", and they look like noise" if noise else ""
+        like = remarks.like_noise(diagnosis) if noise else ""
         lines.append(f"Its errors on {phrases.judged(told)} are {errors}{like}.")
         lines += large
     lines += remarks.instead_of_held(diagnosis)
