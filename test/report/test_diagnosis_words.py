@@ -72,7 +72,7 @@ def test_what_was_put_aside_and_errs_far_more_is_not_noise_alone() -> None:
     """A half turn by a gyro whose stamps jitter: 4.12° put aside, 0.88° fitted."""
     fitted, aside = (Sides(math.radians(each), math.radians(each), "rad") for each in (0.88, 4.12))
     odd: Any = SimpleNamespace(train=fitted, holdout=aside)
-    assert like_noise(odd) == "; of what was fitted they are 0.88°, so they are not noise alone"
+    assert like_noise(odd) == "; on what was fitted they are 0.88°, so they are not noise alone"
     odd.holdout = Sides(1.5 * fitted.before, 1.5 * fitted.after, "rad")
     assert like_noise(odd) == ", and they look like noise"
 

@@ -248,7 +248,7 @@ def like_noise(diagnosis: Diagnosis) -> str:
     held, fitted = diagnosis.holdout, diagnosis.train
     if held.before > UNLIKE * fitted.before:
         error = error_words(fitted.before, fitted.unit)
-        return f"; of what was fitted they are {error}, so they are not noise alone"
+        return f"; on what was fitted they are {error}, so they are not noise alone"
     return ", and they look like noise"
 
 
