@@ -23,6 +23,7 @@ from test.hidden.machines import machine
 from test.hidden.plan import CALIBRATION
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.hidden.true_values import values_of
+from werrimbi_odom.effects import find
 
 Floats = NDArray[np.float64]
 
@@ -50,8 +51,8 @@ def bound(clean: HiddenSet, effect: str, peculiarity: Mapping[str, object], size
     sensor = machine(clean.setup, clean.seed).reference
     noise = np.array([sensor.sigma_xy, sensor.sigma_xy, sensor.sigma_yaw])
     values = values_of(effect, peculiarity)
-    if "amplitude" in values:
-        values["phase"] = 0.0  # of a counter that starts anywhere; any is as good
+    # Where a counter starts anywhere, any angle of a wheel is as good as another.
+    values |= {name: 0.0 for name, item in find(effect).parameters.items() if item.per_run}
     blocks = [{effect: values}]
     others = [name for name in CALIBRATION if name != effect]
     scales = [size] + [LITTLE] * len(others)
@@ -119,16 +120,22 @@ def whitened(changes: Floats, path: Floats, covariance: Floats, noise: Floats) -
             move = np.eye(3)
             step = path[index] - path[index - 1]
             move[0, 2], move[1, 2] = -step[1], step[0]
-            added = covariance[index] - move @ covariance[index - 1] @ move.T
+            added = _not_negative(covariance[index] - move @ covariance[index - 1] @ move.T)
             state = move @ state
             spread = move @ spread @ move.T + added
         root = np.linalg.cholesky(spread + measured)
         rows.append(np.linalg.solve(root, seen - state))
         gain = np.linalg.solve(spread + measured, spread).T
         state = state + gain @ (seen - state)
-        spread = spread - gain @ spread
-        spread = 0.5 * (spread + spread.T)
+        keep = np.eye(3) - gain  # Joseph's form: the plain one loses the sign to rounding
+        spread = keep @ spread @ keep.T + gain @ measured @ gain.T
     return np.concatenate(rows)
+
+
+def _not_negative(matrix: Floats) -> Floats:
+    """The nearest covariance: an arc's is for all of it, and anew where the next begins."""
+    values, vectors = np.linalg.eigh(matrix)
+    return np.asarray(vectors * values.clip(0.0) @ vectors.T)
 
 
 def detectable(sigma: float, tests: int, chance: float, power: float) -> float:
