@@ -52,7 +52,8 @@ def bound(clean: HiddenSet, effect: str, peculiarity: Mapping[str, object], size
     noise = np.array([sensor.sigma_xy, sensor.sigma_xy, sensor.sigma_yaw])
     values = values_of(effect, peculiarity)
     # Where a counter starts anywhere, any angle of a wheel is as good as another.
-    values |= {name: 0.0 for name, item in find(effect).parameters.items() if item.per_run}
+    angles = {name: 0.0 for name, item in find(effect).parameters.items() if item.per_run}
+    values = angles | dict(values)
     blocks = [{effect: values}]
     others = [name for name in CALIBRATION if name != effect]
     scales = [size] + [LITTLE] * len(others)
