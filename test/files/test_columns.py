@@ -128,6 +128,19 @@ def test_totals_of_a_robot_that_is_turned_by_hand_once_are_totals() -> None:
     )
 
 
+def test_totals_of_a_robot_that_is_carried_round_a_corner_are_totals() -> None:
+    """It drives straight to and fro; by chance one counter is a count ahead while it is carried."""
+    time = np.arange(0.0, 60.0, 0.05)
+    carried = (time >= 30.0) & (time < 35.0)
+    left = np.rint(500.0 * np.sin(0.3 * np.where(carried, 30.0, time)))
+    yaw = np.clip(0.5 * (time - 30.0), 0.0, 2.5)
+    yaw += 1e-3 * np.random.default_rng(3).standard_normal(time.size)
+    nowhere = np.full(time.size, np.nan)
+    ticks = Ticks(time, left, left + carried)
+    reference = Reference(time, nowhere, nowhere, yaw)
+    refuse_wrong_columns(replace(driven(0), ticks=ticks, reference=reference))
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
     run = driven(seed)

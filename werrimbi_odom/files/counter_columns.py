@@ -25,6 +25,10 @@ CARRIED = 3
 """Windows that matter most for a correlation of the values, and are left out of it: a robot that
 drives straight and is turned by hand once has one that makes it alone."""
 
+STRAIGHT = 0.02
+"""Range of right less left, over that of their mean, up to which a drive is straight: a count more
+or less by chance while the robot was carried and turned is no speed."""
+
 SEVERAL, AT_MOST = 3, 0.3
 """Leaps from which a counter's range is taken for its period, and their largest share of the rows:
 a counter that is reset leaps once, and one that is read too seldom leaps always."""
@@ -67,8 +71,10 @@ def _no_totals(found: _Windows) -> str:
     # A displacement has no sign, so the values have none either. Turns have theirs.
     of_values = [_related(np.abs(found.values[0]), found.moved[0], CARRIED)]
     of_steps = [_related(np.abs(found.steps[0]), found.moved[0])]
-    of_values += [_related(found.values[1], found.moved[1], CARRIED)]
-    of_steps += [_related(found.steps[1], found.moved[1])]
+    mean, apart = np.ptp(found.values, axis=-1)
+    if apart > STRAIGHT * mean:
+        of_values += [_related(found.values[1], found.moved[1], CARRIED)]
+        of_steps += [_related(found.steps[1], found.moved[1])]
     if max(of_values) < TAKES or max(of_steps) > HARDLY:
         return ""
     return (
