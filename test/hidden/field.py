@@ -257,6 +257,8 @@ def how(hidden: Sequence[str], name: str, said: Line) -> str:
     """named, ambiguous, missed (too small, or not) or wrong: what one diagnosis is worth."""
     if name == "scans" and said["verdict"] == "unknown" and set(hidden) & ON_THE_FLOOR:
         return "missed"
+    if said["verdict"] == "unknown" and any(find(each).lacks(()) for each in hidden):
+        return "missed"  # it goes with a channel that these bags do not hold
     if said["verdict"] in ("refused", "unknown"):
         return "wrong"
     right = expected(hidden, name)

@@ -316,6 +316,8 @@ SCALE = ("track_width", "reference_scale")
         ([], "positions", said("none"), "named"),
         (["floor_slope"], "scans", said("unknown"), "missed"),
         (["floor_slope"], "localiser", said("unknown"), "wrong"),
+        (["radius_by_channel"], "localiser", said("unknown"), "missed"),
+        (["radius_by_channel"], "localiser", said("named", "track_width"), "wrong"),
     ],
 )  # fmt: skip
 def test_what_a_verdict_by_an_ordinary_reference_is_worth(
