@@ -151,12 +151,18 @@ def test_a_bug_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
         command.main(["odom"])
 
 
-def test_nobody_reads_what_it_prints(tmp_path: Path) -> None:
-    words = ["odom", "--robot", SQUARE / "robot.yaml", SQUARE, "--out", tmp_path / "odom.csv"]
+@pytest.mark.parametrize(
+    ("words", "made"),
+    [
+        (("odom", "--robot", SQUARE / "robot.yaml", SQUARE, "--out"), "odom.csv"),
+        (("explain", "--json"), "effects.json"),  # rich prints it
+    ],
+)
+def test_nobody_reads_what_it_prints(tmp_path: Path, words: tuple[str, ...], made: str) -> None:
     read, write = os.pipe()
     os.close(read)
     done = subprocess.run(
-        [*WERRIMBI, *map(str, words)],
+        [*WERRIMBI, *map(str, words), str(tmp_path / made)],
         stdout=write,
         stderr=subprocess.PIPE,
         env=ENVIRONMENT,
@@ -164,7 +170,7 @@ def test_nobody_reads_what_it_prints(tmp_path: Path) -> None:
     )
     os.close(write)
     assert (done.returncode, done.stderr) == (141, b"")
-    assert (tmp_path / "odom.csv").exists(), "what was asked for had been done by then"
+    assert (tmp_path / made).exists(), "what was asked for had been done by then"
 
 
 def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from ruamel.yaml import YAML
 import werrimbi_odom.simulation
 from test.cli.commands import called
 from test.command_line import Complaint
+from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import simulate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -153,6 +155,19 @@ def test_the_list_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
     for entry in CATALOGUE:
         assert f"  {entry.name}  " in listed
     assert "1.3 to 2.5" in listed, "skid_steer: its null added to both ends"
+
+
+def test_the_next_command_takes_its_own_bags(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A bag as of the field has two references, so the printed command names one."""
+    there = moves("there", [(2.0, 0.0), (0.0, 1.6), (2.0, 1.0), (-2.0, 0.0), (0.0, -1.6)])
+    monkeypatch.setattr(
+        "werrimbi_odom.simulation.sessions.drives", lambda seed: {"train/there": there}
+    )
+    assert call("--out", str(tmp_path / "day"), "--like", "field") == 0
+    words = shlex.split(capsys.readouterr().out.partition("next: werrimbi ")[2])
+    assert command.main([*words[:-1], str(tmp_path / "day" / "train" / "there")]) == 0
 
 
 def test_a_day_has_seven_drives_to_learn_from_and_four_to_test() -> None:

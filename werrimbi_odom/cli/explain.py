@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.options import declare, read_effects
 from werrimbi_odom.cli.outputs import write_json
@@ -41,16 +41,14 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.effects.effect_docstring import as_json
 
     collection = read_effects(arguments)
-    figures: dict[str, Any]
-    if arguments.effect is None:
-        figures = {"effects": [as_json(effect) for effect in collection.effects]}
+    effect = None if arguments.effect is None else collection.find(arguments.effect)
+    if arguments.json is not None:
+        every = [as_json(each) for each in collection.effects]
+        write_json(arguments.json, {"effects": every} if effect is None else as_json(effect))
+    if effect is None:
         _print_list(collection)
     else:
-        effect = collection.find(arguments.effect)
-        figures = as_json(effect)
         _print_page(effect)
-    if arguments.json is not None:
-        write_json(arguments.json, figures)
     return 0
 
 
@@ -117,4 +115,10 @@ def _print_page(effect: Effect) -> None:
 def _console() -> Console:
     from rich.console import Console
 
-    return Console() if sys.stdout.isatty() else Console(width=_WIDTH_IN_A_FILE)
+    class Piped(Console):
+        """Leaves a reader that has gone to `cli.main`, where rich would end the program."""
+
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError
+
+    return Piped() if sys.stdout.isatty() else Piped(width=_WIDTH_IN_A_FILE)

@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         f"for each row of ticks: {COLUMNS} (the covariance in m², m·rad and rad²; a row of ticks "
         "that could not be used repeats the latest estimate). An existing --out is replaced."
     )
-    parser.add_argument("run", metavar="RUN", type=Path, help="run folder, or ROS 2 bag")
+    parser.add_argument("run", metavar="RUN", type=Path, help="run folder or bag")
     declare(parser, "--robot")
     declare(parser, "--out", metavar="CSV", help="file to write")
     declare(parser, "--json", metavar="FILE")
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     declare(
         parser,
         "--reference-topic",
-        help="topic of the reference, in a bag with several; T:CHILD_FRAME among transforms, "
+        help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms; "
         "`none` for no reference",
     )
     parser.add_argument(

@@ -167,8 +167,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     )
     if arguments.reference_kind is None and wanders:
         circles.append(
-            "the reference is a localiser (or satellites), whose errors wander: reckoned with "
-            "(--reference-kind local_map; absolute: they are new at each pose)"
+            "the reference is a localiser (or satellites), whose errors wander: it is taken as "
+            "--reference-kind local_map (absolute takes each pose's error as new)"
         )
     remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)
     return found

@@ -128,7 +128,8 @@ def run(arguments: argparse.Namespace) -> int:
         (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     out = arguments.out
     print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden is in truth.json")
-    print(f"next: werrimbi compare --robot {out}/robot.yaml {out}/train/*")
+    topic = " --reference-topic /tf:map:base_link" if arguments.like == "field" else ""
+    print(f"next: werrimbi compare --robot {out}/robot.yaml{topic} {out}/train/*")
     return 0
 
 

@@ -54,7 +54,7 @@ def skid_steer(
     et al., IROS 2007; Martinez et al., Int. J. Robotics Research 24, 2005: tracks). They lie
     `multiplier` times as far apart as the two sides, 1.3 to 2.5 on most robots; where the load is
     not in the middle, their own middle is not the wheels'. Another floor, other tyres or another
-    load make other values. Their makers' files have such factors too: Jackal 1.5, Husky 1.875.
+    load make other values. The parameter files of such robots have it: Jackal 1.5, Husky 1.875.
 
     Formula    turn /= multiplier;  then  along += y * turn;  sideways -= x * turn  [rad], [m]
     Signature  every turn falls short by the same share, left and right; lines are good; on the spot

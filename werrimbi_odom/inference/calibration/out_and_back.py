@@ -116,7 +116,7 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     if runs < LEAST_RUNS:
         raise InputError(
             f"too few runs: {runs} given, at least {LEAST_RUNS} needed; {ADVISED_RUNS} tell k to "
-            "about 10 %, the paper drove 60"
+            "about 13 %, the paper drove 60"
         )
     data = np.asarray(np.cov(errors.T))
     if not (np.diag(data) > 0.0).all():

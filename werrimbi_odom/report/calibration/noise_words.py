@@ -34,7 +34,7 @@ def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: 
     ]
     if fit.runs < ADVISED_RUNS:
         sentences.append(
-            f"{ADVISED_RUNS} runs would tell each k to about 15 %; here are {fit.runs}."
+            f"{ADVISED_RUNS} runs would tell each k to about 13 %; here are {fit.runs}."
         )
     verdict = paragraphs([_verdict(fit)])
     return [*verdict, Table(title, heads, rows), *paragraphs(sentences, apart=True)]
