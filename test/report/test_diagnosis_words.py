@@ -99,10 +99,13 @@ def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
     (said,) = by_sizes_alone(told)
     assert sizes in said
     assert "falls from 103 mm to 30.0 mm" in said
-    (said,) = nearest(diagnosis)
+    (said,) = nearest(diagnosis, law_told=True)
     assert "reference_heading_delay: errors are 24.0 mm with it, and 30.0 mm without" in said
+    assert "The above explains far more" in said
+    (said,) = nearest(diagnosis, law_told=False)  # nothing stands above
+    assert said.endswith("without. That is too little to name it.")
     ranking[1].holdout = Sides(0.103, 0.02999)
-    assert not nearest(diagnosis)
+    assert not nearest(diagnosis, law_told=True)
     factor = 2.1  # wheels exchanged, perhaps, and too few poses to tell
     assert not by_sizes_alone(told)
     factor, unsure = 1.098, 0.089  # a spin of a few legs, by a gyro
