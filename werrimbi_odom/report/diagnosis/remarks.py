@@ -267,13 +267,7 @@ def drowned(told: Told) -> list[str]:
 
 
 def nearest(diagnosis: Diagnosis, law_told: bool) -> list[str]:
-    """The effect of the library that lowers the error most, beside base and radii.
-
-    Parameters
-    ----------
-    law_told : bool
-        Whether a dependence of the errors is told before: it is what this effect is held against.
-    """
+    """The effect that lowers the error most, beside base and radii; held against the law told."""
     calibrated = diagnosis.holdout
     others = [item for item in diagnosis.ranking if item.effect not in CALIBRATED]
     best = min(others, key=lambda item: _after(item.holdout), default=None)
