@@ -50,5 +50,5 @@ def test_headers_are_believed_where_receipt_is_no_evener(uneven: float, believed
 def test_milliseconds_of_a_simulation_are_even_enough() -> None:
     """A Gazebo's joints at 10 Hz: stamped 99 to 101 ms apart, received 100 ms apart."""
     received = 0.1 * np.arange(300.0)
-    stamped = np.round(received + np.random.default_rng(1).choice([-1e-3, 0.0, 1e-3], 300), 3)
+    stamped = np.round(received + np.random.default_rng(1).choice([0.0, 1e-3], 300), 3)
     assert "believe the headers" in _clock("/joint_states", _judged(stamped, received))
