@@ -277,7 +277,7 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     wrong = diagnosis.set_up.wrong
     lines = ["Something is set up wrongly:"] if wrong else []
     for finding in wrong:
-        words = finding.words.rstrip(".")
+        words = phrases.set_up_words(diagnosis, finding)
         lines.append(f"- {capital(words)}: {finding.effect}.")
     skids = [finding for finding in findings if finding not in wrong]
     return [
