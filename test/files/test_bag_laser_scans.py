@@ -205,6 +205,9 @@ def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
     (words,) = run.damage
     assert "the path by /scan is in pieces" in words
     assert "no leg spans a cut" in words
+    assert run.reference is not None
+    known = float(np.ptp(run.reference.time)) - (end - begin)
+    assert f"the path is known for {known:.1f} s in all" in words
     cut = match(run, Robot(BASE, WHEEL, WHEEL, COUNTS, 2.0 * COUNTS), leg=0.1)
     spans = (cut.measured.time[:-1] <= begin) & (cut.measured.time[1:] >= end)
     assert spans.sum() == 1

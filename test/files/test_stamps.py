@@ -45,3 +45,10 @@ def test_headers_are_believed_where_receipt_is_no_evener(uneven: float, believed
     received = 0.2 * np.arange(500.0) + random.normal(0.0, 0.02, 500)
     stamped = 0.2 * np.arange(500.0) + uneven * (received - 0.2 * np.arange(500.0))
     assert ("believe the headers" in _clock("/odom", _judged(stamped, received))) is believed
+
+
+def test_milliseconds_of_a_simulation_are_even_enough() -> None:
+    """A Gazebo's joints at 10 Hz: stamped 99 to 101 ms apart, received 100 ms apart."""
+    received = 0.1 * np.arange(300.0)
+    stamped = np.round(received + np.random.default_rng(1).choice([0.0, 1e-3], 300), 3)
+    assert "believe the headers" in _clock("/joint_states", _judged(stamped, received))

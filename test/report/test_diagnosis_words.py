@@ -14,6 +14,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.diagnosis import phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
 from werrimbi_odom.report.diagnosis.remarks import drowned, like_noise, nearest, not_shown
@@ -99,10 +100,13 @@ def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
     (said,) = by_sizes_alone(told)
     assert sizes in said
     assert "falls from 103 mm to 30.0 mm" in said
-    (said,) = nearest(diagnosis)
+    (said,) = nearest(diagnosis, law_told=True)
     assert "reference_heading_delay: errors are 24.0 mm with it, and 30.0 mm without" in said
+    assert "The above explains far more" in said
+    (said,) = nearest(diagnosis, law_told=False)  # nothing stands above
+    assert said.endswith("without. That is too little to name it.")
     ranking[1].holdout = Sides(0.103, 0.02999)
-    assert not nearest(diagnosis)
+    assert not nearest(diagnosis, law_told=True)
     factor = 2.1  # wheels exchanged, perhaps, and too few poses to tell
     assert not by_sizes_alone(told)
     factor, unsure = 1.098, 0.089  # a spin of a few legs, by a gyro
@@ -120,6 +124,18 @@ def test_a_gyro_sees_no_mark_passed(monkeypatch: pytest.MonkeyPatch, headings_al
     assert ("spin left, then right" in words) == headings_alone
     assert ("the mark passed" in words) != headings_alone
     assert "expect" in words
+
+
+def test_a_delay_that_was_looked_for_in_steps_is_told_as_fitted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two Neatos with lossy radios: "0.3 s too late", and a line later 0.84 ± 0.14 s."""
+    monkeypatch.setattr(phrases, "values_of", lambda *_: {"delay": value(0.84, 0.14)})
+    said = phrases.set_up_words(SimpleNamespace(), _late(0.3, 100.0))  # type: ignore[arg-type]
+    assert "the reference's stamps are 0.84 s too late against" in said
+    monkeypatch.setattr(phrases, "values_of", lambda *_: {})
+    said = phrases.set_up_words(SimpleNamespace(), _late(0.3, 100.0))  # type: ignore[arg-type]
+    assert "the reference's stamps are 0.3 s too late against" in said
 
 
 def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:

@@ -147,6 +147,8 @@ def _in_words(found: ScanPath, sigma_xy: Floats, sigma_yaw: Floats) -> str:
 def _unmatched(found: ScanPath) -> str:
     words = f"{found.scans - found.time.size} of {found.scans} scans were not matched"
     words += _because(found)
+    known = sum(np.ptp(found.time[found.piece == piece]) for piece in np.unique(found.piece))
+    words += f", and the path is known for {known:.1f} s in all"
     if found.cuts:
         started = found.time[0]
         when = ", ".join(

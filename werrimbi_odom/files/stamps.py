@@ -26,6 +26,9 @@ _LATE = 0.1
 _FEWEST = 3
 _ALIKE = 1.1
 """Largest ratio of jitters at which the header clock is still preferred."""
+_EVEN = 0.02
+"""Jitter, as a share of the usual interval, up to which the header clock is even enough: a
+simulation stamps to the millisecond, and what it receives is not evener for a rounding less."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +63,9 @@ class Stamps:
         """The clock with the more even intervals; the headers if they differ little."""
         if self.jitter is None:
             return "received"
-        return "header" if self.jitter <= _ALIKE * self.received_jitter else "received"
+        enough = _EVEN / self.rate if self.rate > 0.0 else 0.0
+        alike = max(_ALIKE * self.received_jitter, enough)
+        return "header" if self.jitter <= alike else "received"
 
 
 def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:

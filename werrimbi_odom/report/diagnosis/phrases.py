@@ -21,6 +21,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import LONGER_LEG, ORDINARY, SIGNIFICANT
+from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.number_format import chance_words, error_words, listed, quantity
@@ -79,6 +80,22 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     if name == "reference_delay" and values["delay"].value < 0.0:
         late += " Negative: it is the encoders' stamps that are late against the reference's."
     return [f"How large: {'; '.join(parts)}.{hang_together(every.values())}{late}"]
+
+
+def set_up_words(diagnosis: Diagnosis, finding: SetUpFinding) -> str:
+    """A set-up mistake in words; a delay as it was fitted, for it is looked for in coarse steps."""
+    words = finding.words.rstrip(".")
+    fitted = values_of(diagnosis, finding.effect).get("delay")
+    if fitted is None or "delay" not in finding.values:
+        return words
+    said, size = (
+        f"{seconds} s too {'late' if delay > 0.0 else 'early'}"
+        for delay, seconds in (
+            (finding.values["delay"], f"{abs(finding.values['delay']):.1f}"),
+            (fitted.value, f"{abs(fitted.value):.2g}"),
+        )
+    )
+    return words.replace(said, size)
 
 
 def _unseen(value: Value) -> bool:

@@ -266,8 +266,8 @@ def drowned(told: Told) -> list[str]:
     ]
 
 
-def nearest(diagnosis: Diagnosis) -> list[str]:
-    """The effect of the library that lowers the error most, beside base and radii."""
+def nearest(diagnosis: Diagnosis, law_told: bool) -> list[str]:
+    """The effect that lowers the error most, beside base and radii; held against the law told."""
     calibrated = diagnosis.holdout
     others = [item for item in diagnosis.ranking if item.effect not in CALIBRATED]
     best = min(others, key=lambda item: _after(item.holdout), default=None)
@@ -285,6 +285,8 @@ def nearest(diagnosis: Diagnosis) -> list[str]:
             "first, and drive more."
             if diagnosis.explained_by(best.effect)
             else "The above explains far more than it does, so that is not what it is."
+            if law_told
+            else "That is too little to name it."
         )
     ]
 

@@ -244,7 +244,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
                 "the one may go with the other because of how it was driven."
             )
     lines += remarks.floor_not_asked(diagnosis)
-    lines += remarks.nearest(diagnosis)
+    lines += remarks.nearest(diagnosis, bool(cells))
     lines += remarks.at_bounds_told(diagnosis)
     if cells:
         lines.append("Next: write it as an effect of your own, from what these drives show:")
@@ -277,7 +277,7 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     wrong = diagnosis.set_up.wrong
     lines = ["Something is set up wrongly:"] if wrong else []
     for finding in wrong:
-        words = finding.words.rstrip(".")
+        words = phrases.set_up_words(diagnosis, finding)
         lines.append(f"- {capital(words)}: {finding.effect}.")
     skids = [finding for finding in findings if finding not in wrong]
     return [
