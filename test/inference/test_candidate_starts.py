@@ -23,6 +23,7 @@ from werrimbi_odom.inference.fitting.free_parameters import START_YAW, changed
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, turns_over
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.inference.rules import MOST_STAMP_NOISE
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
@@ -125,3 +126,25 @@ def test_two_sizes_that_do_nearly_the_same_start_within_what_is_physical(seed: i
     found = diagnose([drive], ROBOT, LIBRARY)
     assert found.verdict == "ambiguous"
     assert {"track_width", "turn_dependent_track"} <= set(found.rivals)
+
+
+def test_jitter_of_the_stamps_does_not_stand_in_for_a_delay() -> None:
+    """A gyro 50 ms late: starts and stops were taken for jitter, and the delay was not tried."""
+    random = np.random.default_rng(3)
+    turning = random.uniform(-1.5, 1.5, 20) * (random.random(20) > 0.4)
+    drive = run_by(
+        ROBOT, *(np.repeat(each, 30) for each in (random.uniform(0.0, 0.3, 20), turning)), seed=3
+    )
+    seen = drive.reference
+    assert seen is not None
+    late = seen.time - 0.05 + random.normal(0.0, 0.01, seen.time.size)
+    nowhere = np.full(seen.time.size, np.nan)
+    yaw = np.interp(late, seen.time, np.unwrap(seen.yaw))
+    gyro = replace(drive, reference=replace(seen, x=nowhere, y=nowhere, yaw=yaw))
+    runs = concatenated(match_for_fit([gyro], ROBOT, 0.25))
+    before = fit_calibration(runs, ROBOT, EvaluationOptions(reference_kind="incremental"))
+    assert before.point.variances.stamp[0] ** 0.5 > MOST_STAMP_NOISE
+    best = search_round(runs, before, LIBRARY, ROBOT).tried[0]
+    assert best.names == ("reference_delay",)
+    (delay,) = best.point.model.robot.effects[-1].values.values()
+    assert delay == pytest.approx(0.05, abs=0.02)

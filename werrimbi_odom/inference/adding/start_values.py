@@ -19,7 +19,7 @@ from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidate_starts import started_with
+from werrimbi_odom.inference.fitting.candidate_starts import in_place_of_jitter, started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import (
@@ -140,19 +140,22 @@ def starts(
     """Starts for fits of an effect: at the values of its score, for the best of its shapes.
 
     Where not all of the calibration is determined, it may stand in for the effect, and a fit that
-    starts with it stays with it. Then there is also a start at the given robot's sizes, as in a
-    diagnosis.
+    starts with it stays with it. Then there is also a start at the given robot's sizes, and where
+    jitter of the stamps may stand in for a delay one with that delay, as in a diagnosis.
     """
     begun = [(before, (*CALIBRATION, *numbers))]
     if set(before.held) & set(CALIBRATED):
         point = as_given(before.point, given)
         nuisances = point.model.nuisance_parameters
         begun.append((replace(before, point=point), (*numbers, *nuisances)))
-    return tuple(
-        start_at(drives.laid, at, score, numbers)
-        for at, beside in begun
-        for score in _best_shapes(scored(drives, at, [effect], beside))
-    )
+    found = []
+    for at, beside in begun:
+        for score in _best_shapes(scored(drives, at, [effect], beside)):
+            start = start_at(drives.laid, at, score, numbers)
+            found.append(start)
+            if (instead := in_place_of_jitter(drives.laid, at.point, score)) is not None:
+                found.append(replace(start, point=instead))
+    return tuple(found)
 
 
 def scored(

@@ -11,7 +11,11 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
-from werrimbi_odom.inference.fitting.candidate_starts import looked_for, started_with
+from werrimbi_odom.inference.fitting.candidate_starts import (
+    in_place_of_jitter,
+    looked_for,
+    started_with,
+)
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import (
@@ -147,9 +151,10 @@ def search_round(
     tried = []
     chosen = worth_fitting(ordered)
     for score in ordered:
-        if score not in chosen and (start := looked_for(runs, point, score)) is not None:
-            fit = fitted_from(start, score)
-            tried += [fit] if fit.told else []
+        looked = [] if score in chosen else [looked_for(runs, point, score)]
+        for start in (*looked, in_place_of_jitter(runs, point, score)):
+            fit = None if start is None else fitted_from(start, score)
+            tried += [fit] if fit is not None and fit.told else []
     for score in chosen:
         variants = [
             other
@@ -167,6 +172,8 @@ def search_round(
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)
+    cheapest = dict(reversed([(fit.names[-1], fit) for fit in tried]))
+    tried = sorted(cheapest.values(), key=lambda fit: fit.total)
     return Round(
         before,
         tuple(ordered),

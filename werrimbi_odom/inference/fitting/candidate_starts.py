@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -17,9 +18,11 @@ from werrimbi_odom.inference.fitting.start_headings import (
     starts_unmeasured,
     turned_to_the_first_legs,
 )
-from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
+from werrimbi_odom.inference.rules import DELAYS_TRIED, MOST_STAMP_NOISE, TYPICAL_STAMP_NOISE
+from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import wrap_all
+from werrimbi_odom.model.reference_view import View
 
 _SHARES = np.array([1.0, 0.5, 0.25])
 """Distances at which a measured point is looked for, relative to what its score suggests."""
@@ -54,6 +57,37 @@ def looked_for(runs: Concatenated, point: Point, score: Score) -> Point | None:
     return _turned_with_the_headings(
         runs, point, replace(score, coefficients=np.array([2.0 * far, 0.0]))
     )
+
+
+def in_place_of_jitter(runs: Concatenated, point: Point, score: Score) -> Point | None:
+    """Start with the delay that stands behind a large jitter of the stamps; None where none may.
+
+    The noise of the stamps is then typical, and the delay the best of some.
+    """
+    jitter = math.sqrt(float(point.variances.stamp.max()))
+    if not (runs.has_stamp_noise and jitter > MOST_STAMP_NOISE and _is_a_delay(score)):
+        return None
+    (item,) = score.candidate.effect.parameters.values()
+    usual = np.full_like(point.variances.stamp, TYPICAL_STAMP_NOISE**2)
+    point = replace(point, variances=replace(point.variances, stamp=usual))
+    starts = []
+    either = np.concatenate([-DELAYS_TRIED, DELAYS_TRIED])
+    for delay in jitter * either / (STEP * item.scale):
+        model = with_candidate(point.model, replace(score, coefficients=np.array([delay])))
+        start = replace(point, model=model)
+        white = unexpected(runs, start, predict_all(model, runs)).whitened()
+        starts.append((float(np.sum(white**2)), start))
+    return min(starts, key=lambda start: start[0])[1]
+
+
+def _is_a_delay(score: Score) -> bool:
+    """Whether all that an effect does is that the reference's stamps are late."""
+    effect: Effect = score.candidate.effect
+    if effect.stage != "reference":
+        return False
+    usual = {name: item.typical for name, item in effect.parameters.items()}
+    view: View = effect.apply(View(), **usual)
+    return view != View() and view._replace(delay=0.0) == View()
 
 
 def _is_of_a_point(score: Score) -> bool:

@@ -20,8 +20,16 @@ of 3.1 sigma.
 
 TYPICAL_STAMP_NOISE, STAMP_NOISE_SPREAD = 3e-3, 0.6
 """Log-normal prior of the jitter of a gyro's stamps relative to the encoders' [s]: messages at 50
-to 200 Hz wait for one another by some milliseconds; 1 and 10 ms are two standard deviations off. An
-estimate of more than 20 ms is a delay (`reference_delay`), and must not pass for jitter."""
+to 200 Hz wait for one another by some milliseconds; 1 and 10 ms are two standard deviations off."""
+
+MOST_STAMP_NOISE = 0.02
+"""Estimate of that jitter [s] above which a delay may stand behind it (`reference_delay`): two
+intervals of 100 Hz. Weighed by it, the legs that would show the delay hardly count, so that a fit
+of the delay begins with the typical jitter instead."""
+
+DELAYS_TRIED = np.array([0.5, 1.0, 1.5, 2.0, 3.0])
+"""Delays, over that jitter, from which the best is the start, of either sign: a delay makes errors
+of the size of a jitter as large where a robot starts and stops, and smaller ones elsewhere."""
 
 STRANGE_NOISE = 0.01
 """Wheel noise [m^0.5] above which it is no rolling wheel's: 1 cm after 1 m, three times that of the
