@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from test.inference.driven import run_of
+from test.model.drives import ROBOT as STEERED
 from test.model.drives import read
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
@@ -21,9 +22,11 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance, diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.rules import SET_ASIDE_ROWS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.words import json_of as json_of_added
@@ -183,3 +186,14 @@ def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
         for parameter, value in item["parameters"].items():
             low, high = find(item["effect"]).parameters[parameter].bounds
             assert value["std"] is None or not value["std"] > high - low
+
+
+def test_of_a_drive_seen_only_at_its_end_the_last_poses_are_put_aside() -> None:
+    """A lidar that found its walls after three quarters of the way: nothing was left to fit."""
+    run = run_of(STEERED, 1, 100)
+    assert run.reference is not None
+    seen = run.reference.chosen(run.reference.time > 85.0)
+    parts = set_aside([replace(run, reference=seen)])
+    poses = [each.reference.time.size for part in parts for each in part if each.reference]
+    assert min(poses) > 0.2 * sum(poses)
+    assert sum(poses) == seen.time.size < SET_ASIDE_ROWS

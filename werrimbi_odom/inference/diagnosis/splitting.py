@@ -22,7 +22,8 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
     Two stretches of each drive's reference are held out, at other places in every drive, so that
     all kinds of motion are on both sides. The counters run on through them, so that the memory of
     an effect (a wheel's angle, the travel since a reversal, the distance) is the same on both. If a
-    drive has too few poses for that, whole drives are held out; of a single such drive, its end.
+    drive has too few poses for that, whole drives are held out; of a single such drive, the last
+    quarter of its poses.
     """
     if all(_rows(run) >= SET_ASIDE_ROWS for run in runs):
         parts = [_parted(run, number) for number, run in enumerate(runs)]
@@ -36,16 +37,20 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
             tuple(run for index, run in enumerate(runs) if index in chosen),
         )
     (run,) = runs
-    time = run.ticks.time
+    time = run.ticks.time if run.reference is None else run.reference.time[_measured(run.reference)]
     share = 1.0 - len(SET_ASIDE) / SET_ASIDE_BLOCKS
-    at = float(time[0] + share * (time[-1] - time[0]))
+    at = float(np.quantile(time, share)) if time.size else np.inf
     return tuple(_between(runs, -np.inf, at)), tuple(_between(runs, at, np.inf))
 
 
 def _rows(run: Run) -> int:
     if run.reference is None:
         return 0
-    return int((run.reference.has_position | run.reference.has_yaw).sum())
+    return int(_measured(run.reference).sum())
+
+
+def _measured(reference: Reference) -> np.ndarray:
+    return np.asarray(reference.has_position | reference.has_yaw)
 
 
 def _parted(run: Run, number: int) -> tuple[Run, Run]:
