@@ -13,7 +13,7 @@ from test.hidden import followed_to_rest
 from test.hidden.intervals import between
 from test.hidden.plan import EFFECTS, OUTSIDERS
 from test.hidden.poorer import POORER
-from test.hidden.result_line import Judged, is_right, judgement, matters
+from test.hidden.result_line import Judged, in_a_cell, is_right, judgement, matters
 from test.hidden.rules import RULES, both_found, halfway, right_variable
 from test.hidden.table_layout import Table
 from werrimbi_odom.simulation.hidden import find as hideable
@@ -247,7 +247,7 @@ def wrong(lines: Sequence[Judged]) -> Table:
         (
             f"`{line.name}`",
             line.verdict,
-            ", ".join(line.found) or line.error.replace("|", "/"),
+            ", ".join(line.found) or in_a_cell(line.error),
             ", ".join(line.rivals),
             f"{line.raised:.2f}" if math.isfinite(line.raised) else "",
         )

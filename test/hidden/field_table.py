@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from test.hidden.field import SEEN, could_be_seen, how
 from test.hidden.intervals import between
 from test.hidden.plan import EFFECTS
+from test.hidden.result_line import in_a_cell
 from test.hidden.resumable_jobs import Line
 from test.hidden.table_layout import Table
 
@@ -119,7 +120,7 @@ def _wrong(results: Mapping[str, Line], title: str) -> Table:
             f"`{key}`",
             SEEN[name].says,
             said["verdict"],
-            ", ".join(said.get("found", ())) or said.get("error", "").replace("|", "/"),
+            ", ".join(said.get("found", ())) or in_a_cell(said.get("error", "")),
             ", ".join(said.get("rivals", ())),
         )
         for key, _, name, said, worth in _judged(results)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
@@ -169,3 +170,8 @@ def both_matter(line: Judged) -> bool:
     return bool(line.without) and all(
         line.floor is not None and each > MATTERS * line.floor for each in line.without
     )
+
+
+def in_a_cell(error: str) -> str:
+    """An error for a table's cell: without the folders of this machine."""
+    return re.sub(r"/\S*/", "", error).replace("|", "/")
