@@ -199,6 +199,6 @@ def _pruned(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fit
 
 
 def _with_needed_sizes(drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
-    if not set(fit.held) & set(CALIBRATED):
+    if not fit.sizes_held:
         return fit
     return with_sizes(drives.laid, fit, given, sizes_needed(fit, given, ()))

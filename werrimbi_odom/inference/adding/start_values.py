@@ -144,7 +144,7 @@ def starts(
     jitter of the stamps may stand in for a delay one with that delay, as in a diagnosis.
     """
     begun = [(before, (*CALIBRATION, *numbers))]
-    if set(before.held) & set(CALIBRATED):
+    if before.sizes_held:
         point = as_given(before.point, given)
         nuisances = point.model.nuisance_parameters
         begun.append((replace(before, point=point), (*numbers, *nuisances)))

@@ -10,14 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
+from werrimbi_odom.inference.fitting.candidate import Candidate, usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.score_tests import Candidate
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 
 ACCELERATIONS = frozenset({"left_acceleration", "right_acceleration"})
@@ -35,7 +34,7 @@ class Support(NamedTuple):
 def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
     """Support of a candidate, by evaluation on the steps of recorded runs."""
     effect = candidate.effect
-    if effect.stage == "reference" and _view_of(effect).wander != 0.0:
+    if effect.stage == "reference" and usual_view(effect).wander != 0.0:
         return _OF_A_GYRO
     if effect.stage not in ("wheels", "body"):
         return Support(frozenset(), frozenset())
@@ -79,15 +78,8 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
 
 def _of_a_gyro(effect: Effect) -> bool:
     """Whether an effect is of headings that another sensor gives than places."""
-    view = _view_of(effect)
+    view = usual_view(effect)
     return bool(view.heading_delay != 0.0 or view.wander != 0.0)
-
-
-def _view_of(effect: Effect) -> View:
-    """The view of a reference with an effect of the usual size."""
-    usual = {name: item.typical for name, item in effect.parameters.items()}
-    view: View = effect.apply(View(), **usual)
-    return view
 
 
 def _without(

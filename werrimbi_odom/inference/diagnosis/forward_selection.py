@@ -24,7 +24,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     changed,
 )
-from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,
@@ -171,9 +170,10 @@ def search_round(
         fits = [fitted_from(started_with(runs, begin, option), option) for begin, option in options]
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
-    tried.sort(key=lambda fit: fit.total)
-    cheapest = dict(reversed([(fit.names[-1], fit) for fit in tried]))
-    tried = sorted(cheapest.values(), key=lambda fit: fit.total)
+    cheapest: dict[str, Fitted] = {}
+    for fit in sorted(tried, key=lambda fit: fit.total):
+        cheapest.setdefault(fit.names[-1], fit)
+    tried = list(cheapest.values())
     return Round(
         before,
         tuple(ordered),
@@ -198,7 +198,7 @@ def _scores_in_place_of_sizes(
     that starts with these stays with them. So it does where they stood in for the lever arm without
     being needed: spins on the spot took the ratio to 1.2, and from there the fit went astray.
     """
-    if not set(before.held) & set(CALIBRATED):
+    if not before.sizes_held:
         return {}
     point = as_given(before.point, given)
     numbers = (*before.numbers, *point.model.nuisance_parameters)

@@ -102,6 +102,11 @@ class Fitted:
     given."""
 
     @property
+    def sizes_held(self) -> bool:
+        """Whether the runs leave some of the calibration undetermined."""
+        return bool(set(self.held) & set(CALIBRATED))
+
+    @property
     def by_noise(self) -> Floats:
         """Covariance by the noise alone."""
         return self.covariance / np.outer(self.widening, self.widening)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.reference_view import View
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,3 +95,10 @@ class Candidate:
             value = null[name] + factor * (coordinate[name] - null[name])
             values[name] = min(max(value, item.bounds[0]), item.bounds[1])
         return AppliedEffect(self.effect, values)
+
+
+def usual_view(effect: Effect) -> View:
+    """The view of a reference with an effect of it, of the usual size."""
+    usual = {name: item.typical for name, item in effect.parameters.items()}
+    view: View = effect.apply(View(), **usual)
+    return view

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.candidate import usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import STEP, Model
 from werrimbi_odom.inference.fitting.prediction import predict_all, turns_over
@@ -20,7 +21,7 @@ from werrimbi_odom.inference.fitting.start_headings import (
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.rules import DELAYS_TRIED, MOST_STAMP_NOISE, TYPICAL_STAMP_NOISE
-from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.reference_view import View
 
@@ -82,11 +83,10 @@ def in_place_of_jitter(runs: Concatenated, point: Point, score: Score) -> Point 
 
 def _is_a_delay(score: Score) -> bool:
     """Whether all that an effect does is that the reference's stamps are late."""
-    effect: Effect = score.candidate.effect
+    effect = score.candidate.effect
     if effect.stage != "reference":
         return False
-    usual = {name: item.typical for name, item in effect.parameters.items()}
-    view: View = effect.apply(View(), **usual)
+    view = usual_view(effect)
     return view != View() and view._replace(delay=0.0) == View()
 
 
