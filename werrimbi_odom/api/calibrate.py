@@ -40,11 +40,7 @@ if TYPE_CHECKING:
 
 
 def calibrate_fit(
-    robot: RobotFile,
-    runs: Drives,
-    *,
-    holdout: Drives = (),
-    **options: Unpack[Options],
+    robot: RobotFile, runs: Drives, *, holdout: Drives = (), **options: Unpack[Options]
 ) -> Result[Calibration]:
     """Estimate multipliers and k_L, k_R by maximum likelihood, with standard deviations.
 
@@ -104,8 +100,7 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     model = result.fit.point.model
     headings = [model.start_yaw(index) for index in range(len(runs))]
     return leg_figure(
-        errors_of_legs(source.robot, runs, headings),
-        errors_of_legs(result.robot, runs, headings),
+        errors_of_legs(source.robot, runs, headings), errors_of_legs(result.robot, runs, headings)
     )
 
 

@@ -165,10 +165,7 @@ def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Rea
     for number, path in enumerate(paths):
         read.show(number / len(paths), f"reading {path.name}")
         drive = read_run(
-            path,
-            source,
-            ticks_topic=read.ticks_topic,
-            reference_topic=read.reference_topic,
+            path, source, ticks_topic=read.ticks_topic, reference_topic=read.reference_topic
         )
         read.notes.extend(f"{path}: {note}" for note in drive.notes)
         if drive.reference is None:

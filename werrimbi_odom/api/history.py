@@ -213,9 +213,7 @@ def _result(found: History) -> Result[History]:
     from werrimbi_odom.report.history import document_of, json_of
 
     return Result(
-        found=found,
-        document=lambda: document_of(found),
-        figures_of_json=lambda: json_of(found),
+        found=found, document=lambda: document_of(found), figures_of_json=lambda: json_of(found)
     )
 
 

@@ -80,9 +80,7 @@ def info(
     if out is not None:
         found = replace(found, written=_write(found, Path(out), force))
     return Result(
-        found=found,
-        document=lambda: document_of(found),
-        figures_of_json=lambda: info_json(found),
+        found=found, document=lambda: document_of(found), figures_of_json=lambda: info_json(found)
     )
 
 

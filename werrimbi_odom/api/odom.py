@@ -114,11 +114,7 @@ def _reckoned(recorded: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
 
 
 def _write_rows(
-    file: TextIO,
-    time: Floats,
-    entry: NDArray[np.intp],
-    driven: Trajectory | ShownPath,
-    show: Show,
+    file: TextIO, time: Floats, entry: NDArray[np.intp], driven: Trajectory | ShownPath, show: Show
 ) -> None:
     estimates = (driven.x, driven.y, _half_open(driven.yaw), *driven.covariance)
     file.write(COLUMNS + "\n")

@@ -28,11 +28,7 @@ if TYPE_CHECKING:
 
 
 def compare(
-    robot: RobotFile,
-    runs: Drives,
-    *,
-    show: Show = silent,
-    **options: Unpack[Options],
+    robot: RobotFile, runs: Drives, *, show: Show = silent, **options: Unpack[Options]
 ) -> Result[Comparison]:
     """Compare a model with measurements.
 

@@ -22,9 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "drives are put aside for judging."
     )
     parser.add_argument(
-        "effect",
-        metavar="EFFECT",
-        help="its name, or several: A,B,C; werrimbi explain lists all",
+        "effect", metavar="EFFECT", help="its name, or several: A,B,C; werrimbi explain lists all"
     )
     add_recording_arguments(
         parser,

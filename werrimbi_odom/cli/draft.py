@@ -25,9 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "is the dependence that the drives show, to be read, renamed and added."
     )
     add_recording_arguments(
-        parser,
-        holdout=True,
-        force="draft whatever the verdict is, and over an existing package",
+        parser, holdout=True, force="draft whatever the verdict is, and over an existing package"
     )
     declare(parser, "--out", metavar="DIR", help="folder for the package")
 

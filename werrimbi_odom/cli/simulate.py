@@ -134,11 +134,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _in_the_field(
-    recording: Recording,
-    robot: TrueRobot,
-    odd: Sequence[Peculiarity],
-    seed: int,
-    folder: Path,
+    recording: Recording, robot: TrueRobot, odd: Sequence[Peculiarity], seed: int, folder: Path
 ) -> dict[str, object]:
     """Write a drive as a bag; return its ground truth, for truth.json."""
     from werrimbi_odom import simulation

@@ -14,10 +14,7 @@ from werrimbi_odom.model.motion import Number, WheelTravel
         "late",
         "the right counter is read later than the left",
         "the two counters are not read at one instant",
-        (
-            "left counter",
-            "right counter",
-        ),
+        ("left counter", "right counter"),
     ),
     delay=Parameter(
         "s",

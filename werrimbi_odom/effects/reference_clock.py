@@ -13,10 +13,7 @@ from werrimbi_odom.model.reference_view import View
         "late",
         "the reference's stamps are late",
         "the reference tells the same, later",
-        (
-            "counters",
-            "reference",
-        ),
+        ("counters", "reference"),
     ),
     delay=Parameter(
         "s",
@@ -46,10 +43,7 @@ def reference_delay(view: View, delay: float) -> View:
         "late",
         "the reference's heading is later than its position",
         "the reference's heading comes after its position",
-        (
-            "its position",
-            "its heading",
-        ),
+        ("its position", "its heading"),
     ),
     delay=Parameter(
         "s",

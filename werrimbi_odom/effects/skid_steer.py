@@ -11,10 +11,7 @@ from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
-    twins=(
-        turning_about_another_point("reference_lever_arm"),
-        as_a_wider_base("track_width"),
-    ),
+    twins=(turning_about_another_point("reference_lever_arm"), as_a_wider_base("track_width")),
     sketch=Sketch(
         "skid",
         "four wheels that skid: each side turns about a point outside its wheels",

@@ -34,7 +34,7 @@ def wheels_swapped(wiring: Wiring) -> Wiring:
         "the left counter has the wrong sign",
         "driving forwards, the left counter falls",
         ("left",),
-    ),
+    )
 )
 def left_wheel_reversed(wiring: Wiring) -> Wiring:
     """The left counter counts backwards while its wheel rolls forwards.

@@ -91,11 +91,7 @@ class Recordings:
         )
 
 
-def read(
-    asked: Asked,
-    collection: Collection,
-    show: Show = silent,
-) -> Recordings:
+def read(asked: Asked, collection: Collection, show: Show = silent) -> Recordings:
     """Read robot file and runs.
 
     Parameters

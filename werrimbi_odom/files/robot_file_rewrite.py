@@ -9,9 +9,7 @@ from pathlib import Path
 
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.effect_parameters import (
-    parameters_of,
-)
+from werrimbi_odom.files.effect_parameters import parameters_of
 from werrimbi_odom.files.node_parameter import Value
 from werrimbi_odom.files.parameters import PARAMETERS, find, robot_of
 from werrimbi_odom.files.robot_file import PARAMETER_KEY, RobotFile, robot_file_of_text
@@ -80,9 +78,7 @@ def write_robot_file(
 
 
 def new_text(
-    source: RobotFile,
-    changes: Mapping[str, Value],
-    effects: Sequence[AppliedEffect] | None = None,
+    source: RobotFile, changes: Mapping[str, Value], effects: Sequence[AppliedEffect] | None = None
 ) -> str:
     """Text that `write_robot_file` would write, for a preview.
 

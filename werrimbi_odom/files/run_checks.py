@@ -228,10 +228,7 @@ def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:
     stamps = np.maximum.accumulate(run.ticks.time)
     left, right = (
         np.interp(time, stamps, counts.astype(np.float64) * size, left=np.nan, right=np.nan)
-        for counts, size in (
-            (run.ticks.left, robot.left_tick),
-            (run.ticks.right, robot.right_tick),
-        )
+        for counts, size in ((run.ticks.left, robot.left_tick), (run.ticks.right, robot.right_tick))
     )
     return 0.5 * (left + right), (right - left) / robot.track
 

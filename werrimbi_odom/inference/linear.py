@@ -138,9 +138,7 @@ def solved(columns: Floats, target: Floats) -> Floats:
 
 
 def admitted(
-    columns: Floats,
-    beside: Nuisance,
-    known: Callable[[list[int]], bool] = lambda tried: True,
+    columns: Floats, beside: Nuisance, known: Callable[[list[int]], bool] = lambda tried: True
 ) -> list[int]:
     """Select identifiable columns greedily; earlier columns have precedence.
 

@@ -85,10 +85,7 @@ class DriveMemory:
         self._left, self._right, self._middle = _Shuttle(least), _Shuttle(least), _Shuttle(least)
 
     def step(
-        self,
-        raw: RawStep,
-        pose: Pose,
-        channels: Mapping[str, Span[float]] | None = None,
+        self, raw: RawStep, pose: Pose, channels: Mapping[str, Span[float]] | None = None
     ) -> Drive[float]:
         """Add one step that begins at `pose`; return what an effect may read in it."""
         time = Span(self._time, self._time + raw.duration)

@@ -63,11 +63,7 @@ class Driving:
             self.begin(left, right)
 
     def step(
-        self,
-        duration: float,
-        raw: WheelTravel[float],
-        pose: Pose,
-        channels: Channels | None = None,
+        self, duration: float, raw: WheelTravel[float], pose: Pose, channels: Channels | None = None
     ) -> tuple[WheelTravel[float], BodyMotion[float]]:
         """Travel and motion of one step that begins at `pose`."""
         motion = wheels_to_body(raw, self.robot.track)

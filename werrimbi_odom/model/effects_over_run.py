@@ -18,13 +18,7 @@ import numpy as np
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, Some
 from werrimbi_odom.model.effect import after_stage
-from werrimbi_odom.model.motion import (
-    BodyMotion,
-    Number,
-    WheelTravel,
-    displacement,
-    wheels_to_body,
-)
+from werrimbi_odom.model.motion import BodyMotion, Number, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 
@@ -202,11 +196,7 @@ Places = Callable[[AfterEffects, Floats], tuple[Floats, Floats]]
 
 
 def driven_from_measured(
-    robot: Robot,
-    raw: WheelTravel[Floats],
-    drive: Drive[Floats],
-    headings: Headings,
-    places: Places,
+    robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], headings: Headings, places: Places
 ) -> AfterEffects:
     """As `driven`, where the pose is measured at times, so that errors do not accumulate.
 

@@ -14,12 +14,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.counter_wraps import differences
-from werrimbi_odom.model.encoder_online import (
-    Counts,
-    Encoder,
-    EncoderLimits,
-    EncoderTally,
-)
+from werrimbi_odom.model.encoder_online import Counts, Encoder, EncoderLimits, EncoderTally
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pace import CLOSE, PAUSE
 from werrimbi_odom.model.pose import Floats
@@ -59,11 +54,7 @@ def lost_travel(steps: WheelSteps) -> dict[int, WheelTravel[float]]:
 
 
 def wheel_steps(
-    robot: Robot,
-    time: Floats,
-    left: Counts,
-    right: Counts,
-    limits: EncoderLimits | None = None,
+    robot: Robot, time: Floats, left: Counts, right: Counts, limits: EncoderLimits | None = None
 ) -> WheelSteps:
     """Compute all steps of a record at once; the same as passing its rows to an `Encoder`.
 

@@ -15,11 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.covariance import (
-    PoseCovariance,
-    after_stretch,
-    path_noise_of,
-)
+from werrimbi_odom.model.covariance import PoseCovariance, after_stretch, path_noise_of
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pace import REMEMBERED, seen

@@ -22,7 +22,4 @@ class Wiring(NamedTuple):
         if self.swapped:
             left, right = right, left
         # Not multiplied by 1.0: that would round counters beyond 2^53.
-        return (
-            left if self.left_sign > 0.0 else -left,
-            right if self.right_sign > 0.0 else -right,
-        )
+        return (left if self.left_sign > 0.0 else -left, right if self.right_sign > 0.0 else -right)

@@ -75,12 +75,7 @@ def history_figure(history: History) -> Figure:
 
 
 def _panel(
-    figure: Figure,
-    row: int,
-    number: Number,
-    history: History,
-    dates: list[Any],
-    names: list[str],
+    figure: Figure, row: int, number: Number, history: History, dates: list[Any], names: list[str]
 ) -> None:
     factor, offset = _scale(number)
     std = number.own_std

@@ -126,11 +126,7 @@ def leg_error(start: Both, end: Both) -> LegError:
     predicted = between(start.odometry.pose, end.odometry.pose)
     measured = between(start.reference.pose, end.reference.pose)
     error = np.array(
-        [
-            measured.x - predicted.x,
-            measured.y - predicted.y,
-            wrap(measured.yaw - predicted.yaw),
-        ]
+        [measured.x - predicted.x, measured.y - predicted.y, wrap(measured.yaw - predicted.yaw)]
     )
     odometry = _of_stretch(start.odometry, end.odometry, sign=-1.0)
     scale = float(np.abs(end.odometry.covariance).max())

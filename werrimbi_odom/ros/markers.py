@@ -22,11 +22,7 @@ KEPT = 200
 """Pieces on display; each further one deletes the oldest."""
 
 # Blue, orange and reddish purple of Okabe and Ito, distinguishable with any colour vision.
-COLOURS = {
-    "line": (0.0, 0.447, 0.698),
-    "arc": (0.902, 0.624, 0.0),
-    "spin": (0.8, 0.475, 0.655),
-}
+COLOURS = {"line": (0.0, 0.447, 0.698), "arc": (0.902, 0.624, 0.0), "spin": (0.8, 0.475, 0.655)}
 
 _SIGMAS_95 = math.sqrt(-2.0 * math.log(0.05))  # of a normal vector in the plane
 _CHORD = 0.1  # rad: angle between the points of an arc ...

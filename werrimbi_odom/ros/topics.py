@@ -25,9 +25,7 @@ from werrimbi_odom.errors import InputError
 def sensor_qos() -> QoSProfile:
     """Best effort and volatile match every publisher; the depth is 0.1 s at 1 kHz."""
     return QoSProfile(
-        depth=100,
-        reliability=ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.VOLATILE,
+        depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE
     )
 
 

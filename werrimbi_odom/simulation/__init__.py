@@ -19,15 +19,7 @@ motion capture), `hidden` (hidden effects as test data).
 from .engine import AxlePose, TruePath, UnstableError
 from .field import FieldDrive, FieldSensors, as_in_the_field
 from .field_bag import write_field_bag
-from .hidden import (
-    CATALOGUE,
-    Hidden,
-    Peculiarity,
-    StrengthError,
-    UnknownEffectError,
-    hide,
-    wished,
-)
+from .hidden import CATALOGUE, Hidden, Peculiarity, StrengthError, UnknownEffectError, hide, wished
 from .live import LiveRobot
 from .manoeuvre import Manoeuvre, MoveLimits, moves
 from .manoeuvres import (

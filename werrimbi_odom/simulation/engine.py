@@ -13,15 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from .chassis import (
-    IMPEDANCE,
-    SKID_BEHIND,
-    STEP,
-    TIME_CONSTANT,
-    Chassis,
-    shaft_joint,
-    to_mjcf,
-)
+from .chassis import IMPEDANCE, SKID_BEHIND, STEP, TIME_CONSTANT, Chassis, shaft_joint, to_mjcf
 
 Floats = NDArray[np.float64]
 

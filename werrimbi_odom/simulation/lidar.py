@@ -129,11 +129,7 @@ def sweeps_at(
 def _lidar_at(path: TruePath, lidar: Lidar, at: Floats) -> tuple[Floats, Floats, Floats]:
     x, y, yaw = (np.interp(at, path.t_s, each) for each in (path.x_m, path.y_m, path.yaw_rad))
     cos, sin, mount = np.cos(yaw), np.sin(yaw), lidar.mount
-    return (
-        x + cos * mount.x - sin * mount.y,
-        y + sin * mount.x + cos * mount.y,
-        yaw + mount.yaw,
-    )
+    return (x + cos * mount.x - sin * mount.y, y + sin * mount.x + cos * mount.y, yaw + mount.yaw)
 
 
 def _distance(room: Room, x: Floats, y: Floats, direction: Floats, at: Floats) -> Floats:

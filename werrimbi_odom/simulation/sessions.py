@@ -66,10 +66,7 @@ def _slalom(pace: MoveLimits) -> Manoeuvre:
 
 
 def session(
-    robot: TrueRobot,
-    seed: int,
-    *,
-    hidden: Sequence[Peculiarity] = (),
+    robot: TrueRobot, seed: int, *, hidden: Sequence[Peculiarity] = ()
 ) -> Iterator[tuple[str, Recording]]:
     """Record the drives of the session, one after the other.
 

@@ -22,12 +22,7 @@ from werrimbi_odom.workbench.views.steps_bar import steps_bar
 from werrimbi_odom.workbench.views.under_way import failed_view, opening_view, under_way
 
 STYLE = Path(__file__).with_name("page.css")
-VIEW = {
-    "compare": compare_view,
-    "diagnose": diagnose_view,
-    "add": add_view,
-    "save": save_view,
-}
+VIEW = {"compare": compare_view, "diagnose": diagnose_view, "add": add_view, "save": save_view}
 FOCUS = """<script>
 let werrimbiWanted;
 function werrimbiFocus(key) {

@@ -20,16 +20,8 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
-from werrimbi_odom.inference.adding.fitted_parameters import (
-    parameters_of,
-    std_of,
-    to_write,
-)
-from werrimbi_odom.inference.adding.start_values import (
-    FitDrives,
-    drives_of,
-    with_set_up,
-)
+from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of, to_write
+from werrimbi_odom.inference.adding.start_values import FitDrives, drives_of, with_set_up
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.worth import Question
 from werrimbi_odom.inference.calibration_parametrisation import base_name, robot_for_cutting
@@ -282,10 +274,7 @@ def _on_all(
     """Fit the same model to all runs, including the held-out parts."""
     if len(runs) < 2:
         return drives, fit  # of a single run the last part was held out; the fit keeps to the rest
-    both = [
-        drives,
-        drives_of(judge.holdout, fit.point.model.robot, drives.options),
-    ]
+    both = [drives, drives_of(judge.holdout, fit.point.model.robot, drives.options)]
     laid = tuple(run for part in both for run in part.laid.runs)
     skipped = tuple(legs for part in both for legs in part.skipped)
     every = replace(drives, laid=concatenated(laid), skipped=skipped)

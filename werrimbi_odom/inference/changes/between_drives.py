@@ -120,10 +120,7 @@ def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Mo
 
 
 def _beside(
-    diagnosis: Diagnosis,
-    fit: Fitted,
-    dependences: Sequence[Dependence],
-    effects: Sequence[Effect],
+    diagnosis: Diagnosis, fit: Fitted, dependences: Sequence[Dependence], effects: Sequence[Effect]
 ) -> tuple[Moved, ...]:
     """Changes beside a model, unless one more effect or a dependence explains them.
 

@@ -15,14 +15,7 @@ import numpy as np
 
 from werrimbi_odom.inference.changes.drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
-from werrimbi_odom.inference.changes.shapes import (
-    Kind,
-    Rows,
-    Shape,
-    first_drives,
-    gains,
-    rows_of,
-)
+from werrimbi_odom.inference.changes.shapes import Kind, Rows, Shape, first_drives, gains, rows_of
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE, WHICH_DRIVE

@@ -11,14 +11,9 @@ import numpy as np
 
 from werrimbi_odom.inference.changes.change_points import ChangePoints
 from werrimbi_odom.inference.changes.drives import DriveNumbers
-from werrimbi_odom.inference.changes.parameter_groups import (
-    NumberGroup,
-)
+from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
-from werrimbi_odom.inference.rules import (
-    SCATTER_DRIVES,
-    SURE_OF_A_CHANGE,
-)
+from werrimbi_odom.inference.rules import SCATTER_DRIVES, SURE_OF_A_CHANGE
 from werrimbi_odom.model.pose import Floats
 
 _MEDIAN_CHI2_1 = 0.4549

@@ -85,9 +85,7 @@ def rows_of(drives: DriveNumbers) -> Rows:
     seen = back * (turned @ (drives.weighted / unit)[..., None])[..., 0]
     span = float(np.ptp(drives.time)) or 1.0
     return Rows(
-        root[..., None] * turned * unit[:, None, :],
-        seen,
-        (drives.time - drives.time.min()) / span,
+        root[..., None] * turned * unit[:, None, :], seen, (drives.time - drives.time.min()) / span
     )
 
 

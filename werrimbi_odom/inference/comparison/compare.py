@@ -150,12 +150,7 @@ def compare(
     return judged(prepared, robot, show=lambda share, words: show(0.5 + 0.5 * share, words))
 
 
-def judged(
-    prepared: PreparedRuns,
-    robot: Robot | Model,
-    *,
-    show: Show = silent,
-) -> Comparison:
+def judged(prepared: PreparedRuns, robot: Robot | Model, *, show: Show = silent) -> Comparison:
     """Compare a model over prepared runs, so that two models are compared over the same legs."""
     model = robot if isinstance(robot, Model) else in_runs(prepared, robot)
     lengths, main = [], None

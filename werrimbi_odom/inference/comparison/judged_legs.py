@@ -29,11 +29,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.fitting.run_phases import model_in_runs
-from werrimbi_odom.inference.rules import (
-    DRIFT_LEGS,
-    FAR_ABOVE_NOISE,
-    MOST_WHEEL_NOISE,
-)
+from werrimbi_odom.inference.rules import DRIFT_LEGS, FAR_ABOVE_NOISE, MOST_WHEEL_NOISE
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 

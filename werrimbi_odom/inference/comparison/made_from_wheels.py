@@ -199,10 +199,7 @@ def _typical(ways: Floats, wheels: Floats) -> float:
 def _rounding(run: Run, robot: Robot) -> float:
     """Standard deviation of a path length from two counter readings; 0 if not quantised."""
     squares = []
-    for counts, tick in (
-        (run.ticks.left, robot.left_tick),
-        (run.ticks.right, robot.right_tick),
-    ):
+    for counts, tick in ((run.ticks.left, robot.left_tick), (run.ticks.right, robot.right_tick)):
         steps = np.abs(np.diff(counts[np.isfinite(counts)]))
         quantum = _quantum(steps[steps > 0])
         squares.append((quantum * tick) ** 2 / 6.0)

@@ -14,10 +14,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
-from werrimbi_odom.inference.rules import (
-    FACING_POSES,
-    POSE_ROWS,
-)
+from werrimbi_odom.inference.rules import FACING_POSES, POSE_ROWS
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 
@@ -155,10 +152,7 @@ def fitted_heading(predicted: NDArray[np.complex128], measured: NDArray[np.compl
 
 
 def _facing(
-    predicted: NDArray[np.complex128],
-    yaw: Floats,
-    measured: NDArray[np.complex128],
-    heading: float,
+    predicted: NDArray[np.complex128], yaw: Floats, measured: NDArray[np.complex128], heading: float
 ) -> Floats:
     """Heading at each pose, by aligning the predicted path with the positions around it."""
     count = measured.size

@@ -18,12 +18,7 @@ from werrimbi_odom.inference.fitting.candidate_starts import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
-from werrimbi_odom.inference.fitting.free_parameters import (
-    CALIBRATION,
-    MULTIPLIERS,
-    Model,
-    changed,
-)
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,

@@ -15,12 +15,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by, prepare
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
-from werrimbi_odom.inference.diagnosis.paired_comparison import (
-    Sides,
-    Unit,
-    error_of,
-    sides_of,
-)
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model

@@ -68,10 +68,7 @@ def rivals_of_others(
         if name in final.names:
             near = _near(name, rounds[final.names.index(name)])
         elif name in CALIBRATED:
-            near = (
-                *_sizes_in_place_of(name, final),
-                *own_scale_instead(name, final, given, laid),
-            )
+            near = (*_sizes_in_place_of(name, final), *own_scale_instead(name, final, given, laid))
         others[name] = tuple(other for other in near if other not in (*found, *rivals))
     return {name: near for name, near in others.items() if near}
 

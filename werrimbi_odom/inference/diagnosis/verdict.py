@@ -324,12 +324,7 @@ def _certainty(item: Ranked) -> float:
 
 
 def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) -> Ranked:
-    return Ranked(
-        effect,
-        p_value,
-        Sides(before.train, after.train, after.unit),
-        before.to(after),
-    )
+    return Ranked(effect, p_value, Sides(before.train, after.train, after.unit), before.to(after))
 
 
 def _nothing_in_common(judge: Judge, as_given: Model) -> ReferenceRemark:

@@ -21,12 +21,7 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import (
-    WALK,
-    map_variances,
-    prior_cost,
-    with_known_noise,
-)
+from werrimbi_odom.inference.fitting.noise import WALK, map_variances, prior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.rules import (
     NOISE_NUMBERS,

@@ -83,10 +83,7 @@ class OfTwo:
     """Change of the held-out error with the law of one variable instead, with its p-value."""
 
 
-def draft_effect(
-    diagnosis: Diagnosis,
-    show: Show = silent,
-) -> Draft:
+def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
     """Draft the effect that explains the strongest dependence.
 
     Returns

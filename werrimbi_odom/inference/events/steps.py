@@ -159,8 +159,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
         steps += [step for step, _ in new]
         chances += [chance for _, chance in new]
         change = np.concatenate(
-            [_change(step, of_shape[step.shape], shocks.enter.shape[1]) for step, _ in new],
-            axis=-1,
+            [_change(step, of_shape[step.shape], shocks.enter.shape[1]) for step, _ in new], axis=-1
         )
         columns = np.concatenate([columns, told.shown(change).reshape(white.size, -1)], axis=-1)
         solution = np.linalg.lstsq(columns, white.ravel(), rcond=None)[0]

@@ -30,11 +30,7 @@ from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import STEP
-from werrimbi_odom.inference.fitting.score_tests import (
-    CALIBRATED,
-    OF_THE_MEASUREMENT,
-    Candidate,
-)
+from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, OF_THE_MEASUREMENT, Candidate
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
@@ -153,10 +149,7 @@ def information_limits(
     """
     laid = concatenated(match_for_fit(runs, robot, options.leg))
     look = sensitivities_of(
-        Experiment(
-            laid,
-            start_point(laid, robot, options),
-        ),
+        Experiment(laid, start_point(laid, robot, options)),
         [_typical(effect) for effect in effects] + _calibrated(),
         (),
     )
@@ -185,11 +178,7 @@ def _best(
 
 
 def _limits(
-    candidate: Candidate,
-    look: Sensitivities,
-    tried: int,
-    power: float,
-    held: Sequence[str] = (),
+    candidate: Candidate, look: Sensitivities, tried: int, power: float, held: Sequence[str] = ()
 ) -> Iterator[DetectionLimit]:
     """Limit of each parameter except shapes, with the calibration as nuisance."""
     effect = candidate.effect

@@ -6,13 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.rules import (
-    COUNTS_NEAR,
-    MOST_OF_A_SKID,
-    NEAR,
-    ORDINARY,
-    UNIT_NEAR,
-)
+from werrimbi_odom.inference.rules import COUNTS_NEAR, MOST_OF_A_SKID, NEAR, ORDINARY, UNIT_NEAR
 
 FACTORS: dict[str, float] = {
     "2": 2.0,

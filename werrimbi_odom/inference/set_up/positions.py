@@ -27,12 +27,7 @@ from werrimbi_odom.inference.rules import (
     WINDOW,
     WINDOW_FLOOR,
 )
-from werrimbi_odom.inference.set_up.explanation import (
-    Setting,
-    SetUpEstimate,
-    setting_of,
-    wirings,
-)
+from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.records import (
     Complexes,

@@ -39,7 +39,7 @@ def figures_of(added: Added) -> list[Shown]:
             "effect, and reach the dashed line where nothing but noise is left; while something "
             "is still missing there is no such line.",
             {"": error_falling_figure(steps_of(added), added.noise_alone(added.holdout))},
-        ),
+        )
     ]
     if added.holdout.unit == "m":
         shown.append(
@@ -94,12 +94,7 @@ def steps_of(added: Added) -> list[ErrorOfModel]:
     if not added.is_calibration:
         names.insert(1, ("calibrated", "calibrated"))
     return [
-        ErrorOfModel(
-            name,
-            added.train.error(which),
-            added.holdout.error(which),
-            added.holdout.unit,
-        )
+        ErrorOfModel(name, added.train.error(which), added.holdout.error(which), added.holdout.unit)
         for name, which in names
     ]
 

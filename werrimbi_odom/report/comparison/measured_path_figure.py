@@ -44,13 +44,7 @@ def path_figure(comparison: Comparison, run: int | None = None) -> Figure:
 
 
 def _paths(
-    figure: Figure,
-    comparison: Comparison,
-    index: int,
-    most: int,
-    *,
-    predicted: bool,
-    first: bool,
+    figure: Figure, comparison: Comparison, index: int, most: int, *, predicted: bool, first: bool
 ) -> None:
     path = comparison.paths[index]
     name = style.escaped(comparison.runs[index].run.name)
@@ -125,12 +119,7 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
         "line": {"width": 1, "color": style.PAPER},
     }
     style.plot(
-        figure,
-        *style.places(middle),
-        shown=False,
-        text=texts,
-        told="%{text}",
-        marker=marker,
+        figure, *style.places(middle), shown=False, text=texts, told="%{text}", marker=marker
     )
     # Only for the legend, where a marker with many colours is black and invisible on a dark page.
     marker = {"color": style.GREY, "size": 12}

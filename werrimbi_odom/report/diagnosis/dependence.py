@@ -99,10 +99,9 @@ def unit_of(amount: Amount) -> tuple[str, float]:
     """Unit of an error per unit of its amount, and the conversion factor."""
     degree = math.degrees(1.0)
     if amount.channel == "heading":
-        return {
-            "turn": ("% of the turn", 100.0),
-            "duration": ("° per s", degree),
-        }.get(amount.per, ("° per m", degree))
+        return {"turn": ("% of the turn", 100.0), "duration": ("° per s", degree)}.get(
+            amount.per, ("° per m", degree)
+        )
     return ("mm per radian turned", 1e3) if amount.per == "turn" else ("mm per m", 1e3)
 
 

@@ -72,8 +72,7 @@ def ranking_figure(diagnosis: Diagnosis) -> Figure:
     ]
     low, high = max(min([0.0, *finite]), _WORST), max([5.0, *finite])
     figure.update_xaxes(
-        title="error lowered by [%]",
-        range=[1.05 * low, high + 0.35 * (high - low)],
+        title="error lowered by [%]", range=[1.05 * low, high + 0.35 * (high - low)]
     )
     figure.update_yaxes(autorange="reversed", showgrid=False)
     for name, item in zip(names, ranked, strict=True):

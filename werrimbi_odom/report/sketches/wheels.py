@@ -180,11 +180,7 @@ def _missed_ticks(side: str) -> Parts:
         if lost:
             parts.append(words(x + 5, 52, "×", colour=INK))
         x += 2 * width
-    return [
-        *parts,
-        words(105, 120, "slow", colour=GREY),
-        words(265, 120, "fast", colour=GREY),
-    ]
+    return [*parts, words(105, 120, "slow", colour=GREY), words(265, 120, "fast", colour=GREY)]
 
 
 def _swapped() -> Parts:

@@ -26,12 +26,7 @@ from .hidden_effect import Peculiarity
 from .knocks import Knock, ReferenceJump
 from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
 from .skid import skid_steer
-from .tyres import (
-    LoadTransfer,
-    RadiusFollowsPayload,
-    RadiusFollowsTemperature,
-    TyreSquash,
-)
+from .tyres import LoadTransfer, RadiusFollowsPayload, RadiusFollowsTemperature, TyreSquash
 from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side, TreadBump
 
 Rng = np.random.Generator

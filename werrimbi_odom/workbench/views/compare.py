@@ -14,12 +14,7 @@ from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.report.comparison.document import tables_of
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.workbench.html import box, button, prose, text
-from werrimbi_odom.workbench.leg_selection import (
-    Part,
-    PlacePart,
-    bin_parts,
-    motion_parts,
-)
+from werrimbi_odom.workbench.leg_selection import Part, PlacePart, bin_parts, motion_parts
 from werrimbi_odom.workbench.tab import Tab, millimetres
 from werrimbi_odom.workbench.views.side_panels import floor
 

@@ -180,10 +180,7 @@ def _following(tab: Tab, found: Diagnosed) -> None:
     text("p", f"{capital(manoeuvre.do)}{minutes}: {manoeuvre.why}.")
     if "manoeuvre" in found.figures:
         figure(
-            found.figures["manoeuvre"],
-            tab.dark,
-            "Figure: the path to drive, to scale",
-            "plot low",
+            found.figures["manoeuvre"], tab.dark, "Figure: the path to drive, to scale", "plot low"
         )
 
 
