@@ -19,8 +19,8 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
-from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment
+from werrimbi_odom.inference.manoeuvres.detection_limits import _calibrated, _limits, _typical
+from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment, sensitivities_of
 from werrimbi_odom.inference.rules import POWER, SURE
 from werrimbi_odom.model.pose import Floats
 
@@ -39,13 +39,20 @@ def limits(
     options: EvaluationOptions = NOISE,
     power: float = POWER,
 ) -> dict[str, dict[str, float]]:
-    effects = [find(name) for name in names]
-    return information_limits(effects, ROBOT, runs, options, tried=TRIED, power=power)
+    """Distance from null of each parameter, beside calibration and per-run parameters alone."""
+    candidates = [_typical(find(name)) for name in names]
+    look = sensitivities_of(drives_of(runs, options), candidates + _calibrated(), ())
+    return {
+        each.name: {
+            limit.parameter: limit.minimum_detectable for limit in _limits(each, look, TRIED, power)
+        }
+        for each in candidates
+    }
 
 
-def drives_of(runs: list[Run]) -> Experiment:
-    laid = concatenated(match_for_fit(runs, ROBOT, 1.0))
-    return Experiment(laid, start_point(laid, ROBOT, NOISE))
+def drives_of(runs: list[Run], options: EvaluationOptions = NOISE) -> Experiment:
+    laid = concatenated(match_for_fit(runs, ROBOT, options.leg))
+    return Experiment(laid, start_point(laid, ROBOT, options))
 
 
 def change(drives: Experiment, name: str, **values: float) -> Floats:

@@ -20,18 +20,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_parametrisation import base_name, name_of_base
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.effect_support import able, askable
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import noncentrality
-from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, OF_THE_MEASUREMENT, Candidate
-from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
@@ -42,7 +37,6 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined
 from werrimbi_odom.inference.rules import HIDDEN_FROM, POWER, SURE
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,56 +104,6 @@ def _never(effect: Effect) -> DetectionLimit:
 def _typical(effect: Effect) -> Candidate:
     shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
     return Candidate(effect, shape)
-
-
-def information_limits(
-    effects: Sequence[Effect],
-    robot: Robot,
-    runs: Sequence[Run],
-    options: EvaluationOptions,
-    *,
-    tried: int,
-    power: float = POWER,
-) -> dict[str, dict[str, float]]:
-    """Detection limits of some effects by parameter, for a known robot and noise.
-
-    Only calibration and per-run parameters are unknown.
-
-    Parameters
-    ----------
-    effects : sequence of Effect
-        Effects whose limits are wanted.
-    robot : Robot
-        The true robot with its wheel noise, without the effects.
-    runs : sequence of Run
-        Drives with a reference. Only the times and kinds of its measurements and the motion of the
-        wheels count.
-    options : EvaluationOptions
-        With the reference's noise [m, rad], which must be known.
-    tried : int
-        Number of candidates of the diagnosis (`forward_selection.Round.number`).
-    power : float
-        Probability of detection at the limit.
-
-    Returns
-    -------
-    dict
-        By effect and parameter the distance from null, in the parameter's unit; infinite where the
-        drives do not show it.
-    """
-    laid = concatenated(match_for_fit(runs, robot, options.leg))
-    look = sensitivities_of(
-        Experiment(laid, start_point(laid, robot, options)),
-        [_typical(effect) for effect in effects] + _calibrated(),
-        (),
-    )
-    return {
-        effect.name: {
-            limit.parameter: limit.minimum_detectable
-            for limit in _limits(_typical(effect), look, tried, power)
-        }
-        for effect in effects
-    }
 
 
 def _seen(
