@@ -23,7 +23,6 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import PARAMETERS, VIRTUAL_TICKS_PER_REVOLUTION
 from werrimbi_odom.ros.odom_parameters import (
     CHANGEABLE,
-    checked,
     settings_of,
 )
 
@@ -110,14 +109,14 @@ def refused(tmp_path: Path, run_node: Callable[..., subprocess.CompletedProcess[
 
 def test_everything_wrong_is_said_at_once() -> None:
     with pytest.raises(InputError) as error:
-        checked({"wheel_radius": -1.0, "wheel_with": 2.0})
+        settings_of({"wheel_radius": -1.0, "wheel_with": 2.0})
     for words in ("wheel_radius must be", "unknown parameter wheel_with", "missing: wheel_sep"):
         assert words in str(error.value)
 
 
 def test_whole_numbers_and_an_empty_list_of_effects_are_taken() -> None:
     """2000 arrives as an integer, [] as a parameter that is not set."""
-    values = checked({**BARE, "wheel_separation": 1, "effects": None})
+    values = settings_of({**BARE, "wheel_separation": 1, "effects": None}).values
     assert values["wheel_separation"] == 1.0
     assert isinstance(values["wheel_separation"], float)
     assert values["left_ticks_per_revolution"] == VIRTUAL_TICKS_PER_REVOLUTION
@@ -125,14 +124,14 @@ def test_whole_numbers_and_an_empty_list_of_effects_are_taken() -> None:
 
 def test_ticks_may_be_left_out_on_both_sides_only_and_without_wrapping() -> None:
     with pytest.raises(InputError, match=r"missing: right_ticks_per_revolution \(ticks\)"):
-        checked({**BARE, "left_ticks_per_revolution": 2000.0})
+        settings_of({**BARE, "left_ticks_per_revolution": 2000.0})
     with pytest.raises(InputError, match="encoder_bits needs left_ticks_per_revolution"):
-        checked({**BARE, "encoder_bits": 16})
+        settings_of({**BARE, "encoder_bits": 16})
 
 
 def test_everything_wrong_with_effects_is_said_at_once_too() -> None:
     with pytest.raises(InputError) as error:
-        checked(
+        settings_of(
             {
                 **BARE,
                 "effects": ["lateral_slip", "wheels_swapped"],

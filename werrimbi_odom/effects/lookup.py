@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
@@ -122,9 +122,9 @@ def load_file(path: Path) -> tuple[Effect, ...]:
         raise InputError(f"{path}: there is no such file")
     before = {id(effect) for effect in LIBRARY}
     found: dict[str, Effect] = {}
-    for value in _effects_in(vars(_executed(path))):
-        if id(value) in before:
-            continue  # imported from the library
+    for value in vars(_executed(path)).values():
+        if not isinstance(value, Effect) or id(value) in before:
+            continue  # what it imported, from the library too
         if found.setdefault(value.name, value) is not value:
             raise InputError(f"{path}: two effects are called {value.name}")
     if not found:
@@ -133,10 +133,6 @@ def load_file(path: Path) -> tuple[Effect, ...]:
             "or @reference_effect(...), as docs/effects.md shows"
         )
     return tuple(found.values())
-
-
-def _effects_in(names: dict[str, object]) -> Iterable[Effect]:
-    return (value for value in names.values() if isinstance(value, Effect))
 
 
 def _executed(path: Path) -> ModuleType:

@@ -32,7 +32,7 @@ def replacing(path: Path) -> Iterator[TextIO]:
                 yield direct
             return
         target = Path(place_of(path))  # a link stays; its target is replaced
-        part = _part_of(target)
+        part = target.with_name(f".{secrets.token_hex(8)}.part")
         try:
             with part.open("x", encoding="utf-8", newline="\n") as file:
                 yield file
@@ -79,10 +79,6 @@ def place_of(path: Path) -> str:
         return os.path.realpath(path)
     except ValueError:  # a NUL byte in the name; opening the file reports it
         return str(path)
-
-
-def _part_of(target: Path) -> Path:
-    return target.with_name(f".{secrets.token_hex(8)}.part")
 
 
 MAX_BYTES = 1_000_000

@@ -86,7 +86,7 @@ def _rows(client: Client, tasks: Sequence[Task], address: str, patience: float) 
                 except InputError as error:
                     yield failed(task, str(error))
                     continue
-                under_way[_submitted(client, work, data, wanted)] = task
+                under_way[client.submit(work, data, wanted, pure=False)] = task
             for future in _done(client, under_way, address):
                 task = under_way.pop(future)
                 yield _row(future, task, address)
@@ -258,12 +258,6 @@ def _client(address: str, patience: float) -> Client:
                 raise
 
     return Closing(address, timeout=patience, set_as_default=False)
-
-
-def _submitted(
-    client: Client, work: Callable[..., object], data: bytes, wanted: dict[str, str]
-) -> Future:
-    return client.submit(work, data, wanted, pure=False)
 
 
 def _workers(client: Client, address: str) -> int:

@@ -181,7 +181,7 @@ def _against_words(history: History, differing: Sequence[Against]) -> str:
     parts = []
     for each in differing:
         title = TITLES.get(each.what, each.what)
-        if _is_share(each.what) and each.there:
+        if "." not in each.what and each.there:
             parts.append(f"{title} {_share(each.now / each.there - 1.0, each.std / each.there)}")
         else:
             number = next(item for item in history.course.numbers if item.name == each.what)
@@ -212,10 +212,6 @@ def there(history: History, number: Number) -> float:
     if number.name in MULTIPLIERS:
         return value * (base if number.name == MULTIPLIERS[0] else radii)
     return value
-
-
-def _is_share(name: str) -> bool:
-    return "." not in name
 
 
 def _share(share: float, std: float) -> str:

@@ -42,9 +42,9 @@ class Bagging:
         kinds = dict(node.get_topic_names_and_types())
         self._subscriptions = []
         for topic in topics:
-            kind = _only(kinds.get(topic, []))
-            connection = None if kind is None else self._writer.topic(topic, kind)
-            if kind is None or connection is None:
+            named = kinds.get(topic, [])
+            connection = self._writer.topic(topic, named[0]) if len(named) == 1 else None
+            if connection is None:
                 continue
             self.topics.append(topic)
             latched = any(
@@ -53,7 +53,7 @@ class Bagging:
             )
             self._subscriptions.append(
                 node.create_subscription(
-                    _class_of(kind), topic, self._keeper(connection), _qos(latched), raw=True
+                    _class_of(named[0]), topic, self._keeper(connection), _qos(latched), raw=True
                 )
             )
 
@@ -69,10 +69,6 @@ class Bagging:
             self._node.destroy_subscription(subscription)
         self._subscriptions = []
         self._writer.close()
-
-
-def _only(kinds: Sequence[str]) -> str | None:
-    return kinds[0] if len(kinds) == 1 else None
 
 
 def _class_of(kind: str) -> Any:

@@ -103,7 +103,11 @@ def declared(node: Node) -> Settings:
     """
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Parameter).items()}
-    own = {name: value for name, value in given.items() if not _is_of_ros(node, name)}
+    own = {
+        name: value
+        for name, value in given.items()
+        if not (name.startswith(_QOS) or node.has_parameter(name))
+    }
     values, effects = settings = settings_of(own, node.get_fully_qualified_name())
     for item in table.PARAMETERS:
         value = values[item.name]
@@ -132,11 +136,6 @@ def _declare_effects(node: Node, effects: tuple[AppliedEffect, ...]) -> None:
             descriptor.dynamic_typing = unknown  # no value yet, so no type
             value = None if unknown else applied.values[name]
             node.declare_parameter(item.name, value, descriptor, ignore_override=True)
-
-
-def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> Mapping[str, Value]:
-    """Values of all parameters except those of effects; see `settings_of`."""
-    return settings_of(given, node_name).values
 
 
 def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> Settings:
@@ -246,10 +245,6 @@ def with_changes(
         return {name: float(value) for name, value in mine.items()}  # type: ignore[arg-type]
 
     return tuple(applied.learnt(**own(applied)) for applied in effects)
-
-
-def _is_of_ros(node: Node, name: str) -> bool:
-    return name.startswith(_QOS) or node.has_parameter(name)
 
 
 def _named(names: object, wrong: list[str]) -> Named:

@@ -152,8 +152,8 @@ def add_effects(
         show(0.9, "all runs")
         drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
     known = with_spread(effects, drives, written, robot, wanted, sizes, noises)
-    final = to_write(written.point.model, robot)
-    final = _with_noise_of(final, robot)
+    of_file = {name: getattr(robot, name) for name in WHEEL_NOISES}
+    final = replace(to_write(written.point.model, robot), **of_file)
     if explained:
         final = with_noise(final, {name: _told(noises[name]) for name in WHEEL_NOISES})
     show(0.95, "comparing")
@@ -255,12 +255,6 @@ def _noise(
 def _told(noise: NoiseEstimate) -> NoiseEstimate:
     """Rounded to the digits of a file."""
     return replace(noise, value=float(f"{noise.value:.4g}"))
-
-
-def _with_noise_of(robot: Robot, given: Robot) -> Robot:
-    return replace(
-        robot, left_wheel_noise=given.left_wheel_noise, right_wheel_noise=given.right_wheel_noise
-    )
 
 
 def _on_all(

@@ -155,7 +155,8 @@ def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Cour
     found = find_changes(wide, groups, penalty, KINDS, most)
     lasting = beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
-        found = find_changes(wide, lasting, penalty, KINDS) if lasting else _constant(wide)
+        none = ChangePoints((), *levels_of(rows_of(wide), ()), 0)
+        found = find_changes(wide, lasting, penalty, KINDS) if lasting else none
     values = Values(given[None], np.zeros((1, given.size, given.size)))
     return Course(
         tuple(
@@ -212,10 +213,6 @@ def _silenced(
         (np.where(told, value, np.nan), np.where(told, std, np.nan))
         for (value, std), told in zip(shown, heard, strict=True)
     ]
-
-
-def _constant(drives: DriveNumbers) -> ChangePoints:
-    return ChangePoints((), *levels_of(rows_of(drives), ()), 0)
 
 
 def _pooled(drives: DriveNumbers, found: ChangePoints, scatter: Floats) -> Values:

@@ -24,7 +24,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_parametrisation import robot_for_cutting
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
-from werrimbi_odom.inference.diagnosis.effect_support import Support, askable, support_of
+from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
@@ -46,8 +46,7 @@ from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders,
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.score_tests import Score
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
@@ -237,7 +236,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     )
     certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
     if score is not None and best is not None:
-        support = _support(score, runs, this.before.point.model)
+        support = support_of(score.candidate, runs.drive(this.before.point.model.robot))
         data, penalty = runs.data, this.before.penalty_of_one
         fall = max(fall_of_cost(score.gain, data), this.before.cost - best.cost)
         worth = fall - (best.penalty - this.before.penalty)
@@ -253,7 +252,3 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     numbers = (*CALIBRATION, *this.before.numbers)
     found = lasting(runs, this.before.point, numbers, certain[:CELLS_ASKED])
     return next((each.cell for each in found if each.p_value < SURE and not each.only_in), None)
-
-
-def _support(score: Score, runs: Concatenated, model: Model) -> Support:
-    return support_of(score.candidate, runs.drive(model.robot))

@@ -32,15 +32,11 @@ def rivals_in_halves(runs: Concatenated, this: Round, best: Fitted) -> tuple[str
     costs = [_cost_of_legs(runs, fit) for fit in others]
     for half in halves(runs):
         for fit, cost in zip(others, costs, strict=True):
-            ahead = float(np.sum((chosen - cost)[half])) + 0.5 * _price(best, fit)
+            dearer = (best.penalty - fit.penalty) * best.scatter
+            ahead = float(np.sum((chosen - cost)[half])) + 0.5 * dearer
             if ahead > RIVAL * best.scatter:
                 found[fit.names[-1]] = None
     return tuple(found)
-
-
-def _price(best: Fitted, other: Fitted) -> float:
-    """Difference of the penalties."""
-    return (best.penalty - other.penalty) * best.scatter
 
 
 def _cost_of_legs(runs: Concatenated, fit: Fitted) -> Floats:

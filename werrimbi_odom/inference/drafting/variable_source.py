@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,19 +64,14 @@ def seen_as(variable: Variable) -> Seen | None:
             per_wheel=left != right,
             rate=name == "acceleration",
         )
-    for side in ("left", "right"):
-        if name.startswith(f"{side}_wheel_angle"):
-            return replace(plain, span=_angle_of(side))
+    if name.startswith(("left_wheel_angle", "right_wheel_angle")):  # of one, whichever it acts on
+        wheel = name.partition("_")[0]
+        return replace(plain, span=lambda side: f"drive.{wheel}_angle")
     if name in SPANS:
         return replace(plain, span=lambda side: SPANS[name])
     if variable.looks_at == (name,):
         return replace(plain, span=lambda side: f'drive.channels["{name}"]', channels=(name,))
     return None
-
-
-def _angle_of(side: str) -> Callable[[str], str]:
-    """A wheel's angle, whichever wheel the law acts on."""
-    return lambda _: f"drive.{side}_angle"
 
 
 def rounded(value: float, digits: int = 2) -> float:
