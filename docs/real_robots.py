@@ -25,7 +25,9 @@ from werrimbi_odom.inference.calibration.recorded_square import (
     squares_of,
 )
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
-from werrimbi_odom.inference.comparison.leg_errors import LegErrors, joined, leg_errors, statistics
+from werrimbi_odom.inference.comparison.leg_errors import LegErrors, errors_of, statistics
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.rules import PARTS_OF_A_LEG, QUARTER_TURN
 from werrimbi_odom.model.robot import Robot
@@ -108,11 +110,14 @@ def fitted(case: Case) -> Calibration:
 def judged(case: Case, robot: Robot, sigma_xy: float, sigma_yaw: float) -> LegErrors:
     """Legs of the held-out drives, cut alike for every robot."""
     robot_file = read_robot_file(ROBOTS / case.robot / "robot.yaml")
-    parts = []
-    for path in sorted((ROBOTS / case.robot).glob(case.holdout)):
-        run = match(read_run(path, robot_file), robot_file.robot, case.leg)
-        parts.append(leg_errors(robot, run, sigma_xy, sigma_yaw, case.kind))
-    return joined(parts)
+    runs = concatenated(
+        [
+            match(read_run(path, robot_file), robot_file.robot, case.leg)
+            for path in sorted((ROBOTS / case.robot).glob(case.holdout))
+        ]
+    )
+    model = Model(robot, ({},) * len(runs.runs))
+    return errors_of(model, runs, sigma_xy, sigma_yaw, case.kind)
 
 
 def row(told: str, method: str, legs: LegErrors, noise: str, verdict: str) -> str:

@@ -16,14 +16,14 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.leg_errors import (
     LegErrors,
     LegStatistics,
+    errors_of,
     joined,
-    leg_errors,
     statistics,
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.cutting import match
@@ -198,8 +198,8 @@ KNOWN = replace(
 
 
 def legs_of(seed: int, count: int, leg: float = 1.0) -> LegErrors:
-    runs = (match(run, NOMINAL, leg) for run in runs_of(seed, count=count))
-    return joined([leg_errors(KNOWN, run, 1e-3, 2e-3) for run in runs])
+    runs = concatenated([match(run, NOMINAL, leg) for run in runs_of(seed, count=count)])
+    return errors_of(Model(KNOWN, ({},) * count), runs, 1e-3, 2e-3)
 
 
 def test_the_covariance_is_honest_where_the_noise_is_known() -> None:

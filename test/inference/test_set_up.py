@@ -30,11 +30,13 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
-from werrimbi_odom.inference.comparison.leg_errors import leg_errors, statistics
+from werrimbi_odom.inference.comparison.leg_errors import errors_of, statistics
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.candidate_law import loaded
 from werrimbi_odom.inference.drafting.law_forms import Seen, spot_form
 from werrimbi_odom.inference.drafting.source import source_of
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.search import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
@@ -120,7 +122,8 @@ def test_the_robot_that_comes_back_is_set_up_right(searched: Search, name: str) 
     mended = result.robot
     metre = 1e3 if name == "millimetres" else 1.0
     for run in tampered:
-        errors = leg_errors(mended, match(run, mended, 0.5 * metre), 1e-3, 2e-3)
+        legs = concatenated([match(run, mended, 0.5 * metre)])
+        errors = errors_of(Model(mended, ({},)), legs, 1e-3, 2e-3)
         assert statistics(errors).median_position_m < 0.02 * metre
 
 

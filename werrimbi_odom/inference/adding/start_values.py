@@ -163,8 +163,7 @@ def scored(
 ) -> tuple[Score, ...]:
     """Score tests of effects in a model, beside nuisances: each shape of each effect."""
     runs = drives.laid
-    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    tried = candidates(effects, (), channels, len(runs.runs), asked=True)
+    tried = candidates(effects, (), runs.channels, len(runs.runs), asked=True)
     return scores(runs, before.point, beside, tried)
 
 

@@ -281,8 +281,7 @@ def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effec
         return _worth_of(this.scores, fit)
     numbers = (*CALIBRATION, *fit.numbers, *fit.point.model.nuisance_parameters)
     known = {applied.name for applied in fit.point.model.robot.effects}
-    channels = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
-    tried = candidates(effects, known, channels, len(diagnosis.runs.runs))
+    tried = candidates(effects, known, diagnosis.runs.channels, len(diagnosis.runs.runs))
     return _worth_of(scores(diagnosis.runs, fit.point, numbers, tried), fit)
 
 

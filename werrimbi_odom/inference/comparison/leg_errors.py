@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.local_map_errors import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.likelihood import (
@@ -23,7 +23,6 @@ from werrimbi_odom.inference.fitting.likelihood import (
     wheel_covariance,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -76,16 +75,7 @@ class LegErrors:
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> LegErrors:
         """Select legs by mask or index."""
-        return LegErrors(
-            self.error[which],
-            self.covariance[which],
-            self.kind[which],
-            self.length[which],
-            self.wheels[which],
-            self.along[which],
-            self.turn[which],
-            self.heading[which],
-        )
+        return LegErrors(*(getattr(self, item.name)[which] for item in fields(self)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,17 +92,6 @@ class LegStatistics:
     """Share of legs inside the 95 % ellipsoid."""
     freedom: int = 0
     """Degrees of freedom: measured coordinates of all errors."""
-
-
-def leg_errors(
-    robot: Robot,
-    run: MatchedRun,
-    sigma_xy: float,
-    sigma_yaw: float,
-    kind: ReferenceKind = "absolute",
-) -> LegErrors:
-    """Errors of all legs of one run; see `errors_of`."""
-    return errors_of(Model(robot, ({},)), concatenated([run]), sigma_xy, sigma_yaw, kind)
 
 
 def errors_of(
@@ -284,13 +263,5 @@ def _finite(values: Floats) -> Floats:
 
 def joined(parts: list[LegErrors]) -> LegErrors:
     """Concatenate legs of several runs."""
-    return LegErrors(
-        np.concatenate([part.error for part in parts]),
-        np.concatenate([part.covariance for part in parts]),
-        np.concatenate([part.kind for part in parts]),
-        np.concatenate([part.length for part in parts]),
-        np.concatenate([part.wheels for part in parts]),
-        np.concatenate([part.along for part in parts]),
-        np.concatenate([part.turn for part in parts]),
-        np.concatenate([part.heading for part in parts]),
-    )
+    names = [item.name for item in fields(LegErrors)]
+    return LegErrors(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))

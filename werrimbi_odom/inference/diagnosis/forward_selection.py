@@ -107,10 +107,9 @@ def instead_of_calibration(
     point = as_given(calibrated.point, given)
     nuisances = model.nuisance_parameters
     held = {applied.name for applied in model.robot.effects}
-    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     # In a map made by a lidar, whose metric scale is its own.
     wanders = point.options.reference_kind == "local_map"
-    looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
+    looked_at = candidates(effects, held, runs.channels, len(runs.runs), own_scale=wanders)
     found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
     results = []
     penalty = calibrated.penalty_of_one
@@ -131,8 +130,7 @@ def search_round(
     """Score all candidates once more and fit the best few."""
     point = before.point
     held = {applied.name for applied in point.model.robot.effects}
-    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    looked_at = candidates(effects, held, channels, len(runs.runs))
+    looked_at = candidates(effects, held, runs.channels, len(runs.runs))
     turned = (*CALIBRATION, *before.numbers)
     found = scores(runs, point, turned, looked_at)
     ordered = best_of_each(found)

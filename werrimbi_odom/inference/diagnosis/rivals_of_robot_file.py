@@ -54,9 +54,8 @@ def _rivals(
     )
     point = replace(fit.point, model=Model(replace(model.robot, effects=others), own))
     numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
-    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     library = [held, *(effect for effect in effects if effect.name != held.name)]
-    tried = candidates(library, {item.name for item in others}, channels, len(runs.runs))
+    tried = candidates(library, {item.name for item in others}, runs.channels, len(runs.runs))
     ordered = best_of_each(scores(runs, point, (*CALIBRATION, *numbers), tried))
     gains = {score.candidate.name: score.gain for score in ordered}
     least = WORTH_A_FIT * gains.get(held.name, max(gains.values(), default=0.0))

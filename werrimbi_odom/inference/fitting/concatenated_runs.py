@@ -91,6 +91,11 @@ class Concatenated:
         return int(np.isfinite(self.finish[~self.gap]).sum())
 
     @property
+    def channels(self) -> set[str]:
+        """Extra channels that all runs have."""
+        return set.intersection(*(set(run.counters.channels) for run in self.runs))
+
+    @property
     def headings_alone(self) -> bool:
         """Whether references measure headings only, as gyros do."""
         return not np.isfinite(self.finish[:, :2]).any()

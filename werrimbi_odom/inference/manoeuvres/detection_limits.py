@@ -71,14 +71,13 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
     held = {applied.name for applied in robot.effects}
     if name_of_base(robot) in held:
         held.add("track_width")  # its base goes by that name
-    measured = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     candidates = [
         _typical(effect)
         for effect in able(effects, diagnosis.runs, robot)
         if not effect.is_mistake
         and effect.name not in OF_THE_MEASUREMENT
         and effect.name not in held
-        and not effect.lacks(measured)
+        and not effect.lacks(diagnosis.runs.channels)
         and base_name(effect) is None
     ]
     asked = {each.name for each in askable(effects, diagnosis.runs, robot)}

@@ -55,7 +55,7 @@ def imagined(
             min(float(np.nanmin(run.counters.channels[name])) for run in runs.runs),
             max(float(np.nanmax(run.counters.channels[name])) for run in runs.runs),
         )
-        for name in set.intersection(*(set(run.counters.channels) for run in runs.runs))
+        for name in runs.channels
     }
     measures = measured_in(runs)
     variances, options = point.variances, point.options
