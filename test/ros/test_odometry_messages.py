@@ -14,11 +14,11 @@ pytest.importorskip("rclpy")
 
 from builtin_interfaces.msg import Time
 
-from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_across
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.ros.estimate_status import length_in_words, sigmas_of_robot
+from werrimbi_odom.ros.estimate_status import length_in_words
 from werrimbi_odom.ros.odometry_messages import OdometryMessage
 
 ROBOTS = {
@@ -101,9 +101,9 @@ def test_sigmas_are_read_in_the_robots_frame() -> None:
     estimate = odometer.update(1.0, 2000, 1000)
     assert estimate is not None
     covariance = estimate.covariance
-    along, across = sigmas_of_robot(covariance, 0.0)
+    along, across = sigmas_along_and_across(covariance, 0.0)
     assert (along, across) == (math.sqrt(covariance.xx), math.sqrt(covariance.yy))
-    assert sigmas_of_robot(covariance, 0.5 * math.pi) == pytest.approx((across, along))
+    assert sigmas_along_and_across(covariance, 0.5 * math.pi) == pytest.approx((across, along))
 
 
 @pytest.mark.parametrize(

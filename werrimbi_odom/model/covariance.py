@@ -57,6 +57,15 @@ CERTAIN: PoseCovariance[float] = PoseCovariance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Covariance of an exactly known pose."""
 
 
+def sigmas_along_and_across(covariance: PoseCovariance[float], yaw: float) -> tuple[float, float]:
+    """Standard deviations of the position along a heading and across it [m]."""
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    xx, xy, yy = covariance.xx, covariance.xy, covariance.yy
+    along = cos * cos * xx + 2.0 * cos * sin * xy + sin * sin * yy
+    across = sin * sin * xx - 2.0 * cos * sin * xy + cos * cos * yy
+    return math.sqrt(max(along, 0.0)), math.sqrt(max(across, 0.0))
+
+
 class PathNoise(NamedTuple, Generic[Number]):
     """Noise of the body on a piece: variances a [m²] along, b [rad²] yaw, covariance c [m·rad]."""
 

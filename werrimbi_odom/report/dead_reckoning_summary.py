@@ -14,7 +14,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.start_pose import StartPose
-from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_across
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.model.reference_measurement import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
@@ -76,12 +76,8 @@ class Reckoning:
     @property
     def sigmas(self) -> tuple[float, float, float]:
         """Standard deviations along the heading and across it [m], and of the heading [rad]."""
-        cos, sin = math.cos(self.final.yaw), math.sin(self.final.yaw)
-        p = self.covariance
-        along = cos * cos * p.xx + 2.0 * cos * sin * p.xy + sin * sin * p.yy
-        across = sin * sin * p.xx - 2.0 * cos * sin * p.xy + cos * cos * p.yy
-        along, across, yaw = (math.sqrt(max(each, 0.0)) for each in (along, across, p.yawyaw))
-        return along, across, yaw
+        along, across = sigmas_along_and_across(self.covariance, self.final.yaw)
+        return along, across, math.sqrt(max(self.covariance.yawyaw, 0.0))
 
     @cached_property
     def pieces(self) -> dict[str, list[tuple[float, float]]]:

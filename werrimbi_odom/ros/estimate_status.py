@@ -8,7 +8,7 @@ import math
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_across
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose, wrap
 
@@ -36,7 +36,7 @@ def status_of(
     mean_shift : (float, float), optional
         Mean of the true position minus the pose, with exact moments [m].
     """
-    along, across = sigmas_of_robot(covariance, pose.yaw)
+    along, across = sigmas_along_and_across(covariance, pose.yaw)
     heading = math.degrees(math.sqrt(covariance.yawyaw))
     values = {
         "piece": piece.kind,
@@ -63,15 +63,6 @@ def status_of(
         hardware_id="wheel encoders",
         values=[KeyValue(key=key, value=value) for key, value in values.items()],
     )
-
-
-def sigmas_of_robot(covariance: PoseCovariance[float], yaw: float) -> tuple[float, float]:
-    """Standard deviations of the position along the robot's heading and across it [m]."""
-    cos, sin = math.cos(yaw), math.sin(yaw)
-    xx, xy, yy = covariance.xx, covariance.xy, covariance.yy
-    along = cos * cos * xx + 2.0 * cos * sin * xy + sin * sin * yy
-    across = sin * sin * xx - 2.0 * cos * sin * xy + cos * cos * yy
-    return math.sqrt(max(along, 0.0)), math.sqrt(max(across, 0.0))
 
 
 def length_in_words(length: float) -> str:

@@ -154,15 +154,9 @@ def fits_of(
 
 def _without(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     """Fit the model without one of its effects."""
-    model = fit.point.model
-    mine = f"{effect.name}."
-    effects = tuple(item for item in model.robot.effects if item.name != effect.name)
-    own = tuple(
-        {name: value for name, value in each.items() if not name.startswith(mine)}
-        for each in model.own
-    )
-    point = replace(fit.point, model=Model(replace(model.robot, effects=effects), own))
+    point = replace(fit.point, model=fit.point.model.without_effect(effect.name))
     names = tuple(name for name in fit.names if name != effect.name)
+    mine = f"{effect.name}."
     numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
     return drives.fit(point, names, numbers, given)
 

@@ -106,7 +106,7 @@ def _at_bound(value: float, item: Parameter) -> bool:
 
 def std_of(fit: Fitted, name: str) -> float:
     """Standard deviation of a shared parameter of a fit."""
-    names = [number.name for number, _ in fit.design.columns]
+    names = fit.design.names
     index = names.index(name)
     return float(np.sqrt(max(fit.covariance[index, index], 0.0)))
 
@@ -115,7 +115,7 @@ def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     """A calibration effect's value, relative to the given robot file."""
     robot = fit.point.model.robot
     value = sizes_of(robot).over(sizes_of(given)).as_effects[effect.name]
-    names = [number.name for number, _ in fit.design.columns]
+    names = fit.design.names
     where = [names.index(name) for name in MULTIPLIERS]
     std = value * std_as_effect(effect.name, robot, fit.covariance[np.ix_(where, where)])
     declared = next(iter(effect.parameters.values()))

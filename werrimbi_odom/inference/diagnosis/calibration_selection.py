@@ -135,7 +135,7 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: FreeSizes) 
         return fit
     inverse = np.linalg.pinv((columns / size).T @ (columns / size), rcond=1e-12, hermitian=True)
     covariance = free @ (inverse / np.outer(size, size)) @ free.T
-    heard = np.isin([number.name for number, _ in design.columns], MULTIPLIERS)
+    heard = np.isin(design.names, MULTIPLIERS)
     not_identifiable = ~heard & (np.sum(flat**2, axis=0) < 1e-18)
     covariance[not_identifiable, not_identifiable] = 1e12
     others = fit.moves[:, ~fit.moves[heard].any(axis=0)]
@@ -173,7 +173,7 @@ def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Float
 
     Both with all other fitted parameters projected out.
     """
-    names = [number.name for number, _ in design.columns]
+    names = design.names
     white, flat = design.flat()
     now = np.array([getattr(robot, name) for name in MULTIPLIERS])
     before = np.array([getattr(given, name) for name in MULTIPLIERS])
@@ -201,7 +201,7 @@ def _sized(given: Robot, sizes: FreeSizes, away: Floats) -> dict[str, float]:
 
 def _free(design: Design, robot: Robot, sizes: FreeSizes) -> Floats:
     """Matrix from free directions (q,) to design columns (p,): the sizes first, then all others."""
-    names = [number.name for number, _ in design.columns]
+    names = design.names
     rest = [index for index, name in enumerate(names) if name not in MULTIPLIERS]
     free = np.zeros((len(names), sizes.free + len(rest)))
     for name, row in zip(MULTIPLIERS, sizes.directions, strict=True):

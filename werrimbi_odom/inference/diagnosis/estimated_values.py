@@ -97,7 +97,7 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
     effect = find(name)
     item = next(iter(effect.parameters.values()))
     size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
-    names = [number.name for number, _ in diagnosis.final.design.columns]
+    names = diagnosis.final.design.names
     std = math.nan
     if set(MULTIPLIERS) <= set(names) and name not in diagnosis.final.held:
         where = [names.index(multiplier) for multiplier in MULTIPLIERS]

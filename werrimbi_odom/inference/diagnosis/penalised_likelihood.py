@@ -243,7 +243,7 @@ def _sizes_in(design: Design, robot: Robot) -> tuple[Nuisance, Floats]:
     """Span of all but the multipliers, and the derivatives (n, 3) in the calibration effects."""
     ways = every_direction(design.columns, robot)
     _, flat = design.flat()
-    names = [number.name for number, _ in design.columns]
+    names = design.names
     others = nuisance(flat[:, [name not in MULTIPLIERS for name in names]])
     return others, flat @ ways.matrix[:, [ways.names.index(name) for name in CALIBRATED]]
 
@@ -290,7 +290,7 @@ def variance_inflation_of_sizes(
     design: Design, covariance: Floats, wide: Floats, robot: Robot
 ) -> dict[str, float]:
     """Factor by which the variance of each calibration effect is widened, for all three."""
-    names = [number.name for number, _ in design.columns]
+    names = design.names
     where = [names.index(name) for name in MULTIPLIERS]
     inside = covariance[np.ix_(where, where)]
     wider = inside * np.outer(wide[where], wide[where])

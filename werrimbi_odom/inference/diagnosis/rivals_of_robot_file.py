@@ -16,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.forward_selection import best_of_each
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.score_tests import (
     CALIBRATED,
     candidates,
@@ -46,13 +46,8 @@ def _rivals(
     runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot, held: Effect
 ) -> tuple[str, ...]:
     """Score all effects without the held one; fit the best few in its place."""
-    model, mine = fit.point.model, f"{held.name}."
-    others = tuple(item for item in model.robot.effects if item.name != held.name)
-    own = tuple(
-        {name: value for name, value in each.items() if not name.startswith(mine)}
-        for each in model.own
-    )
-    point = replace(fit.point, model=Model(replace(model.robot, effects=others), own))
+    mine, bare = f"{held.name}.", fit.point.model.without_effect(held.name)
+    point, others = replace(fit.point, model=bare), bare.robot.effects
     numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
     library = [held, *(effect for effect in effects if effect.name != held.name)]
     tried = candidates(library, {item.name for item in others}, runs.channels, len(runs.runs))

@@ -250,7 +250,7 @@ def _differs(name: str, final: Fitted, given: Robot) -> bool:
     The set-up search may have started from sizes that differ from the file's.
     """
     robot = final.point.model.robot
-    columns = [number.name for number, _ in final.design.columns]
+    columns = final.design.names
     where = [columns.index(multiplier) for multiplier in MULTIPLIERS]
     std = std_as_effect(name, robot, final.covariance[np.ix_(where, where)])
     size = sizes_of(robot).over(sizes_of(given)).as_effects[name]

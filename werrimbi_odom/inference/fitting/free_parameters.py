@@ -157,6 +157,15 @@ class Model:
         )
         return Model(self.robot, own)
 
+    def without_effect(self, name: str) -> Model:
+        """Model without one of its effects."""
+        effects = tuple(item for item in self.robot.effects if item.name != name)
+        own = tuple(
+            {key: value for key, value in mine.items() if not key.startswith(f"{name}.")}
+            for mine in self.own
+        )
+        return Model(replace(self.robot, effects=effects), own)
+
     def laid_out(self, steps: NDArray[np.intp]) -> Robot:
         """Robot with per-run values as arrays over the steps of all runs, (n,).
 

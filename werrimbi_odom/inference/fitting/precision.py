@@ -61,7 +61,7 @@ class Precision:
     def _variances_of(self, names: Sequence[str], variances: Variances) -> Floats:
         """Variances of shared parameters."""
         design = self._design(variances)
-        columns = [number.name for number, _ in design.columns]
+        columns = design.names
         rows = self.moves[[columns.index(name) for name in names]]
         inside = covariance_of(design.flat()[1] @ self.moves)
         return np.asarray(np.einsum("pi,ij,pj->p", rows, inside, rows))

@@ -55,6 +55,11 @@ class Design:
     sized: bool = True
     """Whether any length was measured: headings only determine ratios of lengths."""
 
+    @property
+    def names(self) -> list[str]:
+        """Name of the parameter of each column."""
+        return [number.name for number, _ in self.columns]
+
     def flat(self) -> tuple[Floats, Floats]:
         """Innovations and Jacobian as (3 m,) and (3 m, p)."""
         return self.white.ravel(), self.slopes.reshape(self.white.size, self.slopes.shape[-1])
