@@ -16,9 +16,9 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.report.adding.words import json_of as added_json
+from werrimbi_odom.report.adding.as_json import json_of as added_json
 from werrimbi_odom.report.adding.words import words_of as added_words
-from werrimbi_odom.report.diagnosis.tables import json_of
+from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
 

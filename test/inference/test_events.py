@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.tables import json_of
+from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.simulation import TrueRobot, free, out_and_back, record, write_run
 from werrimbi_odom.simulation.hidden.knocks import Knock

@@ -29,9 +29,10 @@ from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import SET_ASIDE_ROWS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.report.adding.words import json_of as json_of_added
+from werrimbi_odom.report.adding.as_json import json_of as json_of_added
 from werrimbi_odom.report.adding.words import words_of as words_of_added
-from werrimbi_odom.report.diagnosis.tables import json_of, tables_of
+from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
 

@@ -16,7 +16,7 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.tables import json_of
+from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
 from werrimbi_odom.simulation import TrueRobot, free, record

@@ -19,7 +19,7 @@ from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.tables import json_of
+from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
 

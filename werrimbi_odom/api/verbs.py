@@ -100,8 +100,8 @@ def diagnose(
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for recordings that are already read."""
     from werrimbi_odom.inference.manoeuvres.advice import told_of, with_leg
+    from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.document import document_of
-    from werrimbi_odom.report.diagnosis.tables import json_of
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
     told = told_of(given, show)
@@ -191,8 +191,8 @@ def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings)
 def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> Result[Added]:
     """`add` for recordings that are already read, without raising on objections."""
     from werrimbi_odom.inference.adding.adding import add_effects
+    from werrimbi_odom.report.adding.as_json import json_of
     from werrimbi_odom.report.adding.document import document_of
-    from werrimbi_odom.report.adding.words import json_of
 
     found = add_effects(
         effects, given.runs, given.robot, given.evaluation, holdout=given.holdout, show=show

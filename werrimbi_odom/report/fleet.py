@@ -18,7 +18,7 @@ ERROR = "error"
 
 @dataclass(frozen=True)
 class Row:
-    """One robot: its diagnosis as JSON (`report.diagnosis.tables`), or the error."""
+    """One robot: its diagnosis as JSON (`report.diagnosis.as_json`), or the error."""
 
     robot: str
     runs: int

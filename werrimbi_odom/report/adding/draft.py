@@ -9,8 +9,9 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.drafting.draft import Draft
 from werrimbi_odom.inference.drafting.formula import symbols_of
+from werrimbi_odom.report.adding.as_json import json_of
 from werrimbi_odom.report.adding.document import figures_of
-from werrimbi_odom.report.adding.words import json_of, words_of
+from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
 from werrimbi_odom.report.number_format import error_words, picked
 from werrimbi_odom.report.page import as_html
