@@ -18,7 +18,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
@@ -29,7 +29,7 @@ from werrimbi_odom.inference.drafting.draft import draft_effect
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.rules import DRIFT_LEGS
+from werrimbi_odom.inference.rules import DRIFT_LEGS, SURE
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.comparison.words import words_of

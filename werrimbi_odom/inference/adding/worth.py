@@ -13,7 +13,7 @@ from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, pa
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
-from werrimbi_odom.inference.diagnosis.diagnosis import chance
+from werrimbi_odom.inference.diagnosis.p_values import chance
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival

@@ -41,7 +41,7 @@ from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_va
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals_of_robot_file import rivals_of_held
 from werrimbi_odom.inference.diagnosis.values_of_robot_file import outdated
-from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
+from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Verdict, told
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
@@ -63,7 +63,7 @@ from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
-__all__ = ["SURE", "VERY_SURE", "Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
+__all__ = ["Diagnosis", "Verdict", "diagnose"]
 
 
 def diagnose(

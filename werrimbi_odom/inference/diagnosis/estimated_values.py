@@ -13,12 +13,14 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_parametrisation import base_told, sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_at, sizes_needed
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.p_values import chance
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
+from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.rules import ONE_WHEEL
+from werrimbi_odom.inference.rules import ONE_WHEEL, SURE, VERY_SURE
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict: what was found, what cannot be told apart, what each effect explains."""
+"""The verdict: what was found, and what cannot be told apart."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark,
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
-from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
+from werrimbi_odom.inference.diagnosis.holdout import Begun
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
-from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts, p_value_of_size
+from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
+from werrimbi_odom.inference.diagnosis.ranking import Ranked, ranking_of
 from werrimbi_odom.inference.diagnosis.rivals import (
     own_scale_instead,
     possible_twins,
@@ -37,7 +38,7 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     torn_by_halves,
 )
 from werrimbi_odom.inference.diagnosis.wandering_reference import Wander
-from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
+from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
@@ -50,19 +51,6 @@ from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]
-
-
-@dataclass(frozen=True, slots=True)
-class Ranked:
-    """An effect with its p-value and its effect on the errors."""
-
-    effect: str
-    p_value: float | None
-    """Corrected for the number of effects tried. None where nothing was tested: a set-up mistake is
-    found by a search of all set-ups, whose statistic has no known distribution."""
-    train: Sides | None
-    """Position error before and after adding it [m]; None where it was not fitted."""
-    holdout: Sides | None
 
 
 @dataclass(frozen=True)
@@ -187,6 +175,7 @@ def told(
         of_another_drive(judge.train, model)
         for model in (_plain(final, set_up.robot), as_given)  # a fit of few poses may be far off
     )
+    alike = another and turns_alike(judge.train, as_given)
     if another:
         verdict, found, rivals, torn = "unknown", (), (), ()
     elif not found:
@@ -212,7 +201,7 @@ def told(
         verdict,
         found[0] if found else None,
         found,
-        tuple(_ranking(found, set_up, rounds, final, judge, start, laid)),
+        tuple(ranking_of(found, set_up, rounds, final, judge, start, laid)),
         rivals,
         torn,
         set_up,
@@ -233,7 +222,9 @@ def told(
         ),
         rivals_of_others(found, rivals, rounds, final, given, laid),
         judge.left_out,
-        (_nothing_in_common(judge, as_given),) if another else remarks_on(judge.train),
+        (ReferenceRemark("places" if alike else "another_drive", 0.0),)
+        if another
+        else remarks_on(judge.train),
     )
 
 
@@ -272,60 +263,3 @@ def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenat
         return _plain(fit, given)
     sizes = sizes_needed(fit, given, set(found) & set(CALIBRATED))
     return with_sizes(laid, fit, given, sizes).point.model
-
-
-def _ranking(
-    found: tuple[str, ...],
-    set_up: SetUp,
-    rounds: tuple[Round, ...],
-    final: Fitted,
-    judge: Judge,
-    start: Errors,
-    laid: Concatenated,
-) -> list[Ranked]:
-    """All effects, those found first, with the figures of the round that accepted them.
-
-    The figures of the others are of their first trial.
-    """
-    ranked: dict[str, Ranked] = {}
-    mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
-    for finding in set_up.findings:
-        ranked[finding.effect] = _worth(finding.effect, None, start, mended)
-    before = mended
-    for number, this in enumerate(rounds):
-        if number > 0:
-            before = judge.of(this.before.point.model)
-        for fit in this.tried:
-            name = fit.names[-1]
-            # An accepted effect is reported as of its acceptance, not of an earlier trial.
-            taken = final.names[number : number + 1] == (name,)
-            if name not in ranked or taken:
-                p_value = chance(fit, this.before, this.number)
-                if taken:
-                    p_value = max(p_value, p_value_by_parts(laid, final, name, this.number))
-                ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
-    calibrated = judge.of(rounds[0].before.point.model)
-    for name in CALIBRATED:
-        importance = final.importance.get(name, 0.0)
-        p_value = bonferroni(rounds[0].number, p_value_of_size(final, name))
-        untried = Ranked(name, p_value, None, None)
-        worth = _worth(name, p_value, mended, calibrated) if importance else untried
-        base = name_of_base(final.point.model.robot)
-        ranked.setdefault(base if name == "track_width" else name, worth)
-    for score in rounds[0].scores:
-        p_value = bonferroni(rounds[0].number, chi2_survival(score.gain, score.degrees))
-        ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
-    first = [ranked.pop(name) for name in found if name in ranked]
-    return [*first, *sorted(ranked.values(), key=_certainty)]
-
-
-def _certainty(item: Ranked) -> float:
-    return 0.0 if item.p_value is None else item.p_value
-
-
-def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) -> Ranked:
-    return Ranked(effect, p_value, Sides(before.train, after.train, after.unit), before.to(after))
-
-
-def _nothing_in_common(judge: Judge, as_given: Model) -> ReferenceRemark:
-    return ReferenceRemark("places" if turns_alike(judge.train, as_given) else "another_drive", 0.0)

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
 from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre, next_manoeuvre, strongest
 from werrimbi_odom.inference.manoeuvres.within_a_turn import settles, shorter_leg
+from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.progress import Show, silent
 
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
+from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.report import style
 from werrimbi_odom.report.diagnosis.dependence import VARIABLES, error_of, label_of, unit_of
 from werrimbi_odom.report.over_variable import labelled, over

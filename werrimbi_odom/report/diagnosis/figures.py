@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, DrivingLimits, Ideal, ideal_run

@@ -6,12 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
+from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.number_format import error_words, in_unit, p_words

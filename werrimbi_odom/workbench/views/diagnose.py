@@ -6,8 +6,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import SURE
