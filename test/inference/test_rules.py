@@ -275,7 +275,7 @@ def test_what_decides_on_the_robot_has_its_reason_where_it_stands(file: str) -> 
 
 
 def used() -> set[str]:
-    """Rules that some module imports and reads, or that another rule is made of."""
+    """Rules that some module reads (imported, or as rules.NAME), or that another is made of."""
     found = set()
     for path in PACKAGE.rglob("*.py"):
         tree = ast.parse(path.read_text("utf-8"))
@@ -292,6 +292,11 @@ def used() -> set[str]:
             if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load)
         }
         found |= {imported[name] for name in read & set(imported)}
+        found |= {
+            part.attr
+            for part in ast.walk(tree)
+            if isinstance(part, ast.Attribute) and getattr(part.value, "id", "") == "rules"
+        }
     return found
 
 

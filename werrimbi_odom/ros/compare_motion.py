@@ -12,23 +12,13 @@ import math
 from collections import deque
 from typing import Literal
 
-from werrimbi_odom.inference.rules import (
-    NO_DRIVING_FEWEST,
-    NO_DRIVING_NOISE,
-    NO_DRIVING_OFF,
-    NO_DRIVING_STOPPED,
-    NO_DRIVING_STOPPED_FOR,
-    NO_DRIVING_TURN,
-    NO_DRIVING_WAY,
-    NO_DRIVING_WINDOW,
-    STANDS,
-)
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.pose import between, wrap
 from werrimbi_odom.ros.compare_legs import Both
 
 State = Literal["standing", "driving", "held", "carried", "slipping"]
 
-SPAN = 2.0 * NO_DRIVING_WINDOW
+SPAN = 2.0 * rules.NO_DRIVING_WINDOW
 """Window over which wheels and reference are compared [s]; with large noise, as long as a leg."""
 REMEMBERED = 600
 """Number of instants of driving that show whether wheels and reference agree at all."""
@@ -55,7 +45,7 @@ class Motion:
     @property
     def ever_agrees(self) -> bool:
         """Whether wheels and reference usually agree; otherwise something is set up wrongly."""
-        few = len(self._agreed) < NO_DRIVING_FEWEST
+        few = len(self._agreed) < rules.NO_DRIVING_FEWEST
         return few or sum(self._agreed) > 0.5 * len(self._agreed)
 
     def restart(self) -> None:
@@ -78,7 +68,7 @@ class Motion:
             self._agreed.append(seen == "driving")
         if seen != self._seen:
             self._seen, self._since = seen, time
-        if seen in ("standing", "driving") or time - self._since >= NO_DRIVING_STOPPED_FOR:
+        if seen in ("standing", "driving") or time - self._since >= rules.NO_DRIVING_STOPPED_FOR:
             self.state = seen
         return self.state
 
@@ -97,23 +87,26 @@ def _state(start: Both, end: Both) -> State:
     wheels = between(start.odometry.pose, end.odometry.pose)
     seen = between(start.reference.pose, end.reference.pose)
     noise = [start.reference.covariance, end.reference.covariance]
-    noise_way = NO_DRIVING_NOISE * math.sqrt(sum(each.xx + each.yy for each in noise))
-    noise_turn = NO_DRIVING_NOISE * math.sqrt(sum(each.yawyaw for each in noise))
-    least_way, least_turn = max(NO_DRIVING_WAY, noise_way), max(NO_DRIVING_TURN, noise_turn)
+    noise_way = rules.NO_DRIVING_NOISE * math.sqrt(sum(each.xx + each.yy for each in noise))
+    noise_turn = rules.NO_DRIVING_NOISE * math.sqrt(sum(each.yawyaw for each in noise))
+    least_way, least_turn = (
+        max(rules.NO_DRIVING_WAY, noise_way),
+        max(rules.NO_DRIVING_TURN, noise_turn),
+    )
     way, turn = math.hypot(wheels.x, wheels.y), abs(wrap(wheels.yaw))
     seen_way, seen_turn = math.hypot(seen.x, seen.y), abs(wrap(seen.yaw))
     rolled = end.odometry.path - start.odometry.path
     turned = end.odometry.turned - start.odometry.turned
-    if rolled < STANDS * least_way and turned < STANDS * least_turn:
+    if rolled < rules.STANDS * least_way and turned < rules.STANDS * least_turn:
         return "carried" if seen_way > least_way or seen_turn > least_turn else "standing"
     if way < least_way and turn < least_turn:
         return "standing"  # or too slow to decide
-    stopped_way = seen_way < NO_DRIVING_STOPPED * way + noise_way
-    stopped_turn = seen_turn < NO_DRIVING_STOPPED * turn + noise_turn
+    stopped_way = seen_way < rules.NO_DRIVING_STOPPED * way + noise_way
+    stopped_turn = seen_turn < rules.NO_DRIVING_STOPPED * turn + noise_turn
     if stopped_way and stopped_turn:
         return "held"
-    off_way = abs(seen_way - way) > NO_DRIVING_OFF * way + noise_way
-    off_turn = abs(wrap(seen.yaw - wheels.yaw)) > NO_DRIVING_OFF * turn + noise_turn + (
-        NO_DRIVING_TURN
+    off_way = abs(seen_way - way) > rules.NO_DRIVING_OFF * way + noise_way
+    off_turn = abs(wrap(seen.yaw - wheels.yaw)) > rules.NO_DRIVING_OFF * turn + noise_turn + (
+        rules.NO_DRIVING_TURN
     )
     return "slipping" if off_way or off_turn else "driving"

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.drives import DriveNumbers
@@ -36,13 +37,6 @@ from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreePar
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
-from werrimbi_odom.inference.rules import (
-    CALIBRATE_AGAIN,
-    MOST_CHANGES,
-    PENALTY_FLOOR,
-    SCATTER_DRIVES,
-    SURE,
-)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -149,9 +143,9 @@ def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Cour
     heard = std < 0.5 * limits
     scatter = np.array([scatter_of(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
     wide = drives.with_scatter(scatter)
-    penalty = max(PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
+    penalty = max(rules.PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
     groups = groups_of(names, given, given.size)
-    most = MOST_CHANGES if len(told) >= SCATTER_DRIVES else 1
+    most = rules.MOST_CHANGES if len(told) >= rules.SCATTER_DRIVES else 1
     found = find_changes(wide, groups, penalty, KINDS, most)
     lasting = beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
@@ -270,7 +264,7 @@ def _off(
             continue
         away, variance = values[number] - given[number], float(spread[number, number])
         chance = len(MULTIPLIERS) * chi2_survival(float(away**2) / max(variance, 1e-30), 1)
-        if chance < SURE and abs(away / given[number]) > CALIBRATE_AGAIN:
+        if chance < rules.SURE and abs(away / given[number]) > rules.CALIBRATE_AGAIN:
             off.append(
                 OffNow(name, float(values[number]), math.sqrt(variance), float(given[number]))
             )

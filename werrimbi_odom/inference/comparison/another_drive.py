@@ -9,15 +9,10 @@ from functools import cache
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.rules import (
-    FAR_ABOVE_NOISE,
-    OTHER_DRIVE,
-    OTHER_DRIVE_LEGS,
-    OTHER_DRIVE_TURN,
-)
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 Driven = Callable[[Legs], tuple[slice, Floats, Floats]]
@@ -40,7 +35,7 @@ def of_another_drive(prepared: PreparedRuns, model: Model) -> bool:
     def all_untold(driven: Driven, least: float) -> bool | None:
         return _untold((legs_of(length) for length in prepared.cuts), driven, least)
 
-    return bool(all_untold(_by_position, 0.0) or all_untold(_by_heading, OTHER_DRIVE_TURN))
+    return bool(all_untold(_by_position, 0.0) or all_untold(_by_heading, rules.OTHER_DRIVE_TURN))
 
 
 def turns_alike(prepared: PreparedRuns, model: Model) -> bool:
@@ -49,7 +44,7 @@ def turns_alike(prepared: PreparedRuns, model: Model) -> bool:
     Then it is of this robot and this drive. Straight lines show nothing of it.
     """
     every = (judged_legs(prepared, model, length) for length in prepared.cuts)
-    return _untold(every, _by_heading, OTHER_DRIVE_TURN) is False
+    return _untold(every, _by_heading, rules.OTHER_DRIVE_TURN) is False
 
 
 def _by_position(legs: Legs) -> tuple[slice, Floats, Floats]:
@@ -71,14 +66,14 @@ def _untold(every: Iterable[Legs], driven: Driven, least: float) -> bool | None:
         places, rolled, measured = driven(legs)
         square = np.sum(legs.errors.error[:, places] ** 2, axis=1)
         known = np.isfinite(square) & np.isfinite(measured)
-        if np.sum(known) < OTHER_DRIVE_LEGS:
+        if np.sum(known) < rules.OTHER_DRIVE_LEGS:
             continue
         promised = np.trace(legs.errors.covariance[known, places, places], axis1=1, axis2=2)
         way = max(float(np.median(each[known] ** 2)) for each in (rolled, measured))
-        noise = FAR_ABOVE_NOISE**2 * float(np.median(promised))
+        noise = rules.FAR_ABOVE_NOISE**2 * float(np.median(promised))
         if way < least**2:
             continue
-        if np.median(square[known]) < max(OTHER_DRIVE * way, noise):
+        if np.median(square[known]) < max(rules.OTHER_DRIVE * way, noise):
             return False
         looked_at = True
     return looked_at or None

@@ -11,17 +11,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival, student_survival
-from werrimbi_odom.inference.rules import (
-    BINS,
-    CELLS_ACROSS,
-    LEGS_IN_A_BIN,
-    LEGS_IN_A_CELL,
-    SECTORS,
-    SURE_OF_LEGS,
-)
 from werrimbi_odom.model.pose import Floats
 
 
@@ -64,7 +57,7 @@ class Cell:
     @property
     def stands_out(self) -> bool:
         """Whether errors are significantly larger here."""
-        return self.p_value < SURE_OF_LEGS
+        return self.p_value < rules.SURE_OF_LEGS
 
 
 def by_variables(
@@ -110,20 +103,20 @@ def _signals(legs: LegErrors, left: Floats) -> dict[str, Floats]:
 
 def _bins(name: str, values: Floats) -> list[tuple[float, float, NDArray[np.bool_]]]:
     known = np.isfinite(values)
-    if known.sum() < 2 * LEGS_IN_A_BIN:
+    if known.sum() < 2 * rules.LEGS_IN_A_BIN:
         return []
     if name.startswith("heading"):
-        edges = np.linspace(-np.pi, np.pi, SECTORS + 1)
+        edges = np.linspace(-np.pi, np.pi, rules.SECTORS + 1)
         values = np.mod(values + np.pi, 2.0 * np.pi) - np.pi
     else:
-        count = min(BINS, int(known.sum()) // LEGS_IN_A_BIN)
+        count = min(rules.BINS, int(known.sum()) // rules.LEGS_IN_A_BIN)
         edges = np.unique(np.quantile(values[known], np.linspace(0.0, 1.0, count + 1)))
         scale = float(np.abs(edges).max())
         edges = edges[np.concatenate([[True], np.diff(edges) > 1e-3 * scale])]
     found = []
     for low, high in pairwise(edges.tolist()):
         rows = known & (values >= low) & ((values < high) | (high == edges[-1]))
-        if rows.sum() >= LEGS_IN_A_BIN:
+        if rows.sum() >= rules.LEGS_IN_A_BIN:
             found.append((float(low), float(high), rows))
     return found
 
@@ -131,7 +124,9 @@ def _bins(name: str, values: Floats) -> list[tuple[float, float, NDArray[np.bool
 def _differ(groups: list[Floats]) -> float:
     """p-value of a difference in group means: Welch's analysis of variance."""
     groups = [
-        known for group in groups if (known := group[np.isfinite(group)]).size >= LEGS_IN_A_BIN
+        known
+        for group in groups
+        if (known := group[np.isfinite(group)]).size >= rules.LEGS_IN_A_BIN
     ]
     if len(groups) < 2:
         return 1.0
@@ -170,10 +165,10 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
         Length of a leg, the least size of a cell [m].
     """
     known = np.isfinite(x) & np.isfinite(y)
-    if known.sum() < 2 * LEGS_IN_A_BIN:
+    if known.sum() < 2 * rules.LEGS_IN_A_BIN:
         return ()
     extent = max(float(np.ptp(x[known])), float(np.ptp(y[known])))
-    side = max(leg, extent / CELLS_ACROSS)
+    side = max(leg, extent / rules.CELLS_ACROSS)
     column = np.where(known, np.floor(np.nan_to_num(x) / side), np.inf)
     row = np.where(known, np.floor(np.nan_to_num(y) / side), np.inf)
     size = _signals(legs, left)["size"]
@@ -182,7 +177,7 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
     for at in places:
         here = known & (column == at[0]) & (row == at[1])
         others = known & ~here
-        if here.sum() < LEGS_IN_A_CELL or others.sum() < LEGS_IN_A_BIN:
+        if here.sum() < rules.LEGS_IN_A_CELL or others.sum() < rules.LEGS_IN_A_BIN:
             continue
         spread = np.sqrt(
             size[here].var(ddof=1) / here.sum() + size[others].var(ddof=1) / others.sum()

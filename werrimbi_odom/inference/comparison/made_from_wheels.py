@@ -18,19 +18,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
-from werrimbi_odom.inference.rules import (
-    CIRCLE_APART,
-    CIRCLE_DELAYS,
-    CIRCLE_EXACT,
-    CIRCLE_FEWEST,
-    CIRCLE_FINEST,
-    CIRCLE_STEPS,
-    CIRCLE_WAY,
-    CIRCLE_WHEELS,
-    CIRCLE_WHOLE,
-)
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -66,7 +56,7 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
         If it is computed from the wheels.
     """
     found = None if run.reference is None else closeness(run, robot, limits)
-    if found is not None and found.apart < CIRCLE_EXACT * found.rounding:
+    if found is not None and found.apart < rules.CIRCLE_EXACT * found.rounding:
         what = run.circle or "the reference"
         raise InputError(
             f"{run.path}: {what}: it agrees with the wheels to {_small(found.apart)} in "
@@ -74,7 +64,7 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
             f"({_small(found.rounding)}): it was made from the same counts, and cannot judge them "
             "(--force takes it all the same)"
         )
-    if found is not None and not found.rounding and found.apart < CIRCLE_FINEST * found.way:
+    if found is not None and not found.rounding and found.apart < rules.CIRCLE_FINEST * found.way:
         what = run.circle or "the reference"
         raise InputError(
             f"{run.path}: {what}: it agrees with the wheels to {_small(found.apart)} in "
@@ -84,7 +74,7 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
         )
     if not run.circle:
         return _words_about_closeness(run, robot, found)
-    if found is not None and found.apart > CIRCLE_APART:
+    if found is not None and found.apart > rules.CIRCLE_APART:
         what = run.circle.partition(":")[0]
         return (
             f"{run.path}: {what} is called as odometry is, but is {_small(found.apart)} from the "
@@ -106,8 +96,8 @@ def _words_about_closeness(run: Run, robot: Robot, found: Closeness | None) -> s
     """
     if found is None or not found.rounding:
         return ""
-    along = CIRCLE_WHEELS * float(np.sqrt(found.way / 2.0))
-    turn = CIRCLE_WHEELS * float(np.sqrt(2.0 * found.way)) / robot.track
+    along = rules.CIRCLE_WHEELS * float(np.sqrt(found.way / 2.0))
+    turn = rules.CIRCLE_WHEELS * float(np.sqrt(2.0 * found.way)) / robot.track
     if found.apart >= along or (found.turns_apart >= turn and np.isfinite(found.turns_apart)):
         return ""
     turns = f" and {found.turns_apart:.2g} rad" if np.isfinite(found.turns_apart) else ""
@@ -129,19 +119,19 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     except InputError:
         return None
     rows = _rows(reference, counters, robot)
-    if rows.size <= CIRCLE_FEWEST:
+    if rows.size <= rules.CIRCLE_FEWEST:
         return None
     ways, known = _ways(reference, rows)
     turns = np.diff(np.unwrap(reference.yaw[rows]))
     turning = np.isfinite(turns)
     best = turned = np.inf
-    for delay in CIRCLE_DELAYS:
+    for delay in rules.CIRCLE_DELAYS:
         wheels = np.diff(counters.at(reference.time[rows] - delay), axis=0)
         wheels = wheels * [robot.left_tick, robot.right_tick]
         # Where it is not known, the sign of the motion is taken from the wheels.
         sign = 1.0 if known else np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
         best = min(best, *(_typical(sign * each, wheels) for each in ways))
-        if turning.sum() > CIRCLE_FEWEST:
+        if turning.sum() > rules.CIRCLE_FEWEST:
             turned = min(turned, _typical(turns[turning], wheels[turning]))
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
     rolled = 0.5 * float(np.abs(wheels).sum())
@@ -159,7 +149,7 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
     rows = rows[np.concatenate([[True], np.diff(np.maximum.accumulate(reference.time[rows])) > 0])]
     gone = np.interp(reference.time[rows], counters.time, counters.way(robot, 1.0, np.inf))
     gone -= gone[0]
-    way = min(CIRCLE_WAY, float(gone[-1]) / (CIRCLE_FEWEST + 2))
+    way = min(rules.CIRCLE_WAY, float(gone[-1]) / (rules.CIRCLE_FEWEST + 2))
     if way <= 0.0:
         return rows[:1]
     new = np.concatenate([[True], np.diff(np.floor(gone / way)) > 0.0])
@@ -214,10 +204,10 @@ def _quantum(steps: Counts) -> float:
         return float(np.gcd.reduce(steps))
     sizes = np.unique(steps)
     apart = np.diff(sizes)
-    apart = apart[apart > CIRCLE_WHOLE * sizes[0]]  # less is the rounding of 32-bit angles
+    apart = apart[apart > rules.CIRCLE_WHOLE * sizes[0]]  # less is the rounding of 32-bit angles
     quantum = float(min(sizes[0], apart.min(initial=np.inf)))
-    few = sizes[sizes <= CIRCLE_STEPS * quantum] / quantum
-    whole = np.abs(few - np.rint(few)) < CIRCLE_WHOLE * CIRCLE_STEPS
+    few = sizes[sizes <= rules.CIRCLE_STEPS * quantum] / quantum
+    whole = np.abs(few - np.rint(few)) < rules.CIRCLE_WHOLE * rules.CIRCLE_STEPS
     return quantum if few.size and whole.all() else 0.0
 
 

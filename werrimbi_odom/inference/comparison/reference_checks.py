@@ -20,27 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.cutting import leg_ends
-from werrimbi_odom.inference.rules import (
-    ASKEW,
-    SUSPECT_ANGLE,
-    SUSPECT_CUT,
-    SUSPECT_CUTS,
-    SUSPECT_DRIFT_LEFT,
-    SUSPECT_METRE,
-    SUSPECT_SHARE,
-    SUSPECT_SIGMA,
-    SUSPECT_STILL,
-    SUSPECT_STRAIGHT,
-    SUSPECT_STRETCH,
-    SUSPECT_STRETCHES,
-    SUSPECT_TURNED,
-    SUSPECT_TURNS_AGREE,
-    SUSPECT_WANDER,
-)
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 _PAIRED = 100
@@ -108,7 +92,7 @@ def remarks_on(prepared: PreparedRuns) -> tuple[ReferenceRemark, ...]:
         return ()
     cuts = [_cuts(item, gap, prepared.options.leg) for _, item, gap in paths]
     runs = [run for run, _, _ in paths]
-    wander = min(SUSPECT_WANDER, max(noise.wander[1] for _, noise in prepared.noises))
+    wander = min(rules.SUSPECT_WANDER, max(noise.wander[1] for _, noise in prepared.noises))
     return (
         *_lengths(runs, cuts, prepared.options.leg),
         *_angles(runs, cuts, prepared.options.leg, wander),
@@ -142,7 +126,7 @@ class _Cuts:
 def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
     rolled = np.nan_to_num(item.relative)
     way = np.concatenate([[0.0], np.cumsum(np.hypot(rolled[:, 0], rolled[:, 1]))])
-    length = SUSPECT_CUT * leg
+    length = rules.SUSPECT_CUT * leg
     ends = leg_ends(way, gap, length)
     way_of = np.diff(way[ends])
     ahead = np.diff(np.concatenate([[0.0], np.cumsum(rolled[:, 0])])[ends])
@@ -154,9 +138,9 @@ def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
     whole = np.diff(np.concatenate([[0], np.cumsum(gap)])[ends]) == 0
     turn = np.where(np.isfinite(turned), turned, by_wheels)
     share = np.abs(moved) / np.maximum(np.abs(ahead), 1e-12)
-    straight = whole & (np.abs(turn) < SUSPECT_STRAIGHT) & (np.abs(ahead) > 0.5 * length)
-    straight &= np.abs(ahead) > np.cos(SUSPECT_STRAIGHT) * way_of  # not to and fro within it
-    straight &= (share > SUSPECT_STILL) & (share < 1.0 / SUSPECT_STILL)
+    straight = whole & (np.abs(turn) < rules.SUSPECT_STRAIGHT) & (np.abs(ahead) > 0.5 * length)
+    straight &= np.abs(ahead) > np.cos(rules.SUSPECT_STRAIGHT) * way_of  # not to and fro within it
+    straight &= (share > rules.SUSPECT_STILL) & (share < 1.0 / rules.SUSPECT_STILL)
     facing = np.exp(-1j * (yaw[:-1] + 0.5 * turned))
     with np.errstate(invalid="ignore"):
         angle = np.angle(moved * np.sign(ahead) * facing)
@@ -193,11 +177,11 @@ def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
     for causes in ([own.surge for own in cuts], [own.bend for own in cuts]):
         values = _without(values, causes)
     for run, (own, value) in enumerate(zip(cuts, values, strict=True)):
-        number = np.floor(own.way / (SUSPECT_STRETCH * leg)).astype(int)
+        number = np.floor(own.way / (rules.SUSPECT_STRETCH * leg)).astype(int)
         for stretch in np.unique(number):
             here = (number == stretch) & np.isfinite(value)
             count = int(here.sum())
-            if count < SUSPECT_CUTS:
+            if count < rules.SUSPECT_CUTS:
                 continue
             middle = float(np.median(value[here]))
             scatter = MEDIAN_TO_SIGMA * float(np.median(np.abs(value[here] - middle)))
@@ -210,7 +194,7 @@ def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
 def _odd(looked: _Looked, off: Floats, least: float) -> NDArray[np.intp]:
     """Stretches that are off by more than `least` and significantly."""
     sigma = np.maximum(looked.sigma, np.median(looked.sigma))
-    return np.flatnonzero(np.abs(off) > np.maximum(least, SUSPECT_SIGMA * sigma))
+    return np.flatnonzero(np.abs(off) > np.maximum(least, rules.SUSPECT_SIGMA * sigma))
 
 
 def _told(
@@ -224,12 +208,12 @@ def _told(
 
 def _lengths(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
     looked = _stretches(cuts, [own.share for own in cuts], leg)
-    if looked.value.size <= SUSPECT_STRETCHES:
+    if looked.value.size <= rules.SUSPECT_STRETCHES:
         return
     usual = float(np.median(looked.value))
     off = looked.value / usual - 1.0
-    odd = _odd(looked, off, SUSPECT_SHARE)
-    if odd.size >= SUSPECT_STRETCHES:
+    odd = _odd(looked, off, rules.SUSPECT_SHARE)
+    if odd.size >= rules.SUSPECT_STRETCHES:
         yield ReferenceRemark(
             "short", float(np.median(off[odd])), usual - 1.0, tuple(_told(runs, looked, off, odd))
         )
@@ -245,20 +229,20 @@ def _angles(
     axis = np.angle(np.mean(np.exp(1j * np.concatenate(known))))
     looked = _stretches(cuts, [wrap_all(own.angle - axis) for own in cuts], leg)
     looked = replace(looked, sigma=np.hypot(looked.sigma, wander))
-    if looked.value.size <= SUSPECT_STRETCHES:
+    if looked.value.size <= rules.SUSPECT_STRETCHES:
         return
     usual = float(np.median(looked.value))
     off = looked.value - usual
     drift = _drifting(looked, off)
-    odd = _odd(looked, off, SUSPECT_ANGLE)
+    odd = _odd(looked, off, rules.SUSPECT_ANGLE)
     if drift is not None:
         yield ReferenceRemark("apart", drift)
-    elif odd.size >= SUSPECT_STRETCHES:
+    elif odd.size >= rules.SUSPECT_STRETCHES:
         size = float(np.median(np.abs(off[odd])))
         yield ReferenceRemark("sideways_by_place", size, 0.0, tuple(_told(runs, looked, off, odd)))
     mount = float(wrap_all(np.array([axis + usual]))[0])
-    sure = SUSPECT_SIGMA * float(np.median(looked.sigma))
-    if max(SUSPECT_ANGLE, sure) < abs(mount) < ASKEW and drift is None:
+    sure = rules.SUSPECT_SIGMA * float(np.median(looked.sigma))
+    if max(rules.SUSPECT_ANGLE, sure) < abs(mount) < rules.ASKEW and drift is None:
         yield ReferenceRemark("sideways", mount)
 
 
@@ -268,7 +252,7 @@ def _drifting(looked: _Looked, off: Floats) -> float | None:
     left = off.copy()
     for run in np.unique(looked.run):
         own = looked.run == run
-        if own.sum() <= 2 * SUSPECT_STRETCHES:
+        if own.sum() <= 2 * rules.SUSPECT_STRETCHES:
             continue
         time = 0.5 * (looked.begin + looked.end)[own]
         some = np.unique(np.linspace(0, time.size - 1, _PAIRED).astype(int))
@@ -280,22 +264,25 @@ def _drifting(looked: _Looked, off: Floats) -> float | None:
         return None
     farthest = max(found, key=abs)
     spread, rest = (float(np.median(np.abs(each - np.median(each)))) for each in (off, left))
-    sure = SUSPECT_SIGMA * np.sqrt(2.0) * float(np.median(looked.sigma))
-    steady = rest < SUSPECT_DRIFT_LEFT * spread
-    return farthest if steady and abs(farthest) > max(SUSPECT_ANGLE, sure) else None
+    sure = rules.SUSPECT_SIGMA * np.sqrt(2.0) * float(np.median(looked.sigma))
+    steady = rest < rules.SUSPECT_DRIFT_LEFT * spread
+    return farthest if steady and abs(farthest) > max(rules.SUSPECT_ANGLE, sure) else None
 
 
 def _metre(cuts: list[_Cuts]) -> Iterator[ReferenceRemark]:
     """Radii and base off by the same factor: lengths are wrong, turns are not."""
     share = np.concatenate([own.share for own in cuts]) if cuts else np.zeros(0)
     by_wheels, measured = (sum(own.turns[side] for own in cuts) for side in (0, 1))
-    if share.size < SUSPECT_CUTS * SUSPECT_STRETCHES or by_wheels < SUSPECT_TURNED:
+    if (
+        share.size < rules.SUSPECT_CUTS * rules.SUSPECT_STRETCHES
+        or by_wheels < rules.SUSPECT_TURNED
+    ):
         return
     usual = float(np.median(share))
     scatter = MEDIAN_TO_SIGMA * float(np.median(np.abs(share - usual)))
     sigma = np.sqrt(0.5 * np.pi / share.size) * scatter
     off = abs(usual - 1.0)
-    if off > max(SUSPECT_METRE, SUSPECT_SIGMA * sigma) and (
-        abs(measured / by_wheels - 1.0) < SUSPECT_TURNS_AGREE
+    if off > max(rules.SUSPECT_METRE, rules.SUSPECT_SIGMA * sigma) and (
+        abs(measured / by_wheels - 1.0) < rules.SUSPECT_TURNS_AGREE
     ):
         yield ReferenceRemark("metre", usual - 1.0)

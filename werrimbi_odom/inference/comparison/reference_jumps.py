@@ -11,22 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
-from werrimbi_odom.inference.rules import (
-    JUMP_FEWEST,
-    JUMP_LASTS,
-    JUMP_LATE,
-    JUMP_LEAST_OF_A_GYRO,
-    JUMP_NEIGHBOURS,
-    JUMP_RARE,
-    JUMP_RARE_SIGMAS,
-    JUMP_SCATTER,
-    JUMP_SHARE,
-    JUMP_SHARE_OF_A_GYRO,
-    JUMP_SMALL,
-    JUMP_SPAN,
-)
 from werrimbi_odom.model.pose import Floats
 
 
@@ -39,36 +26,38 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     neighbours: the poses before and after it err as well, so it comes and goes in several steps.
     """
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
-    if errors.shape[0] < JUMP_FEWEST:
+    if errors.shape[0] < rules.JUMP_FEWEST:
         return np.zeros_like(errors)
-    usual = np.median(_windows(errors, JUMP_NEIGHBOURS), axis=-1)
+    usual = np.median(_windows(errors, rules.JUMP_NEIGHBOURS), axis=-1)
     left = errors - usual
-    around = max(JUMP_NEIGHBOURS, _intervals_within(item.time, JUMP_LATE))
+    around = max(rules.JUMP_NEIGHBOURS, _intervals_within(item.time, rules.JUMP_LATE))
     driven = _windows(np.abs(item.relative), around).max(axis=-1)
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
     # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
     under_way = driven.any(axis=1) if driven.any() else np.ones(driven.shape[0], dtype=np.bool_)
     scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left[under_way]), axis=0)
-    share = np.full(3, JUMP_SHARE)
+    share = np.full(3, rules.JUMP_SHARE)
     if not np.isfinite(item.measured).any():
         # A gyro does not jump. A delay of more than one interval causes an error of all that the
         # robot turns in it, so a start looks like a jump until base and delay are right.
-        share[2] = JUMP_SHARE_OF_A_GYRO
+        share[2] = rules.JUMP_SHARE_OF_A_GYRO
     # The noise of a pose does not fall with the interval; the motion does.
-    share = share * max(1.0, JUMP_SPAN / max(float(np.median(np.diff(item.time))), 1e-9))
+    share = share * max(1.0, rules.JUMP_SPAN / max(float(np.median(np.diff(item.time))), 1e-9))
     least = share * (driven + np.abs(usual))
     if not np.isfinite(item.measured).any():
-        least[:, 2] = np.maximum(least[:, 2], JUMP_LEAST_OF_A_GYRO)
+        least[:, 2] = np.maximum(least[:, 2], rules.JUMP_LEAST_OF_A_GYRO)
     least = np.maximum(least, 1e-9)
     # Where most intervals err by nothing, as the headings of a robot that goes straight, the median
     # is no scatter: everything else is beyond it. What many of them do is no jump.
-    often = (np.abs(left) > np.maximum(JUMP_SCATTER * scatter, least)).mean(axis=0) > JUMP_RARE
-    many = np.quantile(np.abs(left), 1.0 - JUMP_RARE, axis=0) / JUMP_RARE_SIGMAS
+    often = (np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least)).mean(
+        axis=0
+    ) > rules.JUMP_RARE
+    many = np.quantile(np.abs(left), 1.0 - rules.JUMP_RARE, axis=0) / rules.JUMP_RARE_SIGMAS
     scatter = np.where(often, np.maximum(many, scatter), scatter)
-    wrong = np.abs(left) > np.maximum(JUMP_SCATTER * scatter, least)
-    total = _windows(left, JUMP_NEIGHBOURS, "constant").sum(axis=-1)
-    stays = np.abs(total) > JUMP_LASTS * np.abs(left)
-    returns = _windows(wrong & ~stays, JUMP_NEIGHBOURS).any(axis=-1)
+    wrong = np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least)
+    total = _windows(left, rules.JUMP_NEIGHBOURS, "constant").sum(axis=-1)
+    stays = np.abs(total) > rules.JUMP_LASTS * np.abs(left)
+    returns = _windows(wrong & ~stays, rules.JUMP_NEIGHBOURS).any(axis=-1)
     return np.where(wrong | returns, left, 0.0)
 
 
@@ -104,7 +93,9 @@ def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) ->
     lasting = np.abs(np.diff(sums[chosen], axis=0))
     legs = [np.abs(jumps[a:b]).max(axis=0, initial=0.0) for a, b in pairwise(chosen)]
     of_leg = np.reshape(legs, (-1, 3))
-    least = np.maximum(JUMP_LASTS * of_leg, JUMP_SMALL * np.abs(jumps).max(axis=0, initial=0.0))
+    least = np.maximum(
+        rules.JUMP_LASTS * of_leg, rules.JUMP_SMALL * np.abs(jumps).max(axis=0, initial=0.0)
+    )
     count = np.diff(number[chosen])
     if kind == "incremental":
         return np.asarray(count > 0.0)

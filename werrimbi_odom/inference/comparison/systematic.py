@@ -16,15 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.leg_errors import LegErrors, root_mean_square
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA, student_survival
-from werrimbi_odom.inference.rules import (
-    LEGS_OF_A_PART,
-    NOISE_FACTOR_TOLD,
-    OF_MOST,
-    SURE_OF_LEGS,
-    WORTH_SAYING,
-)
 from werrimbi_odom.model.pose import Floats
 
 CHANNELS = ("along", "sideways", "heading")
@@ -60,8 +54,8 @@ class Systematic:
     @property
     def finding(self) -> bool:
         """Whether it is significant, common and relevant."""
-        worth = self.size >= WORTH_SAYING * self.promised
-        return self.common and worth and self.p_value < SURE_OF_LEGS
+        worth = self.size >= rules.WORTH_SAYING * self.promised
+        return self.common and worth and self.p_value < rules.SURE_OF_LEGS
 
 
 class NoiseFactor(NamedTuple):
@@ -76,7 +70,7 @@ class NoiseFactor(NamedTuple):
     def told(self) -> bool:
         """Whether the interval is narrower than `NOISE_FACTOR_TOLD`."""
         return bool(
-            np.isfinite(self.value) and self.high < NOISE_FACTOR_TOLD * max(self.low, 1e-12)
+            np.isfinite(self.value) and self.high < rules.NOISE_FACTOR_TOLD * max(self.low, 1e-12)
         )
 
 
@@ -93,7 +87,7 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
     for kind, channels in TERMS.items():
         for channel, names in enumerate(channels):
             rows = np.flatnonzero((legs.kind == kind) & np.isfinite(legs.error[:, channel]))
-            if rows.size < LEGS_OF_A_PART + len(names):
+            if rows.size < rules.LEGS_OF_A_PART + len(names):
                 continue
             parts, predicted = _regressed_on(legs, rows, channel, kind, names)
             found += parts
@@ -140,7 +134,9 @@ def _regressed_on(
                 2.0 * student_survival(abs(ratio), rows.size - len(names)),
                 root_mean_square(design[:, column] * slopes[column]),
                 promised,
-                bool(of_most[column] * np.sign(slopes[column]) >= OF_MOST * abs(slopes[column])),
+                bool(
+                    of_most[column] * np.sign(slopes[column]) >= rules.OF_MOST * abs(slopes[column])
+                ),
             )
         )
     return parts, predicted
@@ -185,7 +181,7 @@ def noise_factors(
     told = known.any(axis=1) & groups.any(axis=0)
     groups = groups[:, told]
     noisy = np.any(wheels[told] > 0.0, axis=(1, 2))
-    if noisy.size < LEGS_OF_A_PART or not noisy.any():
+    if noisy.size < rules.LEGS_OF_A_PART or not noisy.any():
         return [UNTOLD] * groups.shape[0]
     sizes, squares = _by_wheels(known[told], errors[told], covariance[told], wheels[told])
     cost = np.zeros((_FACTORS.size, groups.shape[0]))
@@ -197,7 +193,7 @@ def noise_factors(
             of_leg += square / variance
         cost += of_leg @ groups[:, block].T.astype(np.float64)
     return [
-        _likeliest(own) if which.sum() >= LEGS_OF_A_PART and noisy[which].any() else UNTOLD
+        _likeliest(own) if which.sum() >= rules.LEGS_OF_A_PART and noisy[which].any() else UNTOLD
         for own, which in zip(cost.T, groups, strict=True)
     ]
 

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
@@ -22,20 +23,6 @@ from werrimbi_odom.inference.comparison.dependence import Cell
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS, NoiseFactor, Systematic
 from werrimbi_odom.inference.distributions import chi2_survival
-from werrimbi_odom.inference.rules import (
-    ALIKE,
-    BENT_BY_HEADING,
-    FEWEST_LEGS,
-    HONEST_WITHIN,
-    MANY_LEGS,
-    QUARTER_TURN,
-    SHORTEST_OF_POSITIONS,
-    SURE_OF_LEGS,
-    WORST_OF,
-    WRONG_NEES,
-    WRONG_OF_A_LEG,
-    WRONG_SHARE,
-)
 
 Noise = Literal["honest", "too small", "too large", "grows", "comes and goes", "unknown"]
 """Result on the covariance. `too small`: by a factor on the wheel noise; `grows`: errors grow
@@ -112,7 +99,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
     systematic = _primary(main)
     noise, factor, leg = _noise(comparison)
     depends = _depends(comparison, noise)
-    enough = main.all.figures.count >= FEWEST_LEGS
+    enough = main.all.figures.count >= rules.FEWEST_LEGS
     off = tuple(kind for kind in KINDS if _scatters(main.by_motion[kind]))
     cells = tuple(cell for cell in comparison.cells if cell.stands_out and _too_small(cell.figures))
     too_short = _too_short(comparison)
@@ -127,7 +114,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
     runs = tuple(
         index
         for index, item in enumerate(comparison.runs)
-        if item.legs.figures.count >= FEWEST_LEGS and _too_small(item.legs.figures)
+        if item.legs.figures.count >= rules.FEWEST_LEGS and _too_small(item.legs.figures)
     )
     return Verdict(
         enough=True,
@@ -156,7 +143,7 @@ def _too_short(comparison: Comparison) -> float:
     if any(measure != "position" for measure, _ in noises):
         return 0.0
     noise = max((each.sigma_xy for _, each in noises), default=0.0)
-    return noise if comparison.main.leg < SHORTEST_OF_POSITIONS * noise else 0.0
+    return noise if comparison.main.leg < rules.SHORTEST_OF_POSITIONS * noise else 0.0
 
 
 def _gross(comparison: Comparison, systematic: tuple[Systematic, ...]) -> bool:
@@ -164,18 +151,18 @@ def _gross(comparison: Comparison, systematic: tuple[Systematic, ...]) -> bool:
     main = comparison.main
     shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
     figures = main.all.figures
-    if not figures.nees > WRONG_NEES:
+    if not figures.nees > rules.WRONG_NEES:
         return False
     # Where poses are rare, as two a drive, legs are longer than was asked for.
     leg = max(main.leg, float(np.median(comparison.legs.errors.length)))
     return (
         any(
-            (part.channel, part.per) in shares and abs(part.value) > WRONG_SHARE
+            (part.channel, part.per) in shares and abs(part.value) > rules.WRONG_SHARE
             for part in systematic
         )
-        or figures.median_position_m > WRONG_OF_A_LEG * leg
+        or figures.median_position_m > rules.WRONG_OF_A_LEG * leg
         or any(
-            item.figures.rmse_yaw_rad > WRONG_SHARE * QUARTER_TURN
+            item.figures.rmse_yaw_rad > rules.WRONG_SHARE * rules.QUARTER_TURN
             for item in main.by_motion.values()
         )
     )
@@ -185,7 +172,7 @@ def _held_by_few(comparison: Comparison) -> float:
     """Share of the squared errors in the worst twentieth of the legs."""
     legs = comparison.legs.errors.chosen(~comparison.legs.outlier)
     deviation = np.sort(legs.deviation)
-    count = max(deviation.size // WORST_OF, 1)
+    count = max(deviation.size // rules.WORST_OF, 1)
     return float(deviation[-count:].sum() / max(float(deviation.sum()), 1e-300))
 
 
@@ -200,7 +187,7 @@ def _primary(main: OfLength) -> tuple[Systematic, ...]:
     for (kind, channel), part in largest.items():
         heading = largest.get((kind, "heading"))
         length = main.leg
-        bent = BENT_BY_HEADING * heading.size * length if heading and kind != "spin" else 0.0
+        bent = rules.BENT_BY_HEADING * heading.size * length if heading and kind != "spin" else 0.0
         if channel != "heading" and part.size <= bent:
             continue
         kept.append(part)
@@ -213,7 +200,7 @@ def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
         Depends(channel, item.name, p_value)
         for item in comparison.variables
         for channel, p_value in item.p_values.items()
-        if p_value < SURE_OF_LEGS
+        if p_value < rules.SURE_OF_LEGS
     ]
     found.sort(key=lambda item: item.p_value)
     mean = [item for item in found if item.channel in CHANNELS]
@@ -223,18 +210,18 @@ def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
 def _scatters(figures: LegFigures) -> bool:
     known = figures.figures
     return (
-        known.count >= FEWEST_LEGS
+        known.count >= rules.FEWEST_LEGS
         and consistency(figures.dispersion_nees, known.freedom) == "too small"
-        and figures.noise.low > HONEST_WITHIN
+        and figures.noise.low > rules.HONEST_WITHIN
     )
 
 
 def _bad(figures: LegFigures) -> bool:
     """Whether a few legs have significant errors, even if in one direction only."""
     count, nees = figures.figures.count, figures.figures.nees
-    if not 0 < count < FEWEST_LEGS or not nees > HONEST_WITHIN:
+    if not 0 < count < rules.FEWEST_LEGS or not nees > rules.HONEST_WITHIN:
         return False
-    return chi2_survival(count * nees, count) < SURE_OF_LEGS
+    return chi2_survival(count * nees, count) < rules.SURE_OF_LEGS
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
@@ -243,7 +230,7 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     The factor is estimated at the longest leg length with many legs and compared with that at the
     requested length. The result is never too small or too large unless NEES is, at some length.
     """
-    many = [item for item in comparison.lengths if item.all.figures.count >= MANY_LEGS]
+    many = [item for item in comparison.lengths if item.all.figures.count >= rules.MANY_LEGS]
     main = comparison.main
     longest = many[-1] if many else main
     longest = longest if longest.leg >= main.leg else main
@@ -256,15 +243,15 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
         return "honest", factor, longest.leg
     if said == "too large":
         return "too large", factor, longest.leg
-    known = np.isfinite(factor.value) and longest.all.figures.count >= FEWEST_LEGS
+    known = np.isfinite(factor.value) and longest.all.figures.count >= rules.FEWEST_LEGS
     if (
         known
-        and factor.low > HONEST_WITHIN
+        and factor.low > rules.HONEST_WITHIN
         and longest.consistency_of_dispersion.says == "too small"
     ):
-        if factor.low > ALIKE * short.high:
+        if factor.low > rules.ALIKE * short.high:
             return "grows", factor, longest.leg
-        if short.low > ALIKE * factor.high:
+        if short.low > rules.ALIKE * factor.high:
             return "comes and goes", factor, longest.leg
         return "too small", factor, longest.leg
     worst = max((item for item in scatter if item.says == "too small"), key=lambda item: item.nees)

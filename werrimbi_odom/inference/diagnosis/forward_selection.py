@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
@@ -28,15 +29,6 @@ from werrimbi_odom.inference.fitting.score_tests import (
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.matched_run import at_edges
-from werrimbi_odom.inference.rules import (
-    INSTEAD_FITTED,
-    REFITTED,
-    RIVAL,
-    SAME_BY_RUN,
-    SCORE_FLOOR,
-    SHORTLISTED,
-    WORTH_A_FIT,
-)
 from werrimbi_odom.model.effect import Effect, always_twins
 from werrimbi_odom.model.robot import Robot
 
@@ -114,7 +106,7 @@ def instead_of_calibration(
     results = []
     penalty = calibrated.penalty_of_one
     best = sorted(best_of_each(found), key=lambda score: penalty * score.degrees - score.gain)
-    for score in worth_fitting(best, INSTEAD_FITTED):
+    for score in worth_fitting(best, rules.INSTEAD_FITTED):
         start = started_with(runs, point, score)
         numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
@@ -153,7 +145,7 @@ def search_round(
             for other in found
             if other.candidate.name == score.candidate.name
             and other.candidate.per_run != score.candidate.per_run
-            and other.gain > SAME_BY_RUN * score.gain
+            and other.gain > rules.SAME_BY_RUN * score.gain
         ]
         options = [(point, score)]
         if variants:
@@ -206,7 +198,7 @@ def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
     """
     effects = [fit.point.model.robot.effects[-1].effect for fit in tried]
     for fit, effect in zip(tried[1:], effects[1:], strict=True):
-        near = fit.total - tried[0].total < RIVAL * tried[0].scatter
+        near = fit.total - tried[0].total < rules.RIVAL * tried[0].scatter
         if effect.stage == "reference" and near and always_twins(effect, effects[0]):
             return [fit, *(other for other in tried if other is not fit)]
     return tried
@@ -220,13 +212,13 @@ def best_of_each(found: Sequence[Score]) -> list[Score]:
     return list(best.values())
 
 
-def worth_fitting(ordered: Sequence[Score], most: int = REFITTED) -> list[Score]:
+def worth_fitting(ordered: Sequence[Score], most: int = rules.REFITTED) -> list[Score]:
     """The few that may turn out best after a full fit."""
     if not ordered:
         return []
     top = ordered[0].gain
     return [
         score
-        for score in ordered[:SHORTLISTED]
-        if score.gain > WORTH_A_FIT * top and score.gain > score.degrees + SCORE_FLOOR
+        for score in ordered[: rules.SHORTLISTED]
+        if score.gain > rules.WORTH_A_FIT * top and score.gain > score.degrees + rules.SCORE_FLOOR
     ][:most]

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, summed_over_legs
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.step_jacobians import step_jacobians
@@ -34,13 +35,6 @@ from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import of_each_run, residual_innovations
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import (
-    DRIVES_TO_LEAVE_ONE,
-    LASTING_HEARD,
-    LASTING_NOISE,
-    OTHER_DRIVES,
-    SURE_WHEN_ASKED,
-)
 from werrimbi_odom.model.pose import Floats
 
 
@@ -175,7 +169,7 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats
     seen : ndarray, shape (n, p)
         The pattern's functions, of all drives alike.
     """
-    if np.unique(run).size < DRIVES_TO_LEAVE_ONE:
+    if np.unique(run).size < rules.DRIVES_TO_LEAVE_ONE:
         return None
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
@@ -186,17 +180,17 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats
     unit = seen[:, size > 0.0] / size[size > 0.0]
     # Functions weigh as what that drive shows by them: of a floor, the places where it errs.
     weight = (unit[~others].T @ rest[~others]) ** 2
-    if weight @ np.sum(unit[others] ** 2, axis=0) < OTHER_DRIVES * np.sum(weight):
+    if weight @ np.sum(unit[others] ** 2, axis=0) < rules.OTHER_DRIVES * np.sum(weight):
         return None
     basis, values, _ = np.linalg.svd(scaled[others], full_matrices=False)
-    own = basis[:, values > LASTING_HEARD]
+    own = basis[:, values > rules.LASTING_HEARD]
     gain = float(np.sum((own.T @ rest[others]) ** 2))
-    return None if chi2_survival(gain, own.shape[1]) < SURE_WHEN_ASKED else first
+    return None if chi2_survival(gain, own.shape[1]) < rules.SURE_WHEN_ASKED else first
 
 
 def noise_known(runs: Concatenated, parts: NDArray[np.intp]) -> float:
     """Worth of the likelihood's noise as a prior of the scatter between parts, in their degrees."""
-    return LASTING_NOISE if few_parts(runs, parts) else 0.0
+    return rules.LASTING_NOISE if few_parts(runs, parts) else 0.0
 
 
 def _chance(

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.effect_support import Support, support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
@@ -33,13 +34,6 @@ from werrimbi_odom.inference.fitting.score_tests import (
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import (
-    LEFT_ASKED,
-    LITTLE_OF_A_LAW,
-    LITTLE_OF_ERRORS,
-    REST_EXPLAINED,
-    SURE,
-)
 from werrimbi_odom.model.effect import AppliedEffect
 
 
@@ -76,7 +70,7 @@ def misfit_of_held_law(
         own = (cell for cell in this.dependences if _shares(support, cell))
         if beyond is not None:
             share = beyond.gain / explained
-            if _shares(support, beyond) and share < LITTLE_OF_A_LAW:
+            if _shares(support, beyond) and share < rules.LITTLE_OF_A_LAW:
                 return Misfit(law.name, beyond, share)
             if _is_little(beyond, explained, runs):
                 rest = Misfit(None, beyond, beyond.gain / runs.data)
@@ -86,11 +80,11 @@ def misfit_of_held_law(
         score = next(each for each in this.scores if each.candidate.name == best.names[-1])
         share = score.gain / explained
         cell = max(own, key=lambda cell: cell.gain - cell.degrees, default=None)
-        if cell is None or share >= LITTLE_OF_A_LAW:
+        if cell is None or share >= rules.LITTLE_OF_A_LAW:
             continue
         numbers = (*CALIBRATION, *before.numbers)
         left = _gain_beside(runs, before.point, numbers, score, cell)
-        if left < (1.0 - REST_EXPLAINED) * score.gain:
+        if left < (1.0 - rules.REST_EXPLAINED) * score.gain:
             return Misfit(law.name, cell, share)
     return rest
 
@@ -107,9 +101,9 @@ def misfit_of_found(
     """
     worth = sorted(certain, key=lambda cell: cell.degrees * fit.penalty_of_one - cell.gain)
     numbers = (*CALIBRATION, *fit.numbers)
-    for cell, p_value, only_in in lasting(runs, fit.point, numbers, worth[:LEFT_ASKED]):
+    for cell, p_value, only_in in lasting(runs, fit.point, numbers, worth[: rules.LEFT_ASKED]):
         dear = cell.gain <= cell.degrees * fit.penalty_of_one  # does not pay its penalty as a law
-        if only_in or (p_value < SURE and not dear):
+        if only_in or (p_value < rules.SURE and not dear):
             laws = list(_laws(fit, runs))
             for law, support, explained in laws:
                 if _shares(support, cell):
@@ -121,7 +115,7 @@ def misfit_of_found(
 
 def _is_little(cell: Dependence, explained: float, runs: Concatenated) -> bool:
     """Whether a dependence is little of the errors, and of what a law explains."""
-    return cell.gain < min(LITTLE_OF_ERRORS * runs.data, LITTLE_OF_A_LAW * explained)
+    return cell.gain < min(rules.LITTLE_OF_ERRORS * runs.data, rules.LITTLE_OF_A_LAW * explained)
 
 
 def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Support, float]]:

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import (
     calibration_deviation,
     sizes_of,
@@ -43,13 +44,6 @@ from werrimbi_odom.inference.fitting.identifiable import (
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
-from werrimbi_odom.inference.rules import (
-    CALIBRATION_KNOWN,
-    NOISE_NUMBERS,
-    PENALTY_FLOOR,
-    RIVAL,
-    SIGNIFICANT,
-)
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -146,7 +140,7 @@ def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
 
 def penalty_of_one(runs: Concatenated) -> float:
     """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor."""
-    return max(PENALTY_FLOOR, math.log(max(runs.data, 2)))
+    return max(rules.PENALTY_FLOOR, math.log(max(runs.data, 2)))
 
 
 def scatter_of(runs: Concatenated, design: Design) -> float:
@@ -156,7 +150,7 @@ def scatter_of(runs: Concatenated, design: Design) -> float:
 
 def residual_degrees_of(runs: Concatenated, design: Design) -> float:
     """Residual degrees of freedom for the noise; infinite where there are enough data."""
-    if runs.data >= NOISE_NUMBERS:
+    if runs.data >= rules.NOISE_NUMBERS:
         return math.inf
     return float(max(runs.data - len(design.columns), 1))
 
@@ -206,7 +200,7 @@ def fitted(
             for each in rises
             if each.kept != kept
             and len(each.kept) == len(kept)
-            and totals[each.kept] - totals[kept] < RIVAL
+            and totals[each.kept] - totals[kept] < rules.RIVAL
             and each.believed
         ),
         penalty * (len(kept) + counted),
@@ -279,7 +273,7 @@ def calibration_rises(
         kept = tuple(CALIBRATED[index] for index in chosen)
         sizes = zip(kept, np.zeros(len(kept)) if test is None else test.coefficients, strict=True)
         off = [abs(size) for name, size in sizes if name in held]
-        believed = max(off, default=0.0) < SIGNIFICANT * CALIBRATION_KNOWN
+        believed = max(off, default=0.0) < rules.SIGNIFICANT * rules.CALIBRATION_KNOWN
         believed &= design.sized or SIZE not in kept
         found.append(_Rise(kept, -test.gain if test else 0.0, not off, believed))
     least = min(each.rise for each in found if each.fitted)

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import (
@@ -18,14 +19,6 @@ from werrimbi_odom.inference.fitting.prediction import (
     headings_of,
     path_of,
     right_handed,
-)
-from werrimbi_odom.inference.rules import (
-    CURVE_KNOTS,
-    FLOOR_CELL,
-    FLOOR_CELLS,
-    GRIP,
-    SELDOM_BACK,
-    SELDOM_BEYOND,
 )
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats
@@ -152,11 +145,11 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
         found.append(Variable("position", "m", place[0], place[1], "place", ("x", "y")))
     for name, span in drive.channels.items():
         found.append(robots(name, "", _mean(span), name))
-    if np.mean(np.abs(acceleration) > GRIP) > SELDOM_BEYOND:
+    if np.mean(np.abs(acceleration) > rules.GRIP) > rules.SELDOM_BEYOND:
         found = [item for item in found if item.name != "acceleration"]
     way = np.abs(drive.distance.change)
     back = way[drive.speed.end < 0.0].sum() / max(way.sum(), 1e-9)
-    if not SELDOM_BACK < back < 1.0 - SELDOM_BACK:
+    if not rules.SELDOM_BACK < back < 1.0 - rules.SELDOM_BACK:
         found = [item for item in found if item.name != "direction"]
     if runs.own_axes:
         found = [item for item in found if not ON_THE_FLOOR & set(item.looks_at)]
@@ -209,7 +202,7 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
 
 def curve_knots(values: Floats) -> Floats:
     """Knots of a curve at quantiles, so that each piece has as many data."""
-    return np.unique(np.quantile(values, np.linspace(0.0, 1.0, CURVE_KNOTS)))
+    return np.unique(np.quantile(values, np.linspace(0.0, 1.0, rules.CURVE_KNOTS)))
 
 
 def hats(values: Floats, knots: Floats) -> Floats:
@@ -220,11 +213,11 @@ def hats(values: Floats, knots: Floats) -> Floats:
 
 def floor_cells(x: Floats, y: Floats) -> Floats:
     """Indicator of the floor cell of each step, (n, cells)."""
-    width = FLOOR_CELL
+    width = rules.FLOOR_CELL
     while True:
         column = np.floor((x - x.min()) / width).astype(int)
         row = np.floor((y - y.min()) / width).astype(int)
         cell, counts = np.unique(column * (row.max() + 1) + row, return_inverse=True)
-        if cell.size <= FLOOR_CELLS:
+        if cell.size <= rules.FLOOR_CELLS:
             return np.asarray(counts[:, None] == np.arange(cell.size), dtype=np.float64)
         width *= 1.25

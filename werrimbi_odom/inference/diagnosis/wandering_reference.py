@@ -16,6 +16,7 @@ from itertools import product
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, fall_of_cost
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival
@@ -23,15 +24,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import WALK, map_variances, prior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
-from werrimbi_odom.inference.rules import (
-    NOISE_NUMBERS,
-    TYPICAL_MATCH,
-    TYPICAL_WALK,
-    TYPICAL_WHEEL_NOISE,
-    VERY_SURE,
-    WALK_SPREAD,
-    WANDER_OVER_DEPENDENCE,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +66,7 @@ def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependenc
     """
     point = fit.point
     independent = point.options.reference_kind == "absolute"
-    if not independent or runs.has_stamp_noise or runs.data < NOISE_NUMBERS:
+    if not independent or runs.has_stamp_noise or runs.data < rules.NOISE_NUMBERS:
         return False
     options = replace(point.options, reference_kind="local_map")
     costs = Costs(runs, replace(point, options=options))
@@ -88,17 +80,17 @@ def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependenc
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
     most = max((fall_of_cost(cell.gain, runs.data) for cell in remaining), default=0.0)
-    return chi2_survival(gain - WANDER_OVER_DEPENDENCE * most, len(WALK)) < VERY_SURE
+    return chi2_survival(gain - rules.WANDER_OVER_DEPENDENCE * most, len(WALK)) < rules.VERY_SURE
 
 
 def _typical(fitted: Variances) -> Variances:
     """Localisers about the middle of their prior, each with typical wheels and two noises."""
     sides = (-1.0, 0.0, 1.0)
-    noises = ((fitted.xy[0], fitted.yaw[0]), np.square(TYPICAL_MATCH))
-    wheels = np.full(2, TYPICAL_WHEEL_NOISE**2)
+    noises = ((fitted.xy[0], fitted.yaw[0]), np.square(rules.TYPICAL_MATCH))
+    wheels = np.full(2, rules.TYPICAL_WHEEL_NOISE**2)
     rows = []
     for noise, size, rate in product(noises, sides, sides):
-        walk = np.array(TYPICAL_WALK) * np.exp(WALK_SPREAD * [size, size, rate])
+        walk = np.array(rules.TYPICAL_WALK) * np.exp(rules.WALK_SPREAD * [size, size, rate])
         rows.append(np.concatenate([wheels, noise, fitted.stamp, np.square(walk)]))
     return Variances(*np.stack(rows, axis=-1))
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, certainty_of_places, place_of
@@ -36,17 +37,6 @@ from werrimbi_odom.inference.drafting.candidate_law import (
 from werrimbi_odom.inference.drafting.formula import factor_of, in_a_line
 from werrimbi_odom.inference.drafting.law_forms import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.drafting.variable_source import rounded, seen_as
-from werrimbi_odom.inference.rules import (
-    DRAFTED_TOO,
-    MOST_DRAFTED,
-    MOST_FITTED,
-    RIVAL,
-    SPOT_OFF,
-    SPOT_RADII,
-    SURE,
-    USELESS_NUMBER,
-    WORTH_FITTING,
-)
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.progress import Show, silent
 
@@ -115,15 +105,17 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
         for cell, seen, form in plans
     ]
     ordered = by_score(diagnosis, drives, drafted, final.point.variances)
-    for number in range(MOST_FITTED):
-        ordered = [plan for plan in ordered if plan.excess > ordered[0].excess - WORTH_FITTING]
+    for number in range(rules.MOST_FITTED):
+        ordered = [
+            plan for plan in ordered if plan.excess > ordered[0].excess - rules.WORTH_FITTING
+        ]
         waiting = [
             plan for plan in ordered if all(plan.effect is not o.plan.effect for o in options)
         ]
         plan = next((plan for plan in waiting if keeps_laws(plan.effect)), None)
         if plan is None:
             break
-        show((number + 1) / (MOST_FITTED + 2), f"{plan.claim.variable}: {plan.form.kind}")
+        show((number + 1) / (rules.MOST_FITTED + 2), f"{plan.claim.variable}: {plan.form.kind}")
         options.append(fitted_plan(diagnosis, drives, plan))
         if number == 0:
             # Without the law its errors inflated the wheels' noise, which hid differences between
@@ -133,7 +125,7 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
         names = ", ".join(dict.fromkeys(cell.name for cell in cells))
         raise InputError(f"no law can be drafted that is a line, step or curve in {names}")
     least = min(option.fit.total for option in options)
-    near = [option for option in options if option.fit.total < least + RIVAL]
+    near = [option for option in options if option.fit.total < least + rules.RIVAL]
     best = min(near, key=lambda option: (option.plan.form.numbers, option.fit.total))
     show(0.95, "writing")
     last = with_values(diagnosis, best)
@@ -164,13 +156,14 @@ def _in_a_line(last: LawForm, fit: Fitted) -> str:
 
 def _worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:
     """The strongest dependences, one for each channel and variable."""
-    believed = [cell for cell in diagnosis.remaining if cell.p_value < SURE]
-    believed.sort(key=lambda cell: -(cell.gain - USELESS_NUMBER * cell.degrees))
+    believed = [cell for cell in diagnosis.remaining if cell.p_value < rules.SURE]
+    believed.sort(key=lambda cell: -(cell.gain - rules.USELESS_NUMBER * cell.degrees))
     chosen: dict[tuple[str, str, str], Dependence] = {}
     for cell in believed:
         chosen.setdefault((cell.channel, cell.amount.per, cell.variable.name), cell)
     cells = list(chosen.values())
-    return [cell for cell in cells if cell.gain > DRAFTED_TOO * cells[0].gain][:MOST_DRAFTED]
+    strong = [cell for cell in cells if cell.gain > rules.DRAFTED_TOO * cells[0].gain]
+    return strong[: rules.MOST_DRAFTED]
 
 
 def _forms(
@@ -192,8 +185,8 @@ def _forms(
 def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
     """A circle around the place on the floor where the errors are."""
     x, y = place_of(cell)
-    offsets = (-SPOT_OFF, 0.0, SPOT_OFF)
+    offsets = (-rules.SPOT_OFF, 0.0, rules.SPOT_OFF)
     places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]
     size = rounded(float(cell.coefficients[np.argmax(certainty_of_places(cell))]))
     half = 0.5 * diagnosis.given.track
-    return spot_form(places, SPOT_RADII, size, half)
+    return spot_form(places, rules.SPOT_RADII, size, half)

@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -45,13 +46,6 @@ from werrimbi_odom.inference.drafting.variable_source import signals_of
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.inference.rules import (
-    MOST_FITTED,
-    RIVAL,
-    SEARCHES,
-    TYPICAL_WHEEL_NOISE,
-    WORTH_FITTING,
-)
 from werrimbi_odom.progress import Show, silent
 
 
@@ -104,15 +98,15 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
     drives = FitDrives(diagnosis.runs, base.point.excluded, base.point.options)
     noise = _as_calm(base.point.variances if one is None else one.fit.point.variances)
     found: list[_Found] = []
-    for number in range(SEARCHES):
-        show(number / SEARCHES, "laws of two variables")
+    for number in range(rules.SEARCHES):
+        show(number / rules.SEARCHES, "laws of two variables")
         laws, tried = _searched(diagnosis, replace(base.point, variances=noise))
         found += _fitted(diagnosis, drives, laws, tried, noise)
         if not found:
             return None
         noise = min(found, key=lambda each: each.total).option.fit.point.variances
     best = min(found, key=lambda each: each.total)
-    if best.total > (base if one is None else one.fit).total - RIVAL:
+    if best.total > (base if one is None else one.fit).total - rules.RIVAL:
         return None
     last, fit = with_values(diagnosis, best.option), best.option.fit
     line = best.law.line([value_of(fit, last, item.name) for item in last.form.parameters])
@@ -178,8 +172,8 @@ def _fitted(
         plan = planned(diagnosis, Claim(law.amount, law.name, chance), law.seen, law.form)
         planned_from[plan.effect.apply] = law, plan
     ordered = by_score(diagnosis, drives, [plan for _, plan in planned_from.values()], noise)
-    likely = [plan for plan in ordered if plan.excess > ordered[0].excess - WORTH_FITTING]
-    for plan in islice((plan for plan in likely if keeps_laws(plan.effect)), MOST_FITTED):
+    likely = [plan for plan in ordered if plan.excess > ordered[0].excess - rules.WORTH_FITTING]
+    for plan in islice((plan for plan in likely if keeps_laws(plan.effect)), rules.MOST_FITTED):
         law, _ = planned_from[plan.effect.apply]
         yield _Found(law, fitted_plan(diagnosis, drives, plan), tried)
 
@@ -190,7 +184,7 @@ def _as_calm(noise: Variances) -> Variances:
     While a law is missing, its errors inflate the noise of the wheels concerned, which hides
     differences between laws.
     """
-    usual = np.full(noise.left.shape, TYPICAL_WHEEL_NOISE**2)
+    usual = np.full(noise.left.shape, rules.TYPICAL_WHEEL_NOISE**2)
     calm = np.minimum(np.minimum(noise.left, noise.right), usual)
     return replace(noise, left=calm, right=calm)
 
@@ -217,7 +211,7 @@ def _searched(diagnosis: Diagnosis, point: Point) -> tuple[list[LawOfTwo], int]:
                 found.append(law)
     found = [law for law in found if len(law.variables) == 2]
     found.sort(key=lambda law: penalty * len(law.terms) - law.gain)
-    return found[: 2 * MOST_FITTED], tried
+    return found[: 2 * rules.MOST_FITTED], tried
 
 
 def _price_of_search(tried: int) -> float:

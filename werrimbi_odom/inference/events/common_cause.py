@@ -16,17 +16,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import binomial_survival, bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.prediction import Prediction
-from werrimbi_odom.inference.rules import (
-    ALIKE_SHARE,
-    AT_REVERSAL,
-    EVENTS_ALIKE,
-    NEAR_BAND,
-    NEAR_PLACE,
-    SURE,
-)
 from werrimbi_odom.model.pose import Floats
 
 Common = Literal["reversal", "start or stop", "x", "y", "place"]
@@ -83,7 +76,7 @@ def alike(
         not, after a jump.
     """
     of = sum(own.size for own in legs)
-    if of < EVENTS_ALIKE:
+    if of < rules.EVENTS_ALIKE:
         return None
     found: list[Alike] = []
     nan = float("nan")
@@ -100,9 +93,9 @@ def alike(
                 x, y = here[leg].tolist()
                 if not np.isfinite(x + y):
                     continue
-                across = [abs(p[:, 0] - x) < NEAR_BAND for p in seen]
-                along = [abs(p[:, 1] - y) < NEAR_BAND for p in seen]
-                about = [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in seen]
+                across = [abs(p[:, 0] - x) < rules.NEAR_BAND for p in seen]
+                along = [abs(p[:, 1] - y) < rules.NEAR_BAND for p in seen]
+                about = [np.hypot(*(p - (x, y)).T) < rules.NEAR_PLACE for p in seen]
                 tried.append(_Tried("x", (x, nan), across, way))
                 tried.append(_Tried("y", (nan, y), along, way))
                 tried.append(_Tried("place", (x, y), about, way))
@@ -117,7 +110,8 @@ def alike(
     common = [
         each
         for each in found
-        if each.count >= max(EVENTS_ALIKE, ALIKE_SHARE * of) and each.p_value < SURE
+        if each.count >= max(rules.EVENTS_ALIKE, rules.ALIKE_SHARE * of)
+        and each.p_value < rules.SURE
     ]
     # A drive to and fro has all its stops at one place: the manoeuvre explains that, not the floor.
     return min(common, key=lambda each: (each.what in PLACES, each.p_value), default=None)
@@ -137,5 +131,5 @@ def _after(runs: Concatenated, told: Prediction, *, stops: bool) -> NDArray[np.b
             turned = going[1:][np.diff(np.sign(along[going])) != 0.0]
         for leg in turned.tolist():
             since = end[first:last] - end[first + leg]
-            found[first:last] |= (since > AT_REVERSAL[0]) & (since < AT_REVERSAL[1])
+            found[first:last] |= (since > rules.AT_REVERSAL[0]) & (since < rules.AT_REVERSAL[1])
     return found

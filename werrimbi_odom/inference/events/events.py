@@ -12,23 +12,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.events.common_cause import Alike, alike
 from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
-from werrimbi_odom.inference.rules import (
-    EDGE,
-    EVENT_BESIDE,
-    EVENT_INTERVAL,
-    EVENT_JOIN,
-    EVENT_LARGE,
-    EVENT_SPAN,
-    EVENTS_ALIKE,
-    JOLT,
-    RARE,
-)
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 
@@ -142,8 +132,8 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
         return Events()
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
-    many |= len(events) * RARE > time or any(
-        sum(event.run == path for event in events) > max(EVENTS_ALIKE, spent / RARE)
+    many |= len(events) * rules.RARE > time or any(
+        sum(event.run == path for event in events) > max(rules.EVENTS_ALIKE, spent / rules.RARE)
         for path, spent in spans.items()
     )
     if many:
@@ -160,7 +150,7 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
 def without(run: Run, happened: Events) -> Run:
     """The run with its new events marked; the same object if there are none."""
     new = [
-        (event.seen - EVENT_SPAN, event.seen + EVENT_SPAN)
+        (event.seen - rules.EVENT_SPAN, event.seen + rules.EVENT_SPAN)
         for event in happened.events
         if event.run == run.path
         and not any(begin < event.seen < end for begin, end in run.happened)
@@ -175,7 +165,7 @@ def looked_at(runs: Sequence[MatchedRun]) -> Concatenated:
         time = run.record.measured.time.tolist()
         rows = [0]
         for row in range(1, len(time)):
-            if time[row] - time[rows[-1]] >= EVENT_INTERVAL:
+            if time[row] - time[rows[-1]] >= rules.EVENT_INTERVAL:
                 rows.append(row)
         plain = replace(run.record, happened=())
         found.append(divided(plain, np.array(rows, dtype=np.intp)))
@@ -190,7 +180,7 @@ def _groups(steps: Steps) -> list[list[int]]:
     for index in sorted(range(len(steps.found)), key=lambda index: steps.found[index].leg):
         leg = steps.found[index].leg
         same = last >= 0 and runs.run_of_leg[last] == runs.run_of_leg[leg]
-        if same and runs.ends_at[leg] - runs.ends_at[last] <= EVENT_JOIN:
+        if same and runs.ends_at[leg] - runs.ends_at[last] <= rules.EVENT_JOIN:
             groups[-1].append(index)
         else:
             groups.append([index])
@@ -209,17 +199,17 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     run = int(runs.run_of_leg[first])
     clock = runs.runs[run].counters.time
     at = runs.ends_at[first]
-    if not clock[0] + EDGE < at < clock[-1] - EDGE:
+    if not clock[0] + rules.EDGE < at < clock[-1] - rules.EDGE:
         return None  # as in a fit: a late clock shows motion from outside the ticks' time there
-    before, after = np.searchsorted(clock, [at - EDGE, at + EDGE])
-    if np.diff(clock[before - 1 : after + 1]).max() > EDGE:
+    before, after = np.searchsorted(clock, [at - rules.EDGE, at + rules.EDGE])
+    if np.diff(clock[before - 1 : after + 1]).max() > rules.EDGE:
         return None  # nor is the motion of the wheels known while their counters are silent
     scatter = float(steps.scatter[run])
     sizes, spread = _net(steps, group, scatter, beside=False)
     beside, spread_beside = _net(steps, group, scatter, beside=True)
     stds = np.sqrt(np.diag(spread))
-    large = np.abs(sizes) > EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
-    sudden = np.abs(beside) > EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
+    large = np.abs(sizes) > rules.EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
+    sudden = np.abs(beside) > rules.EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
     # A coordinate that is not measured has no noise: a heading inferred from positions.
     told = sudden & (large | ~steps.told.known[first])
     if not told.any():
@@ -258,7 +248,7 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
 
 def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:
     """Whether no force moves a robot this far in one interval, or two."""
-    return bool(np.hypot(*sizes[:2]) > 0.5 * JOLT * (parts * interval) ** 2)
+    return bool(np.hypot(*sizes[:2]) > 0.5 * rules.JOLT * (parts * interval) ** 2)
 
 
 def _fitted(steps: Steps) -> Floats:

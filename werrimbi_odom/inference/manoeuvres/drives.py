@@ -15,15 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
-from werrimbi_odom.inference.rules import (
-    FASTEST_PACE,
-    HARD_START,
-    PACE_UNKNOWN,
-    SLOWEST_PACE,
-    TAPED_INTERVALS,
-)
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
@@ -66,9 +60,9 @@ def pace_of(runs: Concatenated, robot: Robot) -> DrivingLimits:
     travel, drive = runs.raw(robot), runs.drive(robot)
     duration = np.maximum(drive.duration, 1e-6)
     rims = np.concatenate([np.abs(travel.left), np.abs(travel.right)]) / np.tile(duration, 2)
-    speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else PACE_UNKNOWN
-    speed = min(max(speed, SLOWEST_PACE), FASTEST_PACE)
-    return DrivingLimits(speed, HARD_START * speed, robot.track)
+    speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else rules.PACE_UNKNOWN
+    speed = min(max(speed, rules.SLOWEST_PACE), rules.FASTEST_PACE)
+    return DrivingLimits(speed, rules.HARD_START * speed, robot.track)
 
 
 def rates_of(runs: Concatenated) -> tuple[float, float]:
@@ -80,7 +74,7 @@ def rates_of(runs: Concatenated) -> tuple[float, float]:
     poses = [
         np.diff(run.measured.time) / np.maximum(run.intervals, 1.0)
         for run in runs.runs
-        if run.intervals.sum() > TAPED_INTERVALS
+        if run.intervals.sum() > rules.TAPED_INTERVALS
     ]
     every = float(np.median(np.concatenate(poses))) if poses else math.inf
     return float(np.median(ticks)), every
@@ -129,7 +123,7 @@ def ideal_run(
     )
     seen = (
         np.arange(0.5 * poses, at[-1], poses)
-        if poses < at[-1] / (TAPED_INTERVALS + 1)
+        if poses < at[-1] / (rules.TAPED_INTERVALS + 1)
         else np.array([0.5 * REST, at[-1] - 0.2 * REST])
     )
     position, heading = measures

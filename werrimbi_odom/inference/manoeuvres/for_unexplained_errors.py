@@ -6,18 +6,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES
-from werrimbi_odom.inference.rules import (
-    MINUTES_OF_A_LAW,
-    MINUTES_OF_PLACES,
-    MINUTES_OF_TIME,
-    NEARLY_AS_MUCH,
-    SURE,
-    USELESS_NUMBER,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,14 +59,14 @@ def for_the_unknown(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
         manoeuvre, words = _VARYING[name]
         ideal = next(item for item in MANOEUVRES if item.name == manoeuvre)
         why = f"it varies the {words} and holds as much else as can be held, so that the law shows"
-        return ProposedManoeuvre(manoeuvre, why, f"drive {ideal.words}", MINUTES_OF_A_LAW)
+        return ProposedManoeuvre(manoeuvre, why, f"drive {ideal.words}", rules.MINUTES_OF_A_LAW)
     if name == "position":
         return ProposedManoeuvre(
             "square",
             "the same drive on different places of the floor shows where the error is and how wide",
             "drive the same small square, in both senses, on and off the places where the error is "
             "largest",
-            MINUTES_OF_PLACES,
+            rules.MINUTES_OF_PLACES,
         )
     if name in ("time", "duration", "distance"):
         return ProposedManoeuvre(
@@ -82,7 +75,7 @@ def for_the_unknown(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
             "back after a rest",
             "drive one and the same line forwards and backwards for ten minutes; then after a rest "
             "again",
-            MINUTES_OF_TIME,
+            rules.MINUTES_OF_TIME,
         )
     return ProposedManoeuvre(
         "out_and_back",
@@ -90,7 +83,7 @@ def for_the_unknown(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
         "follows it",
         f"drive one and the same line forwards and backwards, with {name} as low and as high as "
         "it gets, and in between",
-        MINUTES_OF_PLACES,
+        rules.MINUTES_OF_PLACES,
     )
 
 
@@ -99,14 +92,14 @@ def strongest(diagnosis: Diagnosis) -> Dependence | None:
 
     What depends on the speed also depends slightly on the distance; the reverse is rare.
     """
-    sure = [cell for cell in diagnosis.depends_on if cell.p_value < SURE]
+    sure = [cell for cell in diagnosis.depends_on if cell.p_value < rules.SURE]
     if not sure:
         return None
     top = max(_explains(cell) for cell in sure)
-    near = [cell for cell in sure if _explains(cell) >= NEARLY_AS_MUCH * top]
+    near = [cell for cell in sure if _explains(cell) >= rules.NEARLY_AS_MUCH * top]
     return max(near, key=lambda cell: (cell.variable.name != CONSTANT, _explains(cell)))
 
 
 def _explains(cell: Dependence) -> float:
     """Gain of a dependence above that of as many null parameters."""
-    return cell.gain - USELESS_NUMBER * cell.degrees
+    return cell.gain - rules.USELESS_NUMBER * cell.degrees

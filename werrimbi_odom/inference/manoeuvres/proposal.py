@@ -19,6 +19,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
@@ -42,14 +43,6 @@ from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import (
     strongest,
 )
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measured_in
-from werrimbi_odom.inference.rules import (
-    APART_HEADING,
-    APART_POSITION,
-    AS_LIKELY_AS_NOT,
-    ENOUGH,
-    LONGEST_DRIVE,
-    RIVAL,
-)
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
@@ -75,7 +68,7 @@ class Discrimination:
     def minutes_for(self, pairs: Sequence[Pair]) -> float:
         """Duration that tells all of them, if each repetition adds as much evidence."""
         rise = self.rises[self.hardest(pairs)]
-        return max(ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
+        return max(rules.ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
 
     def hardest(self, pairs: Sequence[Pair]) -> Pair:
         """The pair with the least evidence."""
@@ -84,11 +77,11 @@ class Discrimination:
     def chance_in(self, minutes: float, pairs: Sequence[Pair]) -> float:
         """Share of cases in which driving for so long tells the hardest of them."""
         rise = self.rises[self.hardest(pairs)] * minutes / self.minutes
-        return float(ndtr((rise - RIVAL) / (2.0 * np.sqrt(rise)))) if rise > 0.0 else 0.0
+        return float(ndtr((rise - rules.RIVAL) / (2.0 * np.sqrt(rise)))) if rise > 0.0 else 0.0
 
     def told(self) -> list[Pair]:
         """The pairs that it tells in the longest drive."""
-        return [pair for pair in self.rises if self.minutes_for([pair]) <= LONGEST_DRIVE]
+        return [pair for pair in self.rises if self.minutes_for([pair]) <= rules.LONGEST_DRIVE]
 
 
 def next_manoeuvre(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
@@ -168,13 +161,13 @@ def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Propos
     of_first = [pair for pair in pairs if rivals[0] in pair]
     for goal in filter(None, (pairs, of_first)):
         best = min(weighed, key=lambda item: item.minutes_for(goal))
-        if best.minutes_for(goal) <= LONGEST_DRIVE:
+        if best.minutes_for(goal) <= rules.LONGEST_DRIVE:
             return _proposed(best, goal, rivals[0])
     best = max(weighed, key=lambda item: _tells(item, rivals[0]))
     if best.told():
         return _proposed(best, best.told(), rivals[0])
     best = min(weighed, key=lambda item: item.minutes_for(of_first or pairs))
-    if best.chance_in(LONGEST_DRIVE, of_first or pairs) < AS_LIKELY_AS_NOT:
+    if best.chance_in(rules.LONGEST_DRIVE, of_first or pairs) < rules.AS_LIKELY_AS_NOT:
         return None
     return _proposed(best, of_first or pairs, rivals[0])
 
@@ -191,7 +184,7 @@ def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> Propos
         f"{one} and {other} look alike on these drives, but {best.ideal.where} "
         f"they differ by {_size(best.apart((one, other)))}"
     )
-    minutes = min(best.minutes_for(pairs), LONGEST_DRIVE)
+    minutes = min(best.minutes_for(pairs), rules.LONGEST_DRIVE)
     chance = best.chance_in(minutes, pairs)
     do = f"drive {best.ideal.words}"
     return ProposedManoeuvre(best.ideal.name, why, do, float(np.ceil(minutes)), chance)
@@ -202,10 +195,10 @@ def _size(apart: Floats) -> str:
     position = float(np.quantile(np.hypot(apart[:, 0], apart[:, 1]), 0.9))
     heading = float(np.degrees(np.quantile(np.abs(apart[:, 2]), 0.9)))
     parts = []
-    if position > APART_POSITION:
+    if position > rules.APART_POSITION:
         millimetres = float(f"{1e3 * position:.2g}")
         parts.append(f"{millimetres:g} mm" if position < 0.1 else f"{position:.2g} m")
-    if heading > APART_HEADING:
+    if heading > rules.APART_HEADING:
         parts.append(f"{heading:.2g}°")
     return (" and ".join(parts) or "little, again and again") + " on a short leg"
 

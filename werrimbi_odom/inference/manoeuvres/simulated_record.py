@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import NUISANCES
@@ -15,13 +16,6 @@ from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import DrivingLimits, Ideal, ideal_run, rates_of
 from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment
-from werrimbi_odom.inference.rules import (
-    MOTION_CAPTURE_INTERVAL,
-    MOTION_CAPTURE_XY,
-    MOTION_CAPTURE_YAW,
-    PARTS_OF_A_LEG,
-    QUARTER_TURN,
-)
 
 
 def measured_in(runs: Concatenated) -> tuple[bool, bool]:
@@ -60,17 +54,19 @@ def imagined(
     measures = measured_in(runs)
     variances, options = point.variances, point.options
     if better:
-        poses = MOTION_CAPTURE_INTERVAL
+        poses = rules.MOTION_CAPTURE_INTERVAL
         measures = True, True
         variances = replace(
-            variances, xy=np.array([MOTION_CAPTURE_XY**2]), yaw=np.array([MOTION_CAPTURE_YAW**2])
+            variances,
+            xy=np.array([rules.MOTION_CAPTURE_XY**2]),
+            yaw=np.array([rules.MOTION_CAPTURE_YAW**2]),
         )
         options = replace(options, reference_kind="absolute")
     run = ideal_run(
         ideal, robot, pace, ticks=ticks, poses=poses, measures=measures, channels=ranges
     )
-    leg = pace.size / PARTS_OF_A_LEG
-    laid = concatenated([match(run, robot, leg, None, QUARTER_TURN / PARTS_OF_A_LEG)])
+    leg = pace.size / rules.PARTS_OF_A_LEG
+    laid = concatenated([match(run, robot, leg, None, rules.QUARTER_TURN / rules.PARTS_OF_A_LEG)])
     start = start_point(laid, robot, options)
     first = point.model.own[0]
     own = {name: value for name, value in first.items() if name not in NUISANCES}

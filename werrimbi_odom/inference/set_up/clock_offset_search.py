@@ -17,27 +17,15 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import touched
-from werrimbi_odom.inference.rules import (
-    DELAY_BETTER,
-    DELAY_EVIDENCE,
-    DELAY_LONGEST,
-    DELAY_ROWS,
-    DELAY_SHORTEST,
-    DELAY_SPANS,
-    DELAY_TAMED,
-    DELAY_UNEXPLAINED,
-    DELAY_WINDOW,
-    FEWEST_CUTS,
-    GAP_INTERVALS,
-)
 from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 _Numbers = TypeVar("_Numbers", np.float64, np.complex128)
 
 _PERIOD = 0.1
-_STEPS = round(DELAY_WINDOW / _PERIOD)
+_STEPS = round(rules.DELAY_WINDOW / _PERIOD)
 
 
 def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
@@ -50,11 +38,11 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     gain : float
         Ratio of the unexplained variance without delay to that with it; 1 for no delay.
     """
-    most = round(DELAY_LONGEST / _PERIOD)
+    most = round(rules.DELAY_LONGEST / _PERIOD)
     sums = [_Sums(width, most) for width in (2, 3)]
     for record in records:
         grid = np.arange(record.time[0], record.time[-1], _PERIOD)
-        if grid.size < DELAY_SPANS * most or record.seen.size < FEWEST_CUTS:
+        if grid.size < rules.DELAY_SPANS * most or record.seen.size < rules.FEWEST_CUTS:
             continue
         left = _over(np.interp(grid, record.time, record.left))
         right = _over(np.interp(grid, record.time, record.right))
@@ -67,7 +55,7 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
             if measured is not None:
                 measured[_in_any(touched(grid, unseen))] = np.nan
                 total.add(wheels, measured)
-    used = [total for total in sums if total.rows > DELAY_ROWS]
+    used = [total for total in sums if total.rows > rules.DELAY_ROWS]
     if not used:
         return 0.0, 1.0
     misfit = np.sum([total.rows * np.log(total.residual_innovations()) for total in used], axis=0)
@@ -81,7 +69,11 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
             lag += 0.5 * _PERIOD * float(before - after) / float(bend)
     gain = float(np.exp(misfit[most] - misfit[best]))
     seconds = used[0].rows * _PERIOD
-    if abs(lag) < DELAY_SHORTEST or gain < DELAY_BETTER or seconds * np.log(gain) < DELAY_EVIDENCE:
+    if (
+        abs(lag) < rules.DELAY_SHORTEST
+        or gain < rules.DELAY_BETTER
+        or seconds * np.log(gain) < rules.DELAY_EVIDENCE
+    ):
         return 0.0, 1.0
     return float(lag), gain
 
@@ -104,7 +96,7 @@ class _Sums:
     def add(self, wheels: Floats, measured: Floats) -> None:
         """Add a run: (p, n) of the wheels, (n,) measured on the same grid, NaN where unmeasured."""
         known = np.isfinite(measured)
-        if known.sum() < DELAY_SPANS * self.most:
+        if known.sum() < rules.DELAY_SPANS * self.most:
             return
         scale = np.std(measured[known])
         if scale == 0.0:
@@ -124,19 +116,19 @@ class _Sums:
         """Unexplained share of the variance at each lag."""
         inverse = np.linalg.pinv(self.gram, rcond=1e-9, hermitian=True)
         explained = np.einsum("ki,kij,kj->k", self.cross, inverse, self.cross) / self.square
-        return np.asarray(np.clip(1.0 - explained, DELAY_UNEXPLAINED, 1.0))
+        return np.asarray(np.clip(1.0 - explained, rules.DELAY_UNEXPLAINED, 1.0))
 
 
 def _silences(seen: Floats) -> list[tuple[float, float]]:
     """Stretches in which the reference is silent and its motion unknown."""
     duration = np.diff(seen)
-    usual = max(DELAY_WINDOW, GAP_INTERVALS * float(np.median(duration)))
+    usual = max(rules.DELAY_WINDOW, rules.GAP_INTERVALS * float(np.median(duration)))
     return [(seen[row], seen[row + 1]) for row in np.flatnonzero(duration > usual)]
 
 
 def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
     known = np.isfinite(record.yaw)
-    if known.sum() < FEWEST_CUTS:
+    if known.sum() < rules.FEWEST_CUTS:
         return None
     yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
     return _winsorised(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
@@ -144,7 +136,7 @@ def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
 
 def _squared_steps(record: SetUpRecord, grid: Floats) -> Floats | None:
     known = np.isfinite(record.place)
-    if known.sum() < FEWEST_CUTS:
+    if known.sum() < rules.FEWEST_CUTS:
         return None
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
@@ -168,5 +160,5 @@ def _winsorised(values: Floats) -> Floats:
     size = np.abs(values[np.isfinite(values)])
     if size.size == 0:
         return values
-    limit = DELAY_TAMED * float(np.quantile(size, 0.9))
+    limit = rules.DELAY_TAMED * float(np.quantile(size, 0.9))
     return np.clip(values, -limit, limit)

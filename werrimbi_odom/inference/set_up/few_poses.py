@@ -14,17 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Measure
-from werrimbi_odom.inference.rules import (
-    ONE_WHEEL_FACTOR,
-    SPARSE_APART,
-    SPARSE_CUTS,
-    SPARSE_CUTS_MORE,
-    SPARSE_MARGIN,
-    SPARSE_MOVE,
-    SPARSE_SHARES,
-    SPARSE_TURN,
-)
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Setting,
@@ -47,7 +38,7 @@ STEPS = 4000
 def is_sparse(records: Sequence[SetUpRecord], robot: Robot, measured: Measure) -> bool:
     """Whether the reference is too rare to follow the robot through its turns."""
     cuts = cut(records, robot, measured)
-    return cuts.count < SPARSE_CUTS * len(records) + SPARSE_CUTS_MORE
+    return cuts.count < rules.SPARSE_CUTS * len(records) + rules.SPARSE_CUTS_MORE
 
 
 def search_sparse(
@@ -63,7 +54,7 @@ def search_sparse(
         ((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True
     )
     (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
-    if best < given + SPARSE_MARGIN:
+    if best < given + rules.SPARSE_MARGIN:
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
@@ -73,7 +64,7 @@ def search_sparse(
     estimate = SetUpEstimate(left, right, 2.0 * abs(half_base), yaw)
     same = [setting_of(estimate, way, track) for way in upright]
     for value, _, other in tried[1:]:
-        if value < best - SPARSE_APART:
+        if value < best - rules.SPARSE_APART:
             break
         if not any(_alike(other, one, measured == "pose") for one in same):
             return [], None
@@ -117,7 +108,7 @@ def _settings() -> Iterator[Setting]:
                     yield replace(plain, left=factor, right=factor)
                     yield replace(plain, base=factor)
                     yield replace(plain, left=factor, right=factor, base=factor)
-                    if 1.0 / ONE_WHEEL_FACTOR < factor < ONE_WHEEL_FACTOR:
+                    if 1.0 / rules.ONE_WHEEL_FACTOR < factor < rules.ONE_WHEEL_FACTOR:
                         yield replace(plain, left=factor)
                         yield replace(plain, right=factor)
 
@@ -146,9 +137,9 @@ class _Drives:
         extent = self._extent(left, right, half_base)
         off, of_heading = errors(cuts, left, right, half_base, arm)
         values = []
-        for share in SPARSE_SHARES:
-            of_turn = SPARSE_TURN + share * turned
-            of_move = SPARSE_MOVE + share * path + of_turn * extent
+        for share in rules.SPARSE_SHARES:
+            of_turn = rules.SPARSE_TURN + share * turned
+            of_move = rules.SPARSE_MOVE + share * path + of_turn * extent
             if self.facing:
                 value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
                 value += _log_wrapped(of_heading.real, of_turn)

@@ -11,17 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Measure
-from werrimbi_odom.inference.rules import (
-    DEGREES_BETTER,
-    DEGREES_RANGE,
-    DEGREES_WRAPS,
-    FASTEST_TURN,
-    FEWEST_CUTS,
-    RADIANS_WRAPS,
-    SURE_SIZE,
-    WIDE,
-)
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
@@ -56,9 +47,9 @@ class Regressed:
         """Whether both wheels and the base are determined."""
         turn, move = self.turning, self.moving
         return (
-            abs(turn.left) > SURE_SIZE * turn.left_std
-            and abs(turn.right) > SURE_SIZE * turn.right_std
-            and abs(move.half_base) > SURE_SIZE * move.half_base_std
+            abs(turn.left) > rules.SURE_SIZE * turn.left_std
+            and abs(turn.right) > rules.SURE_SIZE * turn.right_std
+            and abs(move.half_base) > rules.SURE_SIZE * move.half_base_std
         )
 
     def misfit(self, setting: Setting, track: float) -> float:
@@ -73,7 +64,7 @@ class Regressed:
 def regressed(records: Sequence[SetUpRecord], robot: Robot) -> Regressed | None:
     """Both regressions; None where the drives do not determine them."""
     cuts = cut(records, robot, "pose")
-    if cuts.count < FEWEST_CUTS:
+    if cuts.count < rules.FEWEST_CUTS:
         return None
     turn = turning(cuts)
     move = None if turn is None else moving(cuts, turn.left, turn.right)
@@ -83,14 +74,14 @@ def regressed(records: Sequence[SetUpRecord], robot: Robot) -> Regressed | None:
 def degrees_gain(records: Sequence[SetUpRecord], robot: Robot, measured: Measure) -> float:
     """Improvement of the fit if the reference's yaw is in degrees; 1 if it is in radians."""
     yaw = np.concatenate([each.yaw[np.isfinite(each.yaw)] for each in records])
-    if measured == "position" or yaw.size == 0 or np.ptp(yaw) < DEGREES_RANGE:
+    if measured == "position" or yaw.size == 0 or np.ptp(yaw) < rules.DEGREES_RANGE:
         return 1.0
     if measured == "heading":
         # Wrapped angles jump by a whole turn.
         jumps = np.concatenate([np.abs(np.diff(each.yaw)) for each in records])
         degrees, radians = (
             int(np.sum((jumps > low) & (jumps < high)))
-            for low, high in (DEGREES_WRAPS, RADIANS_WRAPS)
+            for low, high in (rules.DEGREES_WRAPS, rules.RADIANS_WRAPS)
         )
         if degrees > radians or _turns_in_degrees(records, robot):
             return math.inf
@@ -100,7 +91,7 @@ def degrees_gain(records: Sequence[SetUpRecord], robot: Robot, measured: Measure
     if mended is None or given is None:
         return 1.0
     gain = given.moving.scatter / mended.moving.scatter
-    return gain if gain > DEGREES_BETTER else 1.0
+    return gain if gain > rules.DEGREES_BETTER else 1.0
 
 
 def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
@@ -111,13 +102,13 @@ def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
     """
     turned = np.concatenate([np.abs(wrap_all(np.diff(each.yaw))) for each in records])
     lasted = np.concatenate([np.diff(each.seen) for each in records])
-    if not np.nansum(turned**2 / lasted) > FASTEST_TURN * np.nansum(turned):
+    if not np.nansum(turned**2 / lasted) > rules.FASTEST_TURN * np.nansum(turned):
         return False
     # Turns that are 57 times too large look like those of a robot that is turned by hand.
     mended = [replace(each.in_degrees(), not_driven=()) for each in records]
     lag, _ = lag_of(mended)
     cuts = cut([each.delayed(lag) for each in mended], robot, "heading")
-    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST_CUTS else None
+    fit = turning(cuts, with_bias=True) if cuts.count >= rules.FEWEST_CUTS else None
     if fit is None:
         return False
     ratio = math.sqrt(abs(fit.left * fit.right)) * effective_track(robot)
@@ -147,7 +138,7 @@ def search_poses(
         return fit.misfit(tried, track)
 
     # On one circle, sizes that are all far off cancel: each is needed beside the others.
-    if misfit(AS_ENTERED) < WIDE * misfit(setting):
+    if misfit(AS_ENTERED) < rules.WIDE * misfit(setting):
         return [], None
     found = findings_of(setting, ways, misfit)
     found += arm_finding(setting, misfit, setting.base * track)

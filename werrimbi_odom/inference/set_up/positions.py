@@ -17,16 +17,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.rules import (
-    COARSE_WINDOWS,
-    FINE_WINDOWS,
-    GIVEN_AS_GOOD,
-    POSITION_CUTS,
-    POSITIONS_REFINED,
-    POSITIONS_WIDE,
-    WINDOW,
-    WINDOW_FLOOR,
-)
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.records import (
@@ -75,9 +66,9 @@ class CutWindows:
         gone, turn = swept(self.cuts, left, right)
         swing = np.exp(1j * turn) - 1.0
         return (
-            gone.reshape(-1, WINDOW),
-            swing.reshape(-1, WINDOW),
-            self.cuts.move.reshape(-1, WINDOW),
+            gone.reshape(-1, rules.WINDOW),
+            swing.reshape(-1, rules.WINDOW),
+            self.cuts.move.reshape(-1, rules.WINDOW),
         )
 
     def _mount(
@@ -90,7 +81,7 @@ class CutWindows:
             model = half_base * gone + arm * swing
             facing = _facing(model, move)
             weight = 1.0 / (_rms(move - facing * model) + self.floor)
-            weights = np.repeat(weight, WINDOW)[:, None]
+            weights = np.repeat(weight, rules.WINDOW)[:, None]
             straight = (facing.conj() * move).ravel()[:, None]
             solved = np.linalg.lstsq(weights * columns, weights * straight, rcond=1e-6)[0][:, 0]
             # A phase of half the base belongs to the headings.
@@ -117,19 +108,19 @@ def _scale(gone: Complexes, move: Complexes) -> float:
     return float(np.median(match[moved] / size[moved])) if moved.any() else 0.0
 
 
-def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> CutWindows | None:
+def windows_of(cuts: Cuts, most: int = rules.FINE_WINDOWS) -> CutWindows | None:
     """Windows spread over all drives; None where there is none."""
-    starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
-    starts = starts[cuts.stretch[starts] == cuts.stretch[starts + WINDOW - 1]]
+    starts = np.arange(0, cuts.count - rules.WINDOW + 1, rules.WINDOW // 2)
+    starts = starts[cuts.stretch[starts] == cuts.stretch[starts + rules.WINDOW - 1]]
     if starts.size == 0:
         return None
     if starts.size > most:
         starts = starts[np.linspace(0, starts.size - 1, most).astype(int)]
-    inside = starts[:, None] + np.arange(WINDOW)
-    begin = np.repeat(cuts.begin[starts], WINDOW)
+    inside = starts[:, None] + np.arange(rules.WINDOW)
+    begin = np.repeat(cuts.begin[starts], rules.WINDOW)
     move = np.cumsum(cuts.move[inside], axis=1).ravel()
     end = cuts.end[inside].ravel()
-    floor = WINDOW_FLOOR * float(np.median(np.abs(cuts.move))) + 1e-12
+    floor = rules.WINDOW_FLOOR * float(np.median(np.abs(cuts.move))) + 1e-12
     nothing = np.full(end.size, np.nan)
     stretches = Cuts(cuts.left, cuts.right, begin, end, nothing, nothing, move, end * 0)
     return CutWindows(_compact(stretches), floor)
@@ -139,8 +130,8 @@ def _compact(cuts: Cuts) -> Cuts:
     """Keep only the steps that some stretch uses."""
     needed = np.zeros(cuts.left.size + 1, dtype=np.intp)
     np.add.at(needed, cuts.begin, 1)
-    last: NDArray[np.intp] = cuts.end.reshape(-1, WINDOW)[:, -1]
-    first: NDArray[np.intp] = cuts.begin.reshape(-1, WINDOW)[:, -1]
+    last: NDArray[np.intp] = cuts.end.reshape(-1, rules.WINDOW)[:, -1]
+    first: NDArray[np.intp] = cuts.begin.reshape(-1, rules.WINDOW)[:, -1]
     needed[:] = 0
     np.add.at(needed, first, 1)
     np.add.at(needed, last, -1)
@@ -162,8 +153,8 @@ def search_positions(
     records: Sequence[SetUpRecord], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """Findings, and the measured sizes."""
-    cuts = cut(records, robot, "position", fewest=POSITION_CUTS)
-    windows, some = windows_of(cuts), windows_of(cuts, COARSE_WINDOWS)
+    cuts = cut(records, robot, "position", fewest=rules.POSITION_CUTS)
+    windows, some = windows_of(cuts), windows_of(cuts, rules.COARSE_WINDOWS)
     if windows is None or some is None:
         return [], None
     track = effective_track(robot)
@@ -172,13 +163,13 @@ def search_positions(
     )
     best = min(
         _refined(windows, left / track, right / track)
-        for _, left, right in tried[:POSITIONS_REFINED]
+        for _, left, right in tried[: rules.POSITIONS_REFINED]
     )
     given = _refined(windows, 1.0 / track, 1.0 / track)
-    if given[0] < GIVEN_AS_GOOD * best[0]:
+    if given[0] < rules.GIVEN_AS_GOOD * best[0]:
         best = given
     with_arm = _with_arm(windows, best[1], best[2])
-    if with_arm[0] * GIVEN_AS_GOOD < best[0]:
+    if with_arm[0] * rules.GIVEN_AS_GOOD < best[0]:
         _, left, right, half_base, arm = with_arm
     else:  # on circles only, lever arm and base are confounded
         _, left, right = best
@@ -195,7 +186,7 @@ def search_positions(
 
     found = findings_of(setting, ways, misfit)
     entered = windows.misfit(1.0 / track, 1.0 / track, 0.5 * track)
-    if not found or entered < POSITIONS_WIDE * misfit(setting):
+    if not found or entered < rules.POSITIONS_WIDE * misfit(setting):
         return [], None
     return found, setting
 

@@ -18,15 +18,9 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
-from werrimbi_odom.inference.rules import (
-    FEWEST_CUTS,
-    MILLIMETRES_FROM,
-    MOST_COUNTS,
-    MOST_CREEP,
-    SURE_SIZE,
-)
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.factors import LENGTHS, counts_words, unit_of_positions
@@ -99,11 +93,11 @@ class SetUp:
         # Base and radii need not be right for that: half the base may be entered beside.
         larger = {each.effect: each.values.get("multiplier", 1.0) for each in self.findings}
         base, radius = (larger.get(name, 1.0) for name in ("track_width", RADIUS))
-        if min(base, radius) > MILLIMETRES_FROM:
+        if min(base, radius) > rules.MILLIMETRES_FROM:
             return IN_UNIT.format(unit="millimetres", size=1000.0)
         if (unit := unit_of_positions(radius, base)) is not None:
             return IN_UNIT.format(unit=unit, size=LENGTHS[unit])
-        if radius > MOST_COUNTS:
+        if radius > rules.MOST_COUNTS:
             return next(each.words for each in self.findings if each.effect == RADIUS)
         return None
 
@@ -180,7 +174,7 @@ def _search_headings(
     identifiable; sizes are not measured, so the second value is always None.
     """
     cuts = cut(records, robot, "heading")
-    if cuts.count < FEWEST_CUTS:
+    if cuts.count < rules.FEWEST_CUTS:
         return [], None
     fit = turning(cuts, with_bias=True)
     signs_alone = not _is_sure(fit)
@@ -217,14 +211,14 @@ def _creep(off: Floats, duration: Floats) -> float:
     if until.size == 0:
         return 0.0
     middle = rates[order][np.searchsorted(until, 0.5 * until[-1])]
-    return float(np.clip(middle, -MOST_CREEP, MOST_CREEP))
+    return float(np.clip(middle, -rules.MOST_CREEP, rules.MOST_CREEP))
 
 
 def _is_sure(fit: HeadingRegression | None) -> bool:
     """Whether the sign of each wheel's turn is significant."""
     if fit is None:
         return False
-    left, right = abs(fit.left) / SURE_SIZE, abs(fit.right) / SURE_SIZE
+    left, right = abs(fit.left) / rules.SURE_SIZE, abs(fit.right) / rules.SURE_SIZE
     return left > fit.left_std and right > fit.right_std
 
 
