@@ -22,7 +22,7 @@ from werrimbi_odom.inference.changes.between_drives import (
     is_within,
 )
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes
-from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import groups_of
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose

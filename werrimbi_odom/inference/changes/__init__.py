@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes between drives: which parameter changed, when, by how much, and how significant that is.
 
-Reading order: `parameter_groups` (what may change), `drives` (the information of each drive),
+Reading order: `parameter_groups` (what may change), `information_of_drives`,
 `shapes` (a step, one drive alone, a trend, and the gain of each), `change_points` (their
 selection), `between_drives` (changes within one diagnosis), `history` (drives over months).
 """

@@ -20,7 +20,10 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
-from werrimbi_odom.inference.changes.drives import DriveNumbers, information_of_drives
+from werrimbi_odom.inference.changes.information_of_drives import (
+    DriveNumbers,
+    information_of_drives,
+)
 from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
     PARTS,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.changes.shapes import Kind, Rows, Shape, first_drives, gains, rows_of
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival

@@ -26,7 +26,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
-from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import MOUNT, groups_of, numbers_of, value_at
 from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.changes.change_points import ChangePoints
-from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.rules import SCATTER_DRIVES, SURE_OF_A_CHANGE

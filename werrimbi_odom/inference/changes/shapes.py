@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.changes.drives import DriveNumbers
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.linear import DETERMINED, ROUNDING, SILENT, Nuisance
 from werrimbi_odom.inference.rules import TREND_DRIVES
 from werrimbi_odom.model.pose import Floats
