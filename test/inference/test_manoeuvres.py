@@ -22,13 +22,18 @@ from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.fitting.score_tests import Candidate
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.linear import nuisance
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, DrivingLimits, Ideal, ideal_run
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     best_alias,
     sensitivities_of,
     separation,
     trace_at,
+)
+from werrimbi_odom.inference.manoeuvres.ideal_drives import (
+    MANOEUVRES,
+    DrivingLimits,
+    Ideal,
+    ideal_run,
 )
 from werrimbi_odom.inference.manoeuvres.proposal import Discrimination, next_manoeuvre, quickest
 from werrimbi_odom.model.effect import AppliedEffect

@@ -11,7 +11,7 @@ from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.diagnosis.response_curve import before_after
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.manoeuvres.drives import pace_of
+from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.progress import Show
 from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
 from werrimbi_odom.report.over_variable import before_after_figure

@@ -28,12 +28,12 @@ from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, OF_THE_MEASUREMENT, Candidate
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
     sensitivities_of,
 )
+from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined
 from werrimbi_odom.inference.rules import HIDDEN_FROM, POWER, SURE
 from werrimbi_odom.model.effect import Effect

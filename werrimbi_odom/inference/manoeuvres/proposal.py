@@ -25,7 +25,6 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
@@ -42,6 +41,7 @@ from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import (
     for_the_unknown,
     strongest,
 )
+from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measured_in
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
