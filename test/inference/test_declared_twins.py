@@ -22,8 +22,8 @@ from werrimbi_odom.inference.diagnosis.rivals import possible_twins
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
-from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.document import document_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of

@@ -24,7 +24,7 @@ from werrimbi_odom.inference.legs.count_interpolation import between_messages, s
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
-from werrimbi_odom.inference.set_up.robot import mount_of
+from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import after_stage, view_of, wiring_of

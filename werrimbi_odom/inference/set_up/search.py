@@ -22,6 +22,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
+from werrimbi_odom.inference.set_up.corrected_robot import with_findings
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.factors import LENGTHS, counts_words, unit_of_positions
 from werrimbi_odom.inference.set_up.few_poses import is_sparse, search_sparse
@@ -42,7 +43,6 @@ from werrimbi_odom.inference.set_up.records import (
     record_of,
 )
 from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, turning
-from werrimbi_odom.inference.set_up.robot import with_findings
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
