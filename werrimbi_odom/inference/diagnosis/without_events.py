@@ -11,7 +11,7 @@ from typing import TypeVar
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.holdout import Judge
 from werrimbi_odom.inference.events.events import Events, EventSide, events_among, without
-from werrimbi_odom.inference.events.noise import noise_of_most
+from werrimbi_odom.inference.events.robust_noise import noise_of_most
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.rules import EVENT_ROUNDS
