@@ -10,9 +10,9 @@ from pathlib import Path
 
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.columns import without_zeros
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.merged_reference import with_one_scale
+from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run

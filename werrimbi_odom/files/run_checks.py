@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.columns import refuse_wrong_columns
+from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.encoder_online import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats

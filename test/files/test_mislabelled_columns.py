@@ -12,13 +12,13 @@ import pytest
 
 from test.files.recorded import ROBOT, driven
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import columns
+from werrimbi_odom.files import mislabelled_columns
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.robot import Robot
 
 
 def refuse_wrong_columns(run: Run, robot: Robot = ROBOT) -> None:
-    columns.refuse_wrong_columns(run, robot)
+    mislabelled_columns.refuse_wrong_columns(run, robot)
 
 
 def seen(run: Run, **columns: np.ndarray | Callable[[Reference], np.ndarray]) -> Run:
@@ -206,11 +206,11 @@ def test_a_counter_that_is_reset_or_read_seldom_does_not_wrap() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_a_tracker_that_writes_zeros_saw_nothing(seed: int) -> None:
     run = seen(driven(seed), x=lambda it: it.x + 2.0)
-    assert columns.without_zeros(run) is run
+    assert mislabelled_columns.without_zeros(run) is run
     assert run.reference is not None
     lost = np.arange(run.reference.time.size) % 7 < 2
     zeros = {name: np.where(lost, 0.0, getattr(run.reference, name)) for name in ("x", "y", "yaw")}
-    left = columns.without_zeros(seen(run, **zeros))
+    left = mislabelled_columns.without_zeros(seen(run, **zeros))
     assert left.reference is not None
     np.testing.assert_array_equal(left.reference.time, run.reference.time[~lost])
     assert f"{lost.sum()} of {lost.size} reference poses are zeros" in left.damage[-1]
@@ -222,4 +222,4 @@ def test_a_robot_that_starts_at_zero_was_there() -> None:
     start = seen(
         run, x=lambda it: it.x - it.x[0], y=lambda it: it.y - it.y[0], yaw=lambda it: 0.0 * it.yaw
     )
-    assert columns.without_zeros(start) is start
+    assert mislabelled_columns.without_zeros(start) is start
