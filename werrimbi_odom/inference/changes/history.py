@@ -24,7 +24,8 @@ from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
+from werrimbi_odom.inference.changes.between_drives import Moved, moves_of
+from werrimbi_odom.inference.changes.change_evidence import evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import MOUNT, groups_of, numbers_of, value_at

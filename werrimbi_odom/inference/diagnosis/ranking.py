@@ -6,9 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.calibration_parametrisation import (
-    name_of_base,
-)
+from werrimbi_odom.inference.calibration_parametrisation import name_of_base
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge
 from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts, p_value_of_size

@@ -10,9 +10,7 @@ from werrimbi_odom.inference.adding.added import Added, JudgedSide
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.events import events_json
 from werrimbi_odom.report.number_format import picked
-from werrimbi_odom.report.phrases import (
-    left_out_json,
-)
+from werrimbi_odom.report.phrases import left_out_json
 
 
 def json_of(added: Added) -> dict[str, Any]:

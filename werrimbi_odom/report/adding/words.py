@@ -15,12 +15,7 @@ from werrimbi_odom.report.diagnosis.remarks import little_words
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.number_format import listed, quantity, scaled_with_std
-from werrimbi_odom.report.phrases import (
-    either_side,
-    jumps_words,
-    left_out_words,
-    sizes_words,
-)
+from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, sizes_words
 
 
 def words_of(added: Added) -> list[Part]:
