@@ -4,5 +4,6 @@
 
 Reading order: `parameter_groups` (what may change), `information_of_drives`,
 `shapes` (a step, one drive alone, a trend, and the gain of each), `change_points` (their
-selection), `between_drives` (changes within one diagnosis), `history` (drives over months).
+selection), `change_evidence`, `between_drives` (changes within one diagnosis), `history` (drives
+over months).
 """
