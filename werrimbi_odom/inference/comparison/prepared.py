@@ -38,7 +38,12 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
-from werrimbi_odom.inference.rules import LEG_LENGTHS, LEGS_OF_A_LENGTH, LEGS_OF_A_RUN, QUARTER_TURN
+from werrimbi_odom.inference.rules import (
+    LEG_LENGTHS,
+    LEGS_OF_A_LENGTH,
+    LEGS_OF_A_RUN,
+    QUARTER_TURN,
+)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
