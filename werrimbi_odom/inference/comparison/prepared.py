@@ -32,6 +32,7 @@ from werrimbi_odom.inference.comparison.residuals import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, leg_ends, match_for_fit
@@ -40,6 +41,7 @@ from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
 from werrimbi_odom.inference.rules import (
+    COUNTS_UNSEEN,
     LEG_LENGTHS,
     LEGS_OF_A_FIT,
     LEGS_OF_A_LENGTH,
@@ -169,20 +171,29 @@ def _parts_for_fit(
 ) -> int:
     """How many short legs of a fit there are to a judged one.
 
-    More than usual where drives are short and the reference's poses independent over the way of a
-    usual one: an error that lasts longer than a pose would pass there for the model's.
+    More than usual where drives are short and poses are independent over the way of a usual one: an
+    error that lasts longer than a pose would pass there for the model's. The step of a counter is
+    such an error.
     """
     ways = [_ways(group, robot, options.leg) for group in groups]
     legs = sum(float(way[-1]) for own in ways for way in own)
     parts = min(int(LEGS_OF_A_FIT / max(legs, 1.0)), MOST_PARTS_OF_A_LEG)
     if options.reference_kind != "absolute" or parts <= PARTS_OF_A_LEG:
         return PARTS_OF_A_LEG
+    reading = quantisation_variance(robot)
     for group, own in zip(groups, ways, strict=True):
         steps = np.concatenate([np.diff(way) for way in own])
         moving = steps[steps > 0.0]
         span = round(1.0 / (PARTS_OF_A_LEG * float(np.median(moving)))) if moving.size else 0
-        independent = span > 1 and independent_for(group.plain, span)
-        if group.every.has_stamp_noise or not independent:
+        noise = group.own.noise
+        seen = np.array([noise.sigma_xy, noise.sigma_xy, noise.sigma_yaw]) ** 2
+        if (
+            group.measure != "pose"
+            or group.every.has_stamp_noise
+            or np.any(reading > COUNTS_UNSEEN * seen)
+            or span < 2
+            or not independent_for(group.plain, span)
+        ):
             return PARTS_OF_A_LEG
     return parts
 

@@ -75,7 +75,7 @@ def independent_for(residuals: Sequence[Residual], span: int) -> bool:
         near, far = (np.concatenate(side) if side else np.zeros(0) for side in sides)
         if not near.size and not far.size:  # not measured
             continue
-        if far.size < DIFFERENCES * 3 * span:  # overlapping ones tell no more than separate ones
+        if far.size < DIFFERENCES * (_THIRD.size - 1) * span:  # so many do not overlap
             return False
         if _variance(far) > VARIANCE_GROWS * _variance(near):
             return False

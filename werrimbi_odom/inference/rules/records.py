@@ -41,6 +41,10 @@ as the one before, and an effect is seen at half to a third of the size. Chosen:
 way from pose to pose at 10 to 25 Hz; a fit of 5000 legs takes less than twice as long as one of
 500, and an hour of driving has as many anyway."""
 
+COUNTS_UNSEEN = 0.25
+"""Largest variance of a reading of the counters, of that of a measured pose, for this: half of its
+deviation. The step of a counter errs alike in all poses until the next one."""
+
 EDGE = 0.3
 """Time at both ends of a run whose legs are not used [s]. Chosen: clocks synchronised over a
 network differ by less; a longer delay is found by the set-up search."""
