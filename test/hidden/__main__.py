@@ -59,8 +59,8 @@ class Extent:
     sizes: Sizes
     survive: int
     """Sets."""
-    smallest: tuple[int, int]
-    """Sessions for each effect, with the usual legs and with short ones."""
+    smallest: int
+    """Sessions for each effect."""
     gaps: int
     """Sets."""
     margins: int
@@ -74,14 +74,14 @@ class Extent:
 EVERYTHING = Extent(
     ALL,
     survive=100,
-    smallest=(8, 4),
+    smallest=8,
     gaps=200,
     margins=24,
     field=(4, 12, len(plan.EFFECTS)),
     scans=(2, 12, len(plan.EFFECTS)),
 )
 PART_OF_IT = Extent(
-    SAMPLE, survive=12, smallest=(2, 1), gaps=40, margins=1, field=(1, 2, 8), scans=(1, 2, 8)
+    SAMPLE, survive=12, smallest=2, gaps=40, margins=1, field=(1, 2, 8), scans=(1, 2, 8)
 )
 
 SCANS = 1000
@@ -193,11 +193,7 @@ def pictures(
     """Drawn to a folder."""
     lines = judged_lines(wanted)
     scores = coverage.scores(lines, wanted, _own("coverage", there["coverage"]))
-    found = {
-        name: ratio
-        for (name, leg), ratio in smallest.ratios(_own("smallest", there["smallest"])).items()
-        if leg == smallest.LEGS[0]
-    }
+    found = smallest.ratios(_own("smallest", there["smallest"]))
     sure = margins.constants().get("SURE", 1e-3)
     return draw(scores, found, *margins.sureness(lines), sure, folder)
 

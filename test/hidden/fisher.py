@@ -9,14 +9,16 @@ reference's, which is new in each pose. Start poses and the three calibration nu
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
-from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
 from ruamel.yaml import YAML
+from scipy.special import chndtrinc
+from scipy.stats import chi2
 
 from test.hidden.follow import run
 from test.hidden.machines import machine
@@ -139,7 +141,7 @@ def _not_negative(matrix: Floats) -> Floats:
     return np.asarray(vectors * values.clip(0.0) @ vectors.T)
 
 
-def detectable(sigma: float, tests: int, chance: float, power: float) -> float:
+def detectable(sigma: float, tests: int, chance: float, power: float, numbers: int = 1) -> float:
     """Size at which a test that is right about its noise finds an effect with this power.
 
     Parameters
@@ -148,6 +150,15 @@ def detectable(sigma: float, tests: int, chance: float, power: float) -> float:
         Bound of the size's standard deviation.
     tests : int
         Effects that are looked for at once; the chance of a false one is shared among them.
+    numbers : int
+        Of the effect that are unknown: its size, a direction on the floor, an angle in each drive.
+        The likelihood ratio is then chi-squared with so many degrees of freedom (Wilks 1938).
     """
-    normal = NormalDist()
-    return sigma * (normal.inv_cdf(1.0 - 0.5 * chance / tests) + normal.inv_cdf(power))
+    least = chi2.isf(chance / tests, numbers)
+    return sigma * math.sqrt(float(chndtrinc(least, numbers, 1.0 - power)))
+
+
+def unknown_numbers(effect: str, drives: int) -> int:
+    """Of an effect in some drives: how many numbers a search for it fits."""
+    parameters = find(effect).parameters.values()
+    return sum(drives if item.per_run else 1 for item in parameters)

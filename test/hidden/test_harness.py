@@ -476,7 +476,6 @@ def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100
     results = {
         f"{name} {session}": {
             "effect": name,
-            "leg": 1.0,
             "named_from": true_ratio[name] * math.exp(0.2 * (chance.normal() - 1.645)),
         }
         for name in true_ratio
@@ -485,14 +484,14 @@ def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100
     found = smallest.ratios(results)
     off = [
         math.log(ratio / true_ratio[name]) / math.log(error)
-        for (name, _), (ratio, error) in found.items()
+        for name, (ratio, error) in found.items()
     ]
     assert len(off) == 20
     assert max(map(abs, off)) < 3.5
     assert 0.6 < float(np.std(off)) < 1.5
-    results["never"] = {"effect": plan.EFFECTS[0], "leg": 1.0, "named_from": None}
+    results["never"] = {"effect": plan.EFFECTS[0], "named_from": None}
     left_out = set(found) - set(smallest.ratios(results))
-    assert left_out == {(plan.EFFECTS[0], 1.0)}
+    assert left_out == {plan.EFFECTS[0]}
 
 
 # ------------------------------------------------------------------ intervals

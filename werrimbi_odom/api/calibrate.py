@@ -17,13 +17,12 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.results_table import read_results
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate, errors_of_legs
 from werrimbi_odom.inference.calibration.noise_likelihood import design
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
-from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
-from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit, judged_by, prepare
+from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
@@ -64,15 +63,17 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     given = replace(
         given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
     )
-    runs = match_for_fit(given.runs, source.robot, given.evaluation.leg, source.limits)
+    prepared = prepare(given.runs, source.robot, given.evaluation)
+    runs = for_fit(prepared, source.robot)
     found = calibrate(runs, source.robot, with_stated_noise(given.evaluation, runs))
     left_out = _left_out(given, runs, found)
     figures = fit_json(found)
     figures["left_out"] = left_out_json(left_out)
-    figures["train"] = _judged(given.runs, given, found)
+    figures["train"] = _judged(prepared, found)
     said = left_out_words(left_out)
     if given.holdout:
-        figures["holdout"] = _judged(given.holdout, given, found)
+        holdout = prepare(given.holdout, source.robot, given.evaluation)
+        figures["holdout"] = _judged(holdout, found)
         said.append(_told(figures["holdout"]))
     words = [*fit_in_words(found), *paragraphs(said, apart=True)]
     changes = found.changes
@@ -121,10 +122,9 @@ def _left_out(
     return tuple(found)
 
 
-def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
+def _judged(prepared: PreparedRuns, result: Calibration) -> dict[str, Any]:
     """Errors over legs before and after, with the keys of all verbs; NaN where not measured."""
-    prepared = prepare(runs, given.source.robot, given.evaluation)
-    before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
+    before, after = (figures_of(prepared, each) for each in (prepared.robot, result.robot))
     return {
         "judged_by": judged_by(prepared),
         "before": before.rmse_position_m,

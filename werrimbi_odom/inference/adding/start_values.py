@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
@@ -36,7 +36,7 @@ from werrimbi_odom.inference.fitting.score_tests import (
     scores,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
@@ -87,7 +87,7 @@ class Start:
 
 def drives_of(prepared: PreparedRuns, robot: Robot, options: EvaluationOptions) -> FitDrives:
     """Cut the drives of a fit by the travel of `robot`."""
-    runs = match_for_fit(prepared.runs, robot, options.leg, options.limits)
+    runs = for_fit(prepared, robot)
     skipped = list(at_edges(runs))
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):

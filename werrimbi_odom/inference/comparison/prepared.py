@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
+from werrimbi_odom.inference.comparison.reference_noise import independent_for
 from werrimbi_odom.inference.comparison.reference_noise_source import (
     OwnNoise,
     ReferenceNoise,
@@ -31,17 +32,22 @@ from werrimbi_odom.inference.comparison.residuals import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, leg_ends, match_for_fit
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
-from werrimbi_odom.inference.legs.matched_run import AlignedRun, divided
+from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
 from werrimbi_odom.inference.rules import (
+    COUNTS_UNSEEN,
     LEG_LENGTHS,
+    LEGS_OF_A_FIT,
     LEGS_OF_A_LENGTH,
     LEGS_OF_A_RUN,
+    MOST_PARTS_OF_A_LEG,
+    PARTS_OF_A_LEG,
     QUARTER_TURN,
 )
 from werrimbi_odom.model.pose import Floats
@@ -78,6 +84,8 @@ class PreparedRuns:
     groups: tuple[ReferenceGroup, ...]
     cuts: Mapping[float, tuple[Concatenated, ...]]
     """Legs by length, for each group."""
+    parts: int
+    """Short legs of a fit to a judged one."""
 
     @property
     def measures(self) -> tuple[Measure, ...]:
@@ -153,9 +161,41 @@ def prepare(
         members.setdefault(measure, []).append((index, record, alike is run))
     groups = tuple(_group(robot, measure, found, options) for measure, found in members.items())
     show(0.5, "cutting legs")
-    return PreparedRuns(
-        robot, options, tuple(runs), groups, _cut_to_lengths(groups, robot, options.leg)
-    )
+    cuts = _cut_to_lengths(groups, robot, options.leg)
+    parts = _parts_for_fit(groups, robot, options)
+    return PreparedRuns(robot, options, tuple(runs), groups, cuts, parts)
+
+
+def _parts_for_fit(
+    groups: Sequence[ReferenceGroup], robot: Robot, options: EvaluationOptions
+) -> int:
+    """How many short legs of a fit there are to a judged one.
+
+    More than usual where drives are short and poses are independent over the way of a usual one: an
+    error that lasts longer than a pose would pass there for the model's. The step of a counter is
+    such an error.
+    """
+    ways = [_ways(group, robot, options.leg) for group in groups]
+    legs = sum(float(way[-1]) for own in ways for way in own)
+    parts = min(int(LEGS_OF_A_FIT / max(legs, 1.0)), MOST_PARTS_OF_A_LEG)
+    if options.reference_kind != "absolute" or parts <= PARTS_OF_A_LEG:
+        return PARTS_OF_A_LEG
+    reading = quantisation_variance(robot)
+    for group, own in zip(groups, ways, strict=True):
+        steps = np.concatenate([np.diff(way) for way in own])
+        moving = steps[steps > 0.0]
+        span = round(1.0 / (PARTS_OF_A_LEG * float(np.median(moving)))) if moving.size else 0
+        noise = group.own.noise
+        seen = np.array([noise.sigma_xy, noise.sigma_xy, noise.sigma_yaw]) ** 2
+        if (
+            group.measure != "pose"
+            or group.every.has_stamp_noise
+            or np.any(reading > COUNTS_UNSEEN * seen)
+            or span < 2
+            or not independent_for(group.plain, span)
+        ):
+            return PARTS_OF_A_LEG
+    return parts
 
 
 def _cut_to_lengths(
@@ -167,7 +207,7 @@ def _cut_to_lengths(
     """
     records = [[run.record for run in group.every.runs] for group in groups]
     runs = sum(map(len, records))
-    ways = [[_way(record, robot, leg) for record in own] for own in records]
+    ways = [_ways(group, robot, leg) for group in groups]
     rows: dict[float, list[list[NDArray[np.intp]]]] = {}
     counts: set[int] = set()
     for times in sorted(LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
@@ -201,25 +241,36 @@ def _cut_to_lengths(
     }
 
 
-def _way(record: AlignedRun, robot: Robot, leg: float) -> Floats:
-    """Cumulative travel at each pose of a record, in legs."""
-    counters = record.counters
-    way = counters.way(robot, leg, QUARTER_TURN)
-    return np.interp(record.measured.time, counters.time, way)
+def _ways(group: ReferenceGroup, robot: Robot, leg: float) -> list[Floats]:
+    """Cumulative travel at each pose of each run, in legs."""
+    records = (run.record for run in group.every.runs)
+    return [
+        np.interp(
+            record.measured.time,
+            record.counters.time,
+            record.counters.way(robot, leg, QUARTER_TURN),
+        )
+        for record in records
+    ]
+
+
+def for_fit(prepared: PreparedRuns, robot: Robot) -> list[MatchedRun]:
+    """Cut the runs into the short legs of a fit, by the travel of a robot."""
+    options = prepared.options
+    return match_for_fit(prepared.runs, robot, options.leg, options.limits, prepared.parts)
 
 
 def finely(prepared: PreparedRuns) -> Concatenated:
-    """Cut the runs into the short legs of a fit, as `match_for_fit`, reusing what is there."""
+    """Cut the runs as `for_fit`, by the robot they were prepared with, reusing what is there."""
+    robot, options, parts = prepared.robot, prepared.options, prepared.parts
     found = {}
     for group in prepared.groups:
         for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
             if whole:
-                found[index] = cut_for_fit(every.record, prepared.robot, prepared.options.leg)
+                found[index] = cut_for_fit(every.record, robot, options.leg, parts)
             else:
                 run = prepared.runs[index]
-                [found[index]] = match_for_fit(
-                    [run], prepared.robot, prepared.options.leg, prepared.options.limits
-                )
+                [found[index]] = match_for_fit([run], robot, options.leg, options.limits, parts)
     return concatenated([found[index] for index in range(len(prepared.runs))])
 
 

@@ -33,6 +33,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 _THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
+_SPANS = (1, 2, 4)
 
 
 def reference_noise(
@@ -59,6 +60,26 @@ def reference_noise(
         _less(sigmas[0], float(reading[0]), _rounding(positions)),
         _less(sigmas[1], float(reading[2]), _rounding(headings)),
     )
+
+
+def independent_for(residuals: Sequence[Residual], span: int) -> bool:
+    """Whether the errors of poses so many intervals apart are no larger than those of neighbours.
+
+    Then the noise is that of each pose, and neither model nor wheels err more over such a span.
+    False where poses are too few to tell.
+    """
+    spans = (1, span)
+    for differences in (_position_differences, _heading_differences):
+        runs = [differences(item, spans) for item in residuals]
+        sides = [[run[each][0] for run in runs if each in run] for each in spans]
+        near, far = (np.concatenate(side) if side else np.zeros(0) for side in sides)
+        if not near.size and not far.size:  # not measured
+            continue
+        if far.size < DIFFERENCES * (_THIRD.size - 1) * span:  # so many do not overlap
+            return False
+        if _variance(far) > VARIANCE_GROWS * _variance(near):
+            return False
+    return True
 
 
 def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
@@ -103,14 +124,12 @@ def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
 Differences = dict[int, tuple[Floats, float]]
 """By span in intervals: third differences, and the motion over one of them."""
 
-_SPANS = (1, 2, 4)
 
-
-def _position_differences(item: Residual) -> Differences:
+def _position_differences(item: Residual, spans: Sequence[int] = _SPANS) -> Differences:
     """Third differences of the position error, for several spans."""
     found: Differences = {}
     path = np.abs(item.relative[:, :2]).sum(axis=1)
-    for span in _SPANS:
+    for span in spans:
         ahead = item.measured.size - 3 * span
         if ahead < 1:
             break
@@ -132,12 +151,12 @@ def _position_differences(item: Residual) -> Differences:
     return found
 
 
-def _heading_differences(item: Residual) -> Differences:
+def _heading_differences(item: Residual, spans: Sequence[int] = _SPANS) -> Differences:
     """Third differences of the heading error, for several spans."""
     found: Differences = {}
     off = np.concatenate([[0.0], np.cumsum(item.intervals[:, 2])])
     turned = np.abs(item.relative[:, 2])
-    for span in _SPANS:
+    for span in spans:
         ahead = off.size - 3 * span
         if ahead < 1:
             break
@@ -165,9 +184,14 @@ def _level(runs: list[Differences]) -> float | None:
         if left.size < DIFFERENCES or (span > 1 and reach > DIFFERENCE_REACH):
             break
         spans.append(float(span))
-        variances.append((MEDIAN_TO_SIGMA * float(np.median(np.abs(left)))) ** 2 / 20.0)
+        variances.append(_variance(left))
         counts.append(float(left.size))
     return _intercept(np.array(spans), np.array(variances), np.array(counts)) if spans else None
+
+
+def _variance(differences: Floats) -> float:
+    """Variance of one pose, by third differences of independent ones."""
+    return (MEDIAN_TO_SIGMA * float(np.median(np.abs(differences)))) ** 2 / 20.0
 
 
 def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:

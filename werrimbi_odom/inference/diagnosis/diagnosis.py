@@ -22,6 +22,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_parametrisation import robot_for_cutting
+from werrimbi_odom.inference.comparison.prepared import for_fit
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
@@ -47,7 +48,7 @@ from werrimbi_odom.inference.diagnosis.without_events import events_beside, refi
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
-from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
+from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
     LAW_SHARE,
@@ -134,7 +135,7 @@ def _searched(
     begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
     cutter = robot_for_cutting(set_up.robot, robot)
-    laid = concatenated(match_for_fit(judge.fitted_on, cutter, options.leg, options.limits))
+    laid = concatenated(for_fit(judge.train, cutter))
     _refuse_few(laid, set_up, judge)
     effects = askable(effects, laid, set_up.robot)
     show(0.1, "calibration")

@@ -65,18 +65,23 @@ def match(
 
 
 def match_for_fit(
-    runs: Sequence[Run], robot: Robot, leg: float, limits: EncoderLimits | None = None
+    runs: Sequence[Run],
+    robot: Robot,
+    leg: float,
+    limits: EncoderLimits | None = None,
+    parts: int = PARTS_OF_A_LEG,
 ) -> list[MatchedRun]:
     """Cut runs into the short legs of a fit, given the leg length used for evaluation [m]."""
     records = (record_of(run, robot, limits, leg) for run in runs)
-    return [cut_for_fit(record, robot, leg) for record in records]
+    return [cut_for_fit(record, robot, leg, parts) for record in records]
 
 
-def cut_for_fit(record: AlignedRun, robot: Robot, leg: float) -> MatchedRun:
-    """Cut one record into the short legs of a fit."""
-    parts = 1.0 / PARTS_OF_A_LEG
+def cut_for_fit(
+    record: AlignedRun, robot: Robot, leg: float, parts: int = PARTS_OF_A_LEG
+) -> MatchedRun:
+    """Cut one record into the short legs of a fit, so many to a leg that is judged."""
     record = replace(record, counters=record.counters.at_most(RATE_OF_FIT))
-    return divided(record, rows_of_legs(record, robot, parts * leg, parts * QUARTER_TURN))
+    return divided(record, rows_of_legs(record, robot, leg / parts, QUARTER_TURN / parts))
 
 
 def every_pose(record: AlignedRun) -> MatchedRun:

@@ -34,6 +34,17 @@ PARTS_OF_A_LEG = 4
 """Ratio of the judged legs to the shorter legs of fits. Noise grows with the root of the way and
 drift with the way, so over four times the length they differ by a factor of 2."""
 
+MOST_PARTS_OF_A_LEG, LEGS_OF_A_FIT = 50, 5000
+"""Most short legs of a fit to a judged one, and how many there may be in all to have more than
+`PARTS_OF_A_LEG`: where the errors of a reference are independent, each further pose tells as much
+as the one before, and an effect is seen at half to a third of the size. Chosen: 2 cm of 1 m, the
+way from pose to pose at 10 to 25 Hz; a fit of 5000 legs takes less than twice as long as one of
+500, and an hour of driving has as many anyway."""
+
+COUNTS_UNSEEN = 0.25
+"""Largest variance of a reading of the counters, of that of a measured pose, for this: half of its
+deviation. The step of a counter errs alike in all poses until the next one."""
+
 EDGE = 0.3
 """Time at both ends of a run whose legs are not used [s]. Chosen: clocks synchronised over a
 network differ by less; a longer delay is found by the set-up search."""
