@@ -109,7 +109,10 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
         parts = sorted([*parts, *alone])
     if parts and not reference.has_yaw.any():
         parts = _with_what_follows(parts, counters)
-    return tuple(parts)
+    first, last = float(counters.time[0]), float(counters.time[-1])
+    return tuple(
+        part._replace(begin=max(part.begin, first), end=min(part.end, last)) for part in parts
+    )
 
 
 def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
