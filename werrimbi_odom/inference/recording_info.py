@@ -188,7 +188,7 @@ def unseen_much(held: Held) -> bool:
     if held.seen is None or held.driven is None:
         return False
     seen, whole = (one.way + one.turned / QUARTER_TURN for one in (held.seen, held.driven))
-    return seen < SEEN_IN_FULL * whole
+    return seen < SEEN_IN_FULL * whole and whole >= SHORT_LEG
 
 
 def _while_measured(held: Held) -> str:
