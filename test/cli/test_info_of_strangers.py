@@ -7,16 +7,19 @@ from __future__ import annotations
 import json
 import math
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.cli.commands import write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import JOINTS, gyro, joints, poses, stamp_of
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
+from werrimbi_odom.files.run import Reference
 
 SIZES = f"""odom_node:
   ros__parameters:
@@ -105,3 +108,20 @@ def test_what_is_seen_from_the_robot_is_not_taken_for_where_it_is(
     robot.write_text(SIZES + NAMES)
     told = werrimbi("info", bag, "--robot", robot).words
     werrimbi(*shlex.split(told.rpartition("Next: ")[2])[1:])
+
+
+@pytest.mark.parametrize("until", [5.0, 60.0])
+def test_what_drives_can_show_is_of_what_the_reference_measured(
+    until: float, tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """A tracker that lost the robot after a few seconds shows no base, however far it drove on."""
+    run = run_of(ROBOT, 1, 60)
+    assert run.reference is not None
+    kept = run.reference.time <= until
+    columns = (getattr(run.reference, name)[kept] for name in ("time", "x", "y", "yaw"))
+    write_run(tmp_path / "run", replace(run, reference=Reference(*columns)))
+    (tmp_path / "robot.yaml").write_text(SIZES)
+    told = werrimbi("info", tmp_path / "run", "--robot", tmp_path / "robot.yaml").words
+    assert ("It can show the base" in told) == (until == 60.0)
+    lost = "It cannot show the base: too little turning while the reference measured it."
+    assert (lost in told) == ("The reference measured" in told) == (until == 5.0)

@@ -12,7 +12,9 @@ import numpy as np
 
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
+from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
 from werrimbi_odom.inference.distributions import fisher_survival
@@ -53,3 +55,18 @@ def test_a_size_is_as_sure_as_few_data_know_their_noise() -> None:
     assert p_value_of_size(of_few, name) == fisher_survival(47.0, 1, 14.0) > 1e-6
     fit.doubts[name] = 1.5
     assert p_value_of_size(of_few, name) == fisher_survival(47.0, 1, 5.0)
+
+
+def test_what_was_not_fitted_is_no_surer_than_what_was() -> None:
+    """By nine headings the table said "< 1e-12" of effects that the verdict did not find."""
+    spin = run_by(ROBOT, np.full(160, 0.1), np.full(160, 0.3), seed=2)
+    seen = spin.reference
+    assert seen is not None
+    wandering = 0.02 * np.cumsum(np.random.default_rng(2).normal(size=seen.time.size))
+    nowhere = np.full(seen.time.size, np.nan)
+    turned = replace(seen, x=nowhere, y=nowhere, yaw=seen.yaw + wandering)
+    options = replace(GYRO, leg=0.25)
+    found = diagnose([replace(spin, reference=turned)], ROBOT, LIBRARY, options)
+    assert found.runs.data < NOISE_NUMBERS
+    assert found.verdict in ("none", "unknown")
+    assert min(item.p_value for item in found.ranking if item.p_value is not None) > VERY_SURE

@@ -9,17 +9,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.inference.driven import run_by
 from test.inference.test_gyro_bias import BIAS, INCREMENTAL, by_gyro, short_drive
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.adding.start_values import drives_of
+from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.records import record_of
 
@@ -112,3 +117,24 @@ def _lag_in(run: Run) -> tuple[float, float]:
     record = record_of(run, ROBOT, None)
     assert record is not None
     return lag_of([record])
+
+
+@pytest.mark.parametrize("delay", [LATE, -LATE])
+def test_a_jump_is_left_out_of_a_fit_by_another_clock(delay: float) -> None:
+    """The delay as fitted is another than that by which drives were cut.
+
+    `add` ended in an IndexError, or left out a leg of a second later.
+    """
+    run = run_by(ROBOT, np.full(1200, 0.3), np.full(1200, 0.2))
+    assert run.reference is not None
+    jump = 30.0
+    x = run.reference.x + 0.3 * (run.reference.time >= jump)
+    run = replace(run, reference=replace(run.reference, x=x))
+    apart = replace(ROBOT, effects=(find("reference_delay").using(delay=delay),))
+    options = EvaluationOptions(leg=0.5)
+    for first, then in ((ROBOT, apart), (apart, ROBOT)):
+        drives = drives_of(prepare([run], first, options), then, options)
+        (legs,), (skipped,) = drives.laid.runs, drives.skipped
+        stamps = legs.measured.time + legs.delay
+        with_jump = (stamps[:-1] < jump - 0.01) & (stamps[1:] > jump - 0.01)
+        np.testing.assert_array_equal(skipped & ~at_edges([legs])[0], with_jump)

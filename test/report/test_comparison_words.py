@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -13,6 +14,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from test.inference.driven import run_by
+from test.model.drives import ROBOT
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
     consistency,
@@ -24,8 +29,10 @@ from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systemati
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
 from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 from werrimbi_odom.report.adding.words import _rest
+from werrimbi_odom.report.comparison.document import document_of
 from werrimbi_odom.report.comparison.phrases import covariance_words
 from werrimbi_odom.report.number_format import from_start
+from werrimbi_odom.report.terminal import printed
 
 SYSTEMATIC = Systematic("line", "heading", "travel", 0.1, 0.01, 1e-9, 0.1, 0.1, True)
 NUMBER = r"([\d.]+(?:e[+-]?\d+)?)"
@@ -165,3 +172,20 @@ def test_what_is_still_missing_is_told_in_words_and_not_by_a_variables_name() ->
     added.misfit.share = 0.012
     assert _rest(added).startswith("Something is left: how far both wheels roll goes with")  # type: ignore[arg-type]
     assert "That is 1.2 % of the squared errors" in _rest(added)  # type: ignore[arg-type]
+
+
+def measured_at_the_ends(number: int) -> Run:
+    """Two metres, and the pose where they begin and where they end."""
+    run = run_by(ROBOT, np.full(100, 0.4), np.zeros(100), seed=number, name=f"run_{number}")
+    assert run.reference is not None
+    columns = (getattr(run.reference, name)[[0, -1]] for name in ("time", "x", "y", "yaw"))
+    return replace(run, reference=Reference(*columns))
+
+
+def test_where_two_poses_are_all_no_shorter_leg_is_advised() -> None:
+    """Four drives with a pose at either end: "4 legs of 1 m ... try a shorter --leg"."""
+    found = compare([measured_at_the_ends(number) for number in range(4)], ROBOT)
+    words = " ".join(printed(document_of(found)).split())
+    assert "4 legs of 2 m, 10 are the least. Drive more, or measure the robot more often" in words
+    assert "Errors of legs of 2 m (rms)" in words
+    assert "shorter --leg" not in words

@@ -35,7 +35,7 @@ from werrimbi_odom.files.wheel_joints import (
     of_another_robot,
 )
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
-from werrimbi_odom.inference.legs.aligned_run import record_of
+from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.motion_states import driven
@@ -239,9 +239,12 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         run = looked_at(recorded, robot, limits)
         counters = counters_of(run, robot, limits)
         found = driven(counters, robot, run.no_driving or ())
-        left_out = record_of(run, robot, limits).left_out if run.reference is not None else ()
+        record = record_of(run, robot, limits) if run.reference is not None else None
     except InputError as error:
         return replace(held, problem=str(error))
+    seen = None
+    if record is not None:
+        seen = driven(counters, robot, run.no_driving or (), unmeasured(record))
     scans = bias = 0.0
     if recorded.reference is not None and run.reference is not None:
         given, used = recorded.reference, run.reference
@@ -253,7 +256,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         held,
         run=run,
         driven=found,
-        left_out=left_out,
+        seen=seen,
+        left_out=() if record is None else record.left_out,
         restamped=counters.restamped,
         scans_restamped=scans,
         gyro_bias=bias,

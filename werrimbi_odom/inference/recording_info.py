@@ -23,6 +23,7 @@ from werrimbi_odom.inference.rules import (
     LEG_OF_POSITIONS,
     LEGS_ENOUGH,
     QUARTER_TURN,
+    SEEN_IN_FULL,
     SHORT_LEG,
     TURN_SHOWS,
     WAY_SHOWS,
@@ -50,6 +51,8 @@ class Held:
     """Set if `problem` is one of the wheels, which no other reference mends: the wheels themselves,
     or the names that the robot file gives to their joints."""
     driven: DrivenAmount | None = None
+    seen: DrivenAmount | None = None
+    """What of that the reference measured; None where there is none."""
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
     """Correction of the tick stamps (`legs.even_stamps`), rms [s]."""
@@ -83,9 +86,9 @@ class Info:
 
     @property
     def legs(self) -> float:
-        """Total driving, in legs of one metre or a quarter turn."""
-        drives = [each.driven for each in self.held if each.driven is not None]
-        return sum(each.way + each.turned / QUARTER_TURN for each in drives)
+        """Total driving that was measured, in legs of one metre or a quarter turn."""
+        drives = [each.seen or each.driven for each in self.held]
+        return sum(each.way + each.turned / QUARTER_TURN for each in drives if each is not None)
 
     @property
     def leg(self) -> float:
@@ -124,8 +127,8 @@ def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
 
 
 def drove(held: Held, sizes: bool) -> bool:
-    """Whether the robot drove far enough for a single leg; true if it is not known."""
-    drive = held.driven
+    """Whether it was measured as it drove far enough for a leg; true if it is not known."""
+    drive = held.seen or held.driven
     if drive is None:
         return True
     far = drive.way + drive.turned / QUARTER_TURN >= SHORT_LEG if sizes else True
@@ -139,9 +142,9 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     measures = measures_of(held)
     if measures == "nothing" or held.driven is None:
         return [], ["anything: nothing measured the robot beside its wheels"]
-    drive = held.driven
+    drive = held.seen or held.driven
     if not drove(held, sizes):
-        return [], ["anything: the robot hardly moved"]
+        return [], [f"anything: the robot hardly moved{_while_measured(held)}"]
     can: list[str] = []
     cannot: list[str] = []
 
@@ -153,14 +156,17 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
 
     far = measures in ("poses", "positions")
     if sizes:  # without it neither distance nor a wheel counting backwards is known
-        told(drive.turned >= TURN_SHOWS, "the base", "too little turning")
+        while_so = _while_measured(held)
+        told(drive.turned >= TURN_SHOWS, "the base", f"too little turning{while_so}")
         long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
-        told(long, "the ratio of the radii", "too little driving")
+        told(long, "the ratio of the radii", f"too little driving{while_so}")
     if sizes or not far:
         told(
             far and drive.way >= WAY_SHOWS,
             "the size of the radii",
-            "the way is too short" if far else "no heading tells a distance; tape one",
+            f"the way is too short{_while_measured(held)}"
+            if far
+            else "no heading tells a distance; tape one",
         )
     told(
         far,
@@ -170,8 +176,20 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     told(
         drive.reversals > 1,
         "what happens at reversals (a castor's kick, backlash)",
-        "the robot never drove to and fro",
+        f"the robot never drove to and fro{_while_measured(held)}",
     )
     if sizes and drive.way + drive.turned / QUARTER_TURN < SHORT_LEG * FEWEST_LEGS:
-        cannot.append("much of anything: too little was driven")
+        cannot.append(f"much of anything: too little was driven{_while_measured(held)}")
     return can, cannot
+
+
+def unseen_much(held: Held) -> bool:
+    """Whether the reference did not see a part of the driving that is worth telling."""
+    if held.seen is None or held.driven is None:
+        return False
+    seen, whole = (one.way + one.turned / QUARTER_TURN for one in (held.seen, held.driven))
+    return seen < SEEN_IN_FULL * whole and whole >= SHORT_LEG
+
+
+def _while_measured(held: Held) -> str:
+    return " while the reference measured it" if unseen_much(held) else ""

@@ -15,7 +15,13 @@ from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
-from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
+from werrimbi_odom.inference.recording_info import (
+    Held,
+    Info,
+    can_tell,
+    measures_of,
+    unseen_much,
+)
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
 from werrimbi_odom.report.phrases import left_out_words
@@ -186,6 +192,9 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
         turned = math.degrees(drive.turned)
         way = f" By its wheels it went {drive.way:.1f} m and turned {turned:.0f}°"
         way += f", and changed its direction {drive.reversals} times." if drive.reversals else "."
+        if held.seen is not None and unseen_much(held):
+            seen, turned = held.seen, math.degrees(held.seen.turned)
+            way += f" The reference measured {seen.way:.1f} m and {turned:.0f}° of it."
     return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
 
 

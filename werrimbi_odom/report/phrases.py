@@ -11,6 +11,7 @@ from typing import Any
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.rules import LONGER_LEG
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.number_format import from_start, picked, with_std
 
@@ -51,6 +52,16 @@ def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
         return []
     legs, they = ("1 leg", "it is") if count == 1 else (f"{count} legs", "they are")
     return [f"On {legs} the reference jumped; {they} left out."]
+
+
+def rarer_than_asked(length: float, asked: float) -> bool:
+    """Whether legs are longer than was asked for [m], because poses are rare."""
+    return length > LONGER_LEG * asked
+
+
+def leg_words(length: float, asked: float) -> str:
+    """Length of legs in metres: as they are, where poses are rarer than was asked for."""
+    return f"{length:.2g}" if rarer_than_asked(length, asked) else f"{asked:g}"
 
 
 def either_side(open_side: bool) -> list[str]:

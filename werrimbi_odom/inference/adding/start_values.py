@@ -86,12 +86,18 @@ class Start:
 
 
 def drives_of(prepared: PreparedRuns, robot: Robot, options: EvaluationOptions) -> FitDrives:
-    """Cut the drives of a fit by the travel of `robot`."""
+    """Cut the drives of a fit by the travel of `robot`.
+
+    Its clock may be another than that of `prepared` (the delay as fitted, of drives that were cut
+    by the set-up's), so the reference's poses are found by its own stamps.
+    """
     runs = for_fit(prepared, robot)
     skipped = list(at_edges(runs))
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
-            nodes = np.searchsorted(every.measured.time, runs[index].measured.time)
+            stamps = every.measured.time + every.delay
+            wanted = runs[index].measured.time + runs[index].delay
+            nodes = np.searchsorted(0.5 * (stamps[1:] + stamps[:-1]), wanted)
             skipped[index] |= jumped_legs(jumps, nodes, options.reference_kind)
     return FitDrives(concatenated(runs), tuple(skipped), with_stated_noise(options, runs))
 

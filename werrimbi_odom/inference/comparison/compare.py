@@ -118,6 +118,12 @@ class Comparison:
         """Statistics for the requested length."""
         return next(item for item in self.lengths if item.leg == self.prepared.options.leg)
 
+    @property
+    def median_length(self) -> float:
+        """Median path of these legs, longer than requested where poses are rare [m]."""
+        length = self.legs.errors.length
+        return float(np.median(length)) if length.size else 0.0
+
 
 def compare(
     runs: Sequence[Run],

@@ -147,7 +147,7 @@ def dependences(
             else test.coefficients,
             test.gain,
             test.degrees,
-            bonferroni(len(found), _chance(test, whole, spare)),
+            bonferroni(len(found), p_value_of_score(test.gain, test.degrees, whole, spare)),
             shares[amount],
         )
         for amount, variable, form, test in found
@@ -160,11 +160,21 @@ def fall_of_cost(gain: float, data: int) -> float:
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
-def _chance(test: ScoreTest, whole: float, spare: float) -> float:
-    """P-value of a cell's gain, of `whole` squared innovations with `spare` degrees of freedom."""
-    below = max(spare - test.degrees, 1.0)
-    scatter = max((whole - test.gain) / below, 1.0)
-    return fisher_survival(test.gain / test.degrees / scatter, test.degrees, below)
+def p_value_of_score(gain: float, degrees: int, whole: float, spare: float) -> float:
+    """P-value of a score test: by Fisher's F where few data determine the noise, else chi-squared.
+
+    Parameters
+    ----------
+    gain, degrees
+        Fall of the squared innovations, and the parameters that cause it.
+    whole : float
+        Sum of the squared innovations before.
+    spare : float
+        Its degrees of freedom; infinite where the noise was fitted.
+    """
+    below = max(spare - degrees, 1.0)
+    scatter = max((whole - gain) / below, 1.0)
+    return fisher_survival(gain / degrees / scatter, degrees, below)
 
 
 def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:

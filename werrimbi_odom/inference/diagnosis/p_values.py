@@ -6,11 +6,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.inference.diagnosis.evidence import p_value_of_score
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.clusters import few_parts, parts_of_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.score_tests import Score
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
@@ -21,6 +23,13 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
     gain = (before.cost + before.needless_gain - fit.cost - fit.needless_gain) / fit.scatter
     numbers = max(round((fit.penalty - before.penalty) / fit.penalty_of_one), 1)
     return bonferroni(max(tried, 1), fisher_survival(gain / numbers, numbers, fit.spare))
+
+
+def chance_of_score(score: Score, before: Fitted, tried: int) -> float:
+    """P-value of the score of an effect that was not fitted, corrected for all candidates tried."""
+    whole = float(np.sum(before.design.white**2))
+    p_value = p_value_of_score(score.gain, score.degrees, whole, before.spare)
+    return bonferroni(max(tried, 1), p_value)
 
 
 def p_value_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> float:

@@ -9,10 +9,15 @@ from dataclasses import dataclass
 from werrimbi_odom.inference.calibration_parametrisation import name_of_base
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge
-from werrimbi_odom.inference.diagnosis.p_values import chance, p_value_by_parts, p_value_of_size
+from werrimbi_odom.inference.diagnosis.p_values import (
+    chance,
+    chance_of_score,
+    p_value_by_parts,
+    p_value_of_size,
+)
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
+from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
@@ -71,7 +76,7 @@ def ranking_of(
         base = name_of_base(final.point.model.robot)
         ranked.setdefault(base if name == "track_width" else name, worth)
     for score in rounds[0].scores:
-        p_value = bonferroni(rounds[0].number, chi2_survival(score.gain, score.degrees))
+        p_value = chance_of_score(score, rounds[0].before, rounds[0].number)
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
     return [*first, *sorted(ranked.values(), key=_certainty)]

@@ -85,11 +85,10 @@ def turns_agree(windows: Windows, base: float) -> Agreement | None:
         every = windows.later(lag).rolling()
         if every.time.size < AGREE_FEWEST:
             continue
-        law = _turn_law(every, base)
-        kept, asked = _kept(every, *_turn(every, law[:, None]))
-        if best is None or kept[0] > AGREE_BETTER * best[0]:
-            best = float(kept[0]), lag, law
-        if kept[0] > AGREE_LAGS * asked[0]:
+        law, kept, asked = _turn_law(every, base)
+        if best is None or kept > AGREE_BETTER * best[0]:
+            best = kept, lag, law
+        if kept > AGREE_LAGS * asked:
             break
     if best is None:
         return None
@@ -177,8 +176,18 @@ def _turn(windows: Windows, laws: Floats) -> tuple[Floats, Floats]:
     return shown, windows.rolled[:, None] * np.abs(laws).sum(axis=0)
 
 
-def _turn_law(windows: Windows, base: float) -> Floats:
-    """Turn law with the most inliers, or the robot file's if it has enough."""
+def _turn_law(windows: Windows, base: float) -> tuple[Floats, float, float]:
+    """Turn law with the most inliers, or the robot file's if it has enough.
+
+    Returns
+    -------
+    law : ndarray, shape (2,)
+    kept : float
+        Weight of the inliers of the law with the most. By it lags are compared: at one of them the
+        file's may have too few, and another law then many more.
+    asked : float
+        Weight of all windows.
+    """
     terms = np.stack([windows.left, windows.right], axis=1)
     picked = np.random.default_rng(len(terms)).integers(0, len(terms), (_TRIES, 2))
     square = terms[picked]
@@ -193,7 +202,7 @@ def _turn_law(windows: Windows, base: float) -> Floats:
     kept, asked = _kept(windows, *_turn(windows, np.stack([own, best], axis=1)))
     # A law that nearly all of the drive fits is the robot's, whatever wiring the file has.
     needed = AGREE_LAGS if kept[1] > AGREE_LAGS * asked[1] else AGREE_OWN
-    return own if kept[0] > needed * kept[1] else best
+    return own if kept[0] > needed * kept[1] else best, float(kept.max()), float(asked.max())
 
 
 def _refined(windows: Windows, law: Floats, terms: Floats) -> Floats:

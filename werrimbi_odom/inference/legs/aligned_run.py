@@ -90,6 +90,13 @@ def record_of(
     )
 
 
+def unmeasured(record: AlignedRun) -> tuple[tuple[float, float], ...]:
+    """Stretches of the ticks in which no leg can be: beside the reference, and its gaps."""
+    ticks, seen = record.counters.time, record.measured.time
+    gaps = [(float(seen[row]), float(seen[row + 1])) for row in np.flatnonzero(record.gap)]
+    return ((float(ticks[0]), float(seen[0])), *gaps, (float(seen[-1]), float(ticks[-1])))
+
+
 def _surely_around(part: LeftOut) -> tuple[float, float]:
     """Stretch that no leg may touch, widened where its ends are only known to half a window."""
     unsure = NO_DRIVING_ENDS if part.why in ("held", "carried") else 0.0

@@ -44,8 +44,16 @@ class DrivenAmount(NamedTuple):
     """Changes between forwards and backwards."""
 
 
-def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) -> DrivenAmount:
-    """Segment a drive into states, by its wheels and the known stretches without driving."""
+def driven(
+    counters: Counters,
+    robot: Robot,
+    no_driving: tuple[NoDriving, ...],
+    unseen: tuple[tuple[float, float], ...] = (),
+) -> DrivenAmount:
+    """Segment a drive into states, by its wheels and the known stretches without driving.
+
+    What is driven in stretches that the reference did not see, `unseen`, is not counted.
+    """
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(np.arange(first, last, _GRID), last)
     counted = wiring_of(robot.effects).wheels(*np.diff(counters.at(grid), axis=0).T)
@@ -67,6 +75,8 @@ def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) 
         for begin, end in itertools.pairwise(_changes(state))
     )
     drove = state == "drove"
+    for since, until in unseen:
+        drove &= (middle < since) | (middle > until)
     along = np.sign(way[drove & (np.abs(way) > 0.5 * rolled) & moving])
     return DrivenAmount(
         spans,

@@ -126,6 +126,10 @@ TURN_SHOWS, WAY_SHOWS = 3.14, 2.0
 """Turn [rad], and travel [m], above which a recording can show base and radii. Chosen: half a turn
 and two metres show them to a percent, with a reference good to a degree and to 2 cm."""
 
+SEEN_IN_FULL = 0.9
+"""Share of the driving that the reference measured, below which `info` tells it beside the whole.
+Chosen: a reference that begins a little later than the wheels, or ends before, loses less."""
+
 LONGER_LEG = 1.5
 """Length of the legs in multiples of what was asked for, above which their own is told. Chosen: a
 leg ends at the first pose after that length, so poses twice a leg make it half as long again."""

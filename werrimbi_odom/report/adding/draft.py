@@ -15,6 +15,7 @@ from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
 from werrimbi_odom.report.number_format import error_words, picked
 from werrimbi_odom.report.page import as_html
+from werrimbi_odom.report.phrases import leg_words
 
 
 def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
@@ -27,8 +28,8 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
         f"{_what_it_goes_with(draft)} With it, the error of the held-out drives is "
         f"{error_words(sides.after, sides.unit)} where it was "
         f"{error_words(sides.before, sides.unit)} ({floor}rms over legs of "
-        f"{tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the law, find "
-        "the physics, give it its name."
+        f"{leg_words(sides.length, tried.holdout.after.leg)} m). Why it is so, the data cannot "
+        "know: read the law, find the physics, give it its name."
     )
     law = draft.source.partition("\n\n\n")[2].rstrip()
     return [Paragraph(headline), Paragraph(text), Paragraph(law, "code", apart=True)]

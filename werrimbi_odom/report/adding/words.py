@@ -15,7 +15,13 @@ from werrimbi_odom.report.diagnosis.remarks import little_words
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.number_format import listed, quantity, scaled_with_std
-from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, sizes_words
+from werrimbi_odom.report.phrases import (
+    either_side,
+    jumps_words,
+    left_out_words,
+    leg_words,
+    sizes_words,
+)
 
 
 def words_of(added: Added) -> list[Part]:
@@ -31,7 +37,7 @@ def words_of(added: Added) -> list[Part]:
 
 def _headline(added: Added) -> str:
     sides = added.holdout.sides
-    leg = added.holdout.after.leg
+    leg = leg_words(sides.length, added.holdout.after.leg)
     share = 100.0 * (1.0 - sides.after / sides.before) if sides.before > 0.0 else math.nan
     way = "lower" if share > 0 else "higher" if sides.rose else "higher, which is chance"
     change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {way}"
@@ -40,7 +46,7 @@ def _headline(added: Added) -> str:
         text = (
             f"With {names} the error of the held-out drives is {_told(sides.after, sides.unit)} "
             f"where it was {_told(sides.before, sides.unit)} ({change}; rms over legs of "
-            f"{leg:g} m)."
+            f"{leg} m)."
         )
     else:
         text = f"What {names} does to the error of the held-out drives is not known."
@@ -106,7 +112,8 @@ def _errors(added: Added) -> Table:
     columns = {"before": "before", "calibrated": "calibrated", "after": "with it"}
     unit = added.holdout.unit
     what = "Position" if unit == "m" else "Heading"
-    title = f"{what} error, rms over legs of {added.holdout.after.leg:g} m"
+    leg = leg_words(added.holdout.sides.length, added.holdout.after.leg)
+    title = f"{what} error, rms over legs of {leg} m"
     if added.is_calibration:
         del columns["calibrated"]
     else:

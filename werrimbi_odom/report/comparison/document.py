@@ -15,6 +15,7 @@ from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.document import Document, Part, Shown, Table, paragraphs
 from werrimbi_odom.report.over_variable import error_against_figure, variables_of
+from werrimbi_odom.report.phrases import leg_words
 from werrimbi_odom.report.style import Figure
 
 _RUNS = 40  # runs with a figure of their own; more would make the file too large to mail
@@ -89,7 +90,8 @@ _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
 
 def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
     """All tables with their headings."""
-    tables: list[Part] = [_motions(comparison.main), _lengths(comparison)]
+    length = leg_words(comparison.median_length, comparison.main.leg)
+    tables: list[Part] = [_motions(comparison.main, length), _lengths(comparison)]
     if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
         tables.append(_runs(comparison))
     said = list(dict.fromkeys(item.variable for item in verdict.depends))
@@ -105,14 +107,14 @@ def _depends(item: ByVariable) -> bool:
     return any(p_value < SURE_OF_LEGS for p_value in item.p_values.values())
 
 
-def _motions(main: OfLength) -> Table:
+def _motions(main: OfLength, leg: str) -> Table:
     rows = [
         [NAMES[kind], *_cells(main.by_motion[kind])]
         for kind in KINDS
         if main.by_motion[kind].figures.count
     ]
     rows.append(["all", *_cells(main.all)])
-    return Table(f"Errors of legs of {main.leg:g} m (rms)", ("by motion", *_FIGURES), rows)
+    return Table(f"Errors of legs of {leg} m (rms)", ("by motion", *_FIGURES), rows)
 
 
 def _lengths(comparison: Comparison) -> Table:

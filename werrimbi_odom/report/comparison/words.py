@@ -15,7 +15,12 @@ from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import capital, counted, listed, two_digits
-from werrimbi_odom.report.phrases import left_out_words, remark_words
+from werrimbi_odom.report.phrases import (
+    left_out_words,
+    leg_words,
+    rarer_than_asked,
+    remark_words,
+)
 
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
 _CHANNELS = {
@@ -67,10 +72,12 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
             f"--leg {longer:g}."
         )
     if not verdict.enough:
+        length, asked = comparison.median_length, comparison.main.leg
+        rare = rarer_than_asked(length, asked)  # then no leg is shorter
+        other = "measure the robot more often on its way" if rare else "try a shorter --leg"
         return (
-            f"Too little to judge: {counted(count, 'leg')} of "
-            f"{comparison.main.leg:g} m, {FEWEST_LEGS} are the least. "
-            "Drive more, or try a shorter --leg."
+            f"Too little to judge: {counted(count, 'leg')} of {leg_words(length, asked)} m, "
+            f"{FEWEST_LEGS} are the least. Drive more, or {other}."
         )
     if verdict.good:
         shortest, longest = comparison.lengths[0].leg, comparison.lengths[-1].leg

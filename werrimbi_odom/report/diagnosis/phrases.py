@@ -20,12 +20,12 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import LONGER_LEG, ORDINARY, SIGNIFICANT
+from werrimbi_odom.inference.rules import ORDINARY, SIGNIFICANT
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.number_format import chance_words, error_words, listed, quantity
-from werrimbi_odom.report.phrases import sizes_words
+from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
 def about(told: Told, name: str) -> list[str]:
@@ -189,21 +189,16 @@ def error_kind(sides: Sides) -> str:
 
 
 def _each(told: Told, sides: Sides) -> str:
-    if longer := _longer(told, sides):
-        return f"on each leg of {longer} m"
+    if rarer_than_asked(sides.length, told.leg):
+        return f"on each leg of {leg_words(sides.length, told.leg)} m"
     return f"on each {'metre' if told.leg == 1.0 else f'{told.leg:g} m'} or quarter turn"
 
 
 def judged(told: Told) -> str:
     """Drives and legs of the held-out errors."""
     which = "the drives held out" if told.held_out else "a part put aside for judging"
-    leg = _longer(told, told.diagnosis.holdout) or f"{told.leg:g}"
+    leg = leg_words(told.diagnosis.holdout.length, told.leg)
     return f"{which} (legs of {leg} m)"
-
-
-def _longer(told: Told, sides: Sides) -> str:
-    """Length of the legs as they are [m], where poses are rarer than was asked for; else ""."""
-    return f"{sides.length:.2g}" if sides.length > LONGER_LEG * told.leg else ""
 
 
 def sizes_found(diagnosis: Diagnosis) -> str:

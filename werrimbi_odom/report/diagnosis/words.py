@@ -45,7 +45,8 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *remarks.otherwise(diagnosis)]
     suspect = either_side(diagnosis.ahead_or_behind) + remarks.wandering(diagnosis)
-    suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
+    if not _mounted_anew(told):
+        suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
@@ -219,8 +220,21 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     yield f"Then give that drive to `{diagnose}` together with these."
 
 
+def _mounted_anew(told: Told) -> bool:
+    """Whether places differ, and turns do not, because the reference was mounted otherwise."""
+    places = any(remark.what == "places" for remark in told.diagnosis.remarks)
+    return places and any(change.group == "mount" for change in told.changes)
+
+
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
+    if diagnosis.of_another_drive and _mounted_anew(told):
+        return [
+            "No mount of the reference fits all of these drives, so together they tell nothing: "
+            "where an axis of its own begins anew with each recording (an IMU's heading beside "
+            "the positions of another sensor), diagnose each drive by itself.",
+            "Next: ask again with fewer drives, as above.",
+        ]
     if diagnosis.of_another_drive:
         unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
         mend = " Give the reference of the same drive." if unrelated else ""
