@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -161,6 +162,25 @@ def test_wheels_are_put_right_unless_one_packet_brings_the_reference(together: b
         np.testing.assert_array_equal(found, stamps)
     else:
         assert scatter(found - read) < 0.3 * scatter(stamps - read)
+
+
+def test_scans_in_one_packet_with_the_wheels_are_as_late_as_these() -> None:
+    """A driver that asks for both in turn: too noisy scans show no evenness of their own."""
+    random = np.random.default_rng(5)
+    read = 0.2 * np.arange(300)
+    stamps = np.sort(read + random.uniform(0.0, 0.2, read.size))
+    matched = np.delete(np.arange(read.size), random.integers(1, 299, 40))
+    seen = by_scans(read + 0.1, stamps + 0.1)
+    noise = random.normal(0.0, 0.05, (3, read.size))
+    seen = replace(seen, x=seen.x + noise[0], y=seen.y + noise[1], yaw=seen.yaw + noise[2])
+    seen = seen.chosen(matched)
+    assert with_even_scan_stamps(seen) is seen
+    run = looked_at(Run("run", Path("run"), Ticks(stamps, *driven(read)), seen), ROBOT)
+    wheels = counters_of(run, ROBOT, None).time
+    assert scatter(wheels - read) < 0.5 * scatter(stamps - read)
+    assert run.reference is not None
+    middle = (read + 0.1)[matched]
+    assert scatter(run.reference.time - middle) < 0.5 * scatter(seen.time - middle)
 
 
 def test_hard_starts_are_no_reason_to_believe_stamps() -> None:

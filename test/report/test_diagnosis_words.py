@@ -136,6 +136,7 @@ def test_a_delay_that_was_looked_for_in_steps_is_told_as_fitted(
     monkeypatch.setattr(phrases, "values_of", lambda *_: {})
     said = phrases.set_up_words(SimpleNamespace(), _late(0.3, 100.0))  # type: ignore[arg-type]
     assert "the reference's stamps are 0.3 s too late against" in said
+    assert "by a driver, a network, or two computers' clocks" in said  # a Neato has one computer
 
 
 def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:

@@ -21,6 +21,7 @@ from werrimbi_odom.inference.rules import (
     EVEN_HALF_BASE,
     EVEN_HOLE,
     EVEN_LEAST,
+    EVEN_LEAST_TOGETHER,
     EVEN_MESSAGES,
     EVEN_MOST,
     EVEN_SHARE,
@@ -83,10 +84,35 @@ def stamped_together(run: Run) -> bool:
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     own = seen - _numbered(seen, np.arange(float(seen.size)))[0]
+    sent = _sent(seen, time)
+    after = np.clip(np.searchsorted(time, sent), 1, time.size - 1)
+    apart = np.minimum(np.abs(sent - time[after - 1]), np.abs(sent - time[after]))
+    if np.median(apart) < EVEN_LEAST_TOGETHER * np.std(late):
+        return True
     both = np.interp(seen, time, late), own
     if not all(part.any() for part in both):
         return False
     return bool(np.corrcoef(*both)[0, 1] > EVEN_TOGETHER)
+
+
+def in_packets_of(run: Run, seen: Reference) -> Reference:
+    """Put scans that come with the wheels back by as much as the wheels, if nothing else did.
+
+    One packet has one delay: wheels that were corrected alone would disagree with the scans by all
+    of it.
+    """
+    ticks = run.ticks
+    if seen is not run.reference or not seen.own_axes or seen.gyro is not None:
+        return seen
+    read = with_even_stamps(ticks.time, ticks.left, ticks.right, least=EVEN_LEAST_TOGETHER)
+    late = np.interp(_sent(seen.time, ticks.time), ticks.time, ticks.time - read)
+    return replace(seen, time=seen.time - late) if late.any() else seen
+
+
+def _sent(seen: Floats, time: Floats) -> Floats:
+    """Stamps of the packets that bring poses: a scan's pose is that of its middle, some time on."""
+    before = time[np.maximum(np.searchsorted(time, seen, "right") - 1, 0)]
+    return np.asarray(seen - np.median(seen - before))
 
 
 def with_even_scan_stamps(reference: Reference) -> Reference:

@@ -19,7 +19,11 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
-from werrimbi_odom.inference.legs.even_stamps import stamped_together, with_even_scan_stamps
+from werrimbi_odom.inference.legs.even_stamps import (
+    in_packets_of,
+    stamped_together,
+    with_even_scan_stamps,
+)
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
@@ -68,7 +72,8 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
     """
     if run.no_driving is not None or run.reference is None:
         return run
-    seen = replace(with_even_scan_stamps(run.reference), stamped_together=stamped_together(run))
+    seen, together = with_even_scan_stamps(run.reference), stamped_together(run)
+    seen = replace(in_packets_of(run, seen) if together else seen, stamped_together=together)
     run = replace(run, reference=seen)
     try:
         counters = counters_of(run, robot, limits)

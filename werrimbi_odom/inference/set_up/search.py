@@ -247,6 +247,6 @@ def _in_degrees(gain: float) -> SetUpFinding:
 def _late(lag: float, gain: float) -> SetUpFinding:
     words = (
         f"the reference's stamps are {abs(lag):.1f} s too {'late' if lag > 0.0 else 'early'} "
-        "against the encoders': two computers whose clocks differ"
+        "against the encoders': by a driver, a network, or two computers' clocks"
     )
     return SetUpFinding(DELAY, {"delay": lag}, None, words, (), gain)
