@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 from werrimbi_odom.model.covariance import (
@@ -21,6 +20,7 @@ from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import Encoder, EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.float_versions import of_floats
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, mean_twist
+from werrimbi_odom.model.once import once
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, PieceTolerance
 from werrimbi_odom.model.pose import Pose
@@ -62,7 +62,7 @@ class Estimate(_Estimate):
     Errors and twist are computed at first use, and cached.
     """
 
-    @cached_property
+    @once
     def errors(self) -> Uncertainty[float]:
         """Errors of the pose, in the odometry frame."""
         return errors_along(self.robot, self.start, self.errors_start, self.stretch, self.pose)
@@ -77,7 +77,7 @@ class Estimate(_Estimate):
         """Mean of the true position minus the pose (x, y) [m]; None without exact moments."""
         return self.errors.mean_shift
 
-    @cached_property
+    @once
     def twist(self) -> BodyMotion[float]:
         """Mean speed forward and to the left [m/s] and yaw rate [rad/s] over the last interval.
 
@@ -86,7 +86,7 @@ class Estimate(_Estimate):
         """
         return mean_twist(self.late_motion, self.late.duration)
 
-    @cached_property
+    @once
     def twist_covariance(self) -> TwistCovariance:
         """Covariance of the twist: wheel noise over its interval and quantisation."""
         robot = self.robot
