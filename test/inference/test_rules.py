@@ -75,7 +75,6 @@ ELSEWHERE = {
         "_SAME": "rounding",
     },
     "fitting/caches.py": {"THREADS": "time that it takes", "_KEPT": "of memory"},
-    "fitting/gauss_newton.py": {"LITTLE": "time that it takes"},
     "fitting/candidate_starts.py": {"_SHARES": "where a fit starts"},
     "fitting/start_headings.py": {"ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
     "fitting/filtering.py": {

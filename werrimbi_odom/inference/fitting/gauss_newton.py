@@ -18,9 +18,6 @@ from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, 
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.model.pose import Floats
 
-LITTLE = 1e-3
-"""Fall of the cost that is not worth another pass over the runs."""
-
 
 def gauss_newton(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], ways: Directions
@@ -30,14 +27,11 @@ def gauss_newton(
     best = np.inf
     for number in range(6):
         design = stacked(runs, point, numbers, prediction)
-        now = float(np.sum(design.white**2))
-        best = min(best, now)
+        best = min(best, float(np.sum(design.white**2)))
         step = step_within(design, ways)
         if is_small(design, step):
             return point, number > 0
-        for count, shorter in enumerate(_shorter_steps(design, ways, step)):
-            if count > 0 and not now - _expected(point.model, design, shorter) > LITTLE:
-                continue
+        for shorter in _shorter_steps(design, ways, step):
             tried = replace(point, model=moved(point.model, design, shorter))
             ahead = replace(prediction, relative=predicted_on_path(tried.model, runs))
             if not turns_over(prediction.relative, ahead.relative):
@@ -47,7 +41,7 @@ def gauss_newton(
         else:
             return point, number > 0
         point, prediction, gained = tried, ahead, best - cost
-        if gained < LITTLE:
+        if gained < 1e-3:
             return point, number > 0
     return point, True
 
@@ -88,20 +82,6 @@ def moved(model: Model, design: Design, step: Floats) -> Model:
     own: list[dict[str, float]] = [{} for _ in model.own]
     for (number, index), move in zip(design.columns, step.tolist(), strict=True):
         target = shared if index < 0 else own[index]
-        target[number.name] = _bounded(model, number, index, move)
+        now = model.value(number, max(index, 0))
+        target[number.name] = float(np.clip(now + move, *number.bounds_about(now)))
     return model.turned(shared, own)
-
-
-def _bounded(model: Model, number: FreeParameter, index: int, move: float) -> float:
-    now = model.value(number, max(index, 0))
-    return float(np.clip(now + move, *number.bounds_about(now)))
-
-
-def _expected(model: Model, design: Design, step: Floats) -> float:
-    """Cost after as much of a step as the bounds allow, by the linear model."""
-    white, slopes = design.flat()
-    allowed = [
-        _bounded(model, number, index, move) - model.value(number, max(index, 0))
-        for (number, index), move in zip(design.columns, step.tolist(), strict=True)
-    ]
-    return float(np.sum((white + slopes @ allowed) ** 2))
