@@ -12,13 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from statistics import NormalDist, median
+from typing import Any
 
 import numpy as np
 
 from test.hidden.fisher import bound, detectable
 from test.hidden.follow import follow
-from test.hidden.plan import EFFECTS
+from test.hidden.plan import EFFECTS, evenly
 from test.hidden.result_line import is_right, judgement
 from test.hidden.resumable_jobs import Line
 from test.hidden.set_judging import judged
@@ -51,19 +53,23 @@ Task = tuple[str, int, float]
 """An effect, a session's seed, the legs' length [m]."""
 
 
-def tasks(start: int, sessions: Sequence[int]) -> dict[str, Task]:
-    """Each effect in some sessions for each length of legs.
+def tasks(start: int, sessions: Sequence[float]) -> dict[str, Task]:
+    """Each effect in some sessions for each length of legs; half a session: of half the effects.
 
     Where its parameters are known to both sides; not those that look at a channel: where nothing is
     hidden there is none.
     """
-    return {
-        f"{name} {start + 8000 + session} {leg:g}": (name, start + 8000 + session, leg)
-        for leg, count in zip(LEGS, sessions, strict=True)
-        for session in range(count)
+    known = [
+        name
         for name in EFFECTS
         if values_of(name, asdict(hide(name, seed=0).peculiarity))
         and not in_library(name).lacks(())
+    ]
+    return {
+        f"{name} {start + 8000 + session} {leg:g}": (name, start + 8000 + session, leg)
+        for leg, count in zip(LEGS, sessions, strict=True)
+        for session in range(math.ceil(count))
+        for name in evenly(known, round((count - session) * len(known)), start)
     }
 
 
@@ -109,11 +115,16 @@ def first_named(is_named: Callable[[float], bool]) -> float | None:
     return None if above == len(LADDER) else LADDER[above] / math.sqrt(STEP)
 
 
-def claimed(clean: HiddenSet, name: str, options: Sequence[str]) -> float | None:
+@cache
+def said_of(clean: HiddenSet, options: tuple[str, ...]) -> Mapping[str, Any]:
+    """What a diagnosis says of drives, which all effects ask of them."""
+    return follow(make(clean), options, most=0).first
+
+
+def claimed(clean: HiddenSet, name: str, options: tuple[str, ...]) -> float | None:
     """From which size on the tool says that it would have seen an effect in these drives."""
-    first = follow(make(clean), options, most=0).first
     entry = find(name)
-    for sight in first.get("could_have_been_seen", ()):
+    for sight in said_of(clean, options).get("could_have_been_seen", ()):
         if sight["effect"] != name or sight["seen_from"] is None:
             continue
         if name == "radius_drift":  # hidden per drive: of 20 m, or of a minute
