@@ -63,8 +63,8 @@ class Extent:
     """Sessions for each effect."""
     gaps: int
     """Sets."""
-    margins: int
-    """Sets for each number."""
+    margins: tuple[int, int]
+    """Sets for each number, and of how many numbers one is taken."""
     field: tuple[int, int, int]
     """Sets of an effect, with nothing hidden, and effects, as people record them."""
     scans: tuple[int, int, int]
@@ -76,12 +76,18 @@ EVERYTHING = Extent(
     survive=100,
     smallest=8,
     gaps=200,
-    margins=24,
+    margins=(24, 1),
     field=(4, 12, len(plan.EFFECTS)),
     scans=(2, 12, len(plan.EFFECTS)),
 )
 PART_OF_IT = Extent(
-    SAMPLE, survive=12, smallest=2, gaps=40, margins=1, field=(1, 2, 8), scans=(1, 2, 8)
+    SAMPLE,
+    survive=12,
+    smallest=2,
+    gaps=40,
+    margins=(1, 3),
+    field=(1, 2, 8),
+    scans=(1, 1, 3),  # those of "field" are judged by their scans too
 )
 
 SCANS = 1000
@@ -94,7 +100,7 @@ SECONDS = {
     "scans": 60.0,
     "survive": 4.5,
     "coverage": 3.0,
-    "smallest": 25.0,
+    "smallest": 23.0,
     "gaps": 4.5,
     "margins": 4.5,
 }

@@ -110,13 +110,18 @@ def _load() -> None:
 
 
 def tasks(
-    sets: Sequence[HiddenSet], wanted: int, start: int
+    sets: Sequence[HiddenSet], sizes: tuple[int, int], start: int
 ) -> dict[str, tuple[HiddenSet, str, float]]:
-    """Some of the judged sets with each number perturbed: others for each number."""
+    """Some of the judged sets with each number perturbed: others for each number.
+
+    `sizes`: how many sets, and of how many numbers one is taken; which, the seeds' start says.
+    """
+    wanted, every = sizes
     pool = [each for each in sets if each.group in GROUPS]
     return {
         f"{name} x{factor:g} {each.name}": (each, name, factor)
         for number, (name, value) in enumerate(judging().items())
+        if (number + start // APART) % every == 0
         for each in evenly(pool, wanted, start + number * APART)
         for factor in FACTORS
         if times(value, factor) != value
@@ -165,7 +170,8 @@ def table(lines: Sequence[Judged], results: Mapping[str, Line]) -> Table:
         rows.append((name, f"{own[0]['value']:g}", *cells))
     words = (
         "Verdicts of some sets with each deciding number 0.7 and 1.4 times what it is (whole ones "
-        "by at least one): how many change, and how many of those become wrong."
+        "by at least one): how many change, and how many of those become wrong. A sample takes "
+        "each third number, other code another third."
     )
     columns = ("number", "is", *(f"x {factor:g}" for factor in FACTORS))
     return Table("Margins: each number smaller and larger", columns, tuple(rows), words)

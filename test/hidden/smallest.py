@@ -12,7 +12,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from statistics import NormalDist, median
+from typing import Any
 
 import numpy as np
 
@@ -103,11 +105,16 @@ def first_named(is_named: Callable[[float], bool]) -> float | None:
     return None if above == len(LADDER) else LADDER[above] / math.sqrt(STEP)
 
 
+@cache
+def said_of(clean: HiddenSet) -> Mapping[str, Any]:
+    """What a diagnosis says of drives, which all effects ask of them."""
+    return follow(make(clean), most=0).first
+
+
 def claimed(clean: HiddenSet, name: str) -> float | None:
     """From which size on the tool says that it would have seen an effect in these drives."""
-    first = follow(make(clean), most=0).first
     entry = find(name)
-    for sight in first.get("could_have_been_seen", ()):
+    for sight in said_of(clean).get("could_have_been_seen", ()):
         if sight["effect"] != name or sight["seen_from"] is None:
             continue
         if name == "radius_drift":  # hidden per drive: of 20 m, or of a minute

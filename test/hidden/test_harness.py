@@ -29,7 +29,7 @@ from test.hidden import (
 )
 from test.hidden.__main__ import SCANS
 from test.hidden.evidence_tables import tables
-from test.hidden.follow import commands, follow, typed
+from test.hidden.follow import Followed, commands, follow, typed
 from test.hidden.followed_to_rest import at_the_truth, without_detour
 from test.hidden.intervals import clopper_pearson
 from test.hidden.page import page
@@ -630,3 +630,34 @@ def test_a_crash_of_the_tool_is_a_finding_and_not_the_end(
     monkeypatch.setattr("test.hidden.follow.run", broken)
     told = follow(folder)
     assert (told.ended, told.error) == ("crashed", "ZeroDivisionError: float division by zero")
+
+
+def test_each_number_is_perturbed_in_one_of_three_samples() -> None:
+    sets = [HiddenSet("clean", (), seed) for seed in range(3)]
+
+    def numbers(start: int, every: int) -> Counter[str]:
+        tasks = margins.tasks(sets, (1, every), start * plan.APART)
+        return Counter(name for _, name, _ in tasks.values())
+
+    parts = [numbers(start, 3) for start in (7, 8, 9)]
+    assert sum(parts, Counter()) == numbers(7, 1)
+    assert max(map(len, parts)) - min(map(len, parts)) <= 1
+
+
+def test_what_all_effects_ask_of_the_same_drives_is_diagnosed_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = []
+
+    def followed(folder: Path, most: int) -> Followed:
+        asked.append(folder)
+        seen = [{"effect": name, "seen_from": 0.5, "unit": "m"} for name in ("a", "left_backlash")]
+        return Followed(first={"could_have_been_seen": seen})
+
+    monkeypatch.setattr(smallest, "follow", followed)
+    monkeypatch.setattr(smallest, "make", lambda clean: Path(clean.name))
+    clean = HiddenSet("clean", (), -1, smallest.SETUP)
+    for _ in range(2):
+        assert smallest.claimed(clean, "left_backlash") == 0.5
+        assert smallest.claimed(clean, "castor_kick") is None
+    assert len(asked) == 1

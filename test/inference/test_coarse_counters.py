@@ -44,7 +44,7 @@ def diagnosed(folder: Path, counts: int, hidden: Sequence[Peculiarity]) -> Resul
     return wo.diagnose(robot, drives[:6], holdout=drives[6:])
 
 
-@pytest.mark.parametrize("counts", [20, 40])
+@pytest.mark.parametrize("counts", [20, pytest.param(40, marks=pytest.mark.evidence)])
 def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     """Legs that were cut at the steps of the counters told 9 mm of backlash, for certain."""
     late = hide("reference_delay", LATE, seed=1).peculiarity

@@ -74,7 +74,7 @@ ELSEWHERE = {
         "_BLURRED": "a rank",
         "_SAME": "rounding",
     },
-    "fitting/caches.py": {"THREADS": "time that it takes"},
+    "fitting/caches.py": {"THREADS": "time that it takes", "_KEPT": "of memory"},
     "fitting/candidate_starts.py": {"_SHARES": "where a fit starts"},
     "fitting/start_headings.py": {"ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
     "fitting/filtering.py": {

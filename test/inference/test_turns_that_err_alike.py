@@ -66,7 +66,7 @@ def diagnosed(seed: int, drives: int, more: float | None = None) -> Diagnosis:
 
 
 @pytest.mark.parametrize(
-    "seed", [6, 10, 15, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in range(16, 24))]
+    "seed", [6, 10, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in range(15, 24))]
 )
 def test_three_arcs_are_too_few_to_name_an_effect(seed: int) -> None:
     found = diagnosed(seed, 3)
@@ -75,7 +75,7 @@ def test_three_arcs_are_too_few_to_name_an_effect(seed: int) -> None:
     assert "reference_delay" in found.found
 
 
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.evidence)])
 def test_what_the_arcs_of_many_drives_have_in_common_is_named(seed: int) -> None:
     found = diagnosed(seed, 12, more=0.07)
     assert {"turn_dependent_track", "load_transfer"} & {*found.found, *found.rivals}

@@ -109,8 +109,8 @@ class JointStates:
         self._clock = wiring.node.get_clock()
         self._names: list[str] | None = None
         self._places: tuple[list[int], list[int]] = ([], [])
-        self._absent: list[str] = []
-        self._twice: list[str] = []
+        self._ours = False
+        self._wrong = ""
         _subscribe(wiring, JointState, "joint_states", self._arrived)
 
     def tally(self) -> dict[str, int]:
@@ -123,22 +123,19 @@ class JointStates:
         }
 
     def _arrived(self, message: Any, info: Info) -> None:
-        if message.name != self._names:
-            self._find(message.name)
-        # Other joints only: for example from an arm's driver on the same topic.
-        ours = len(self._absent) < sum(map(len, self._wanted))
-        self._health.hear(0, info, ours=ours)
-        if not ours:
+        names, positions = message.name, message.position  # each access to a field is a call
+        if names != self._names:
+            self._find(names)
+        self._health.hear(0, info, ours=self._ours)
+        if not self._ours:
             return
-        if self._absent or self._twice:
-            wrong = f"{self._absent[0]} missing" if self._absent else f"{self._twice[0]} twice"
-            self._health.refuse(f"joint {wrong}", f"it has {self._names}")
+        if self._wrong:
+            self._health.refuse(f"joint {self._wrong}", f"it has {self._names}")
             return
-        positions = message.position
-        if len(positions) != len(message.name):
+        if len(positions) != len(names):
             self._health.refuse(
                 "wrong array length" if positions else "empty position",
-                f"{len(message.name)} names and {len(positions)} positions",
+                f"{len(names)} names and {len(positions)} positions",
             )
             return
         of_left, of_right = self._places
@@ -161,9 +158,13 @@ class JointStates:
     def _find(self, names: list[str]) -> None:
         """Find the wheels in a message; repeated only when its joint names change."""
         self._names = list(names)
-        self._absent = [name for side in self._wanted for name in side if name not in names]
-        self._twice = [name for side in self._wanted for name in side if names.count(name) > 1]
-        if not self._absent:
+        wanted = [name for side in self._wanted for name in side]
+        absent = [name for name in wanted if name not in names]
+        twice = [name for name in wanted if names.count(name) > 1]
+        # Other joints only: for example from an arm's driver on the same topic.
+        self._ours = len(absent) < len(wanted)
+        self._wrong = f"{absent[0]} missing" if absent else f"{twice[0]} twice" if twice else ""
+        if not absent:
             left, right = ([names.index(name) for name in side] for side in self._wanted)
             self._places = left, right
 

@@ -46,5 +46,6 @@ def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
 
 def is_finite(estimate: Estimate) -> bool:
     """Whether all numbers of an estimate are finite."""
-    total = sum(estimate.pose) + sum(estimate.covariance) + sum(estimate.twist)
-    return math.isfinite(total + sum(estimate.twist_covariance))
+    return math.isfinite(
+        sum((*estimate.pose, *estimate.covariance, *estimate.twist, *estimate.twist_covariance))
+    )

@@ -6,8 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from threading import Lock
 from typing import Any, TypeVar
+
+import numpy as np
 
 THREADS = 2
 """Results worked out side by side."""
@@ -52,6 +55,20 @@ def remember(memory: dict[Any, Any], key: Any, value: Any, most: int) -> None:
         while len(memory) >= most:
             del memory[next(iter(memory))]
         memory[key] = value
+
+
+@cache
+def keep_freed_memory() -> None:
+    """Let the C library keep freed arrays of up to 32 MB for those that follow.
+
+    It would map each anew and zero it page by page. It keeps what is as large as the largest block
+    that was ever freed (glibc: mallopt(3), M_MMAP_THRESHOLD); this one is never touched.
+    """
+    np.empty(_KEPT)
+
+
+_KEPT = 4_190_000
+"""Numbers of 8 bytes, just below 32 MB."""
 
 
 def side_by_side(works: Sequence[Callable[[], Found]], steps: int) -> list[Found]:

@@ -16,7 +16,13 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.caches import recalled, remember, results_of, side_by_side
+from werrimbi_odom.inference.fitting.caches import (
+    keep_freed_memory,
+    recalled,
+    remember,
+    results_of,
+    side_by_side,
+)
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
@@ -249,6 +255,7 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
     finer : Concatenated, optional
         The same runs in shorter legs, from which these are `joined`.
     """
+    keep_freed_memory()
     steps = _starts([run.time.size - 1 for run in runs])
     legs = _starts([run.legs for run in runs])
     poses = [np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1) for run in runs]
