@@ -14,7 +14,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
-from werrimbi_odom.inference.comparison import prepared as module
+from werrimbi_odom.inference.comparison import poses_within_legs as module
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, prepare
 from werrimbi_odom.inference.rules import LEGS_OF_A_FIT, PARTS_OF_A_LEG
 

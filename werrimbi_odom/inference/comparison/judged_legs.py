@@ -17,13 +17,8 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     joined,
     statistics,
 )
-from werrimbi_odom.inference.comparison.prepared import (
-    PreparedRuns,
-    ReferenceGroup,
-    finely,
-    judged_by,
-    jumped_in,
-)
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by
+from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, jumped_in
 from werrimbi_odom.inference.comparison.residuals import Residual, residuals_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model

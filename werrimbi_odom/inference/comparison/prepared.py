@@ -16,61 +16,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
-from werrimbi_odom.inference.comparison.reference_noise import independent_for
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.poses_within_legs import parts_for_fit
+from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, group_of, jumped_in
 from werrimbi_odom.inference.comparison.reference_noise_source import (
-    OwnNoise,
     ReferenceNoise,
-    noise_of,
 )
 from werrimbi_odom.inference.comparison.residuals import (
     Measure,
-    Residual,
     measured_alike,
-    residuals_of,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
-from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, leg_ends, match_for_fit
+from werrimbi_odom.inference.legs.cutting import cut_for_fit, leg_ends, match_for_fit
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
 from werrimbi_odom.inference.rules import (
-    COUNTS_UNSEEN,
     LEG_LENGTHS,
-    LEGS_OF_A_FIT,
     LEGS_OF_A_LENGTH,
     LEGS_OF_A_RUN,
-    MOST_PARTS_OF_A_LEG,
-    PARTS_OF_A_LEG,
-    QUARTER_TURN,
 )
-from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
 _Each = TypeVar("_Each")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ReferenceGroup:
-    """Runs whose references measure the same quantities."""
-
-    index: tuple[int, ...]
-    measure: Measure
-    every: Concatenated
-    whole: tuple[bool, ...]
-    """Whether `every` has all rows of a run's reference."""
-    jumps: tuple[Floats, ...]
-    own: OwnNoise
-    """Noise of the references."""
-    plain: tuple[Residual, ...]
-    """Paths by the robot whose travel cuts the legs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -159,43 +131,11 @@ def prepare(
         alike, measure = measured_alike(run)
         record = record_of(alike, robot, options.limits, options.leg)
         members.setdefault(measure, []).append((index, record, alike is run))
-    groups = tuple(_group(robot, measure, found, options) for measure, found in members.items())
+    groups = tuple(group_of(robot, measure, found, options) for measure, found in members.items())
     show(0.5, "cutting legs")
     cuts = _cut_to_lengths(groups, robot, options.leg)
-    parts = _parts_for_fit(groups, robot, options)
+    parts = parts_for_fit(groups, robot, options)
     return PreparedRuns(robot, options, tuple(runs), groups, cuts, parts)
-
-
-def _parts_for_fit(
-    groups: Sequence[ReferenceGroup], robot: Robot, options: EvaluationOptions
-) -> int:
-    """How many short legs of a fit there are to a judged one.
-
-    More than usual where drives are short and poses are independent over the way of a usual one: an
-    error that lasts longer than a pose would pass there for the model's. The step of a counter is
-    such an error.
-    """
-    ways = [_ways(group, robot, options.leg) for group in groups]
-    legs = sum(float(way[-1]) for own in ways for way in own)
-    parts = min(int(LEGS_OF_A_FIT / max(legs, 1.0)), MOST_PARTS_OF_A_LEG)
-    if options.reference_kind != "absolute" or parts <= PARTS_OF_A_LEG:
-        return PARTS_OF_A_LEG
-    reading = quantisation_variance(robot)
-    for group, own in zip(groups, ways, strict=True):
-        steps = np.concatenate([np.diff(way) for way in own])
-        moving = steps[steps > 0.0]
-        span = round(1.0 / (PARTS_OF_A_LEG * float(np.median(moving)))) if moving.size else 0
-        noise = group.own.noise
-        seen = np.array([noise.sigma_xy, noise.sigma_xy, noise.sigma_yaw]) ** 2
-        if (
-            group.measure != "pose"
-            or group.every.has_stamp_noise
-            or np.any(reading > COUNTS_UNSEEN * seen)
-            or span < 2
-            or not independent_for(group.plain, span)
-        ):
-            return PARTS_OF_A_LEG
-    return parts
 
 
 def _cut_to_lengths(
@@ -207,7 +147,7 @@ def _cut_to_lengths(
     """
     records = [[run.record for run in group.every.runs] for group in groups]
     runs = sum(map(len, records))
-    ways = [_ways(group, robot, leg) for group in groups]
+    ways = [group.ways(robot, leg) for group in groups]
     rows: dict[float, list[list[NDArray[np.intp]]]] = {}
     counts: set[int] = set()
     for times in sorted(LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
@@ -241,19 +181,6 @@ def _cut_to_lengths(
     }
 
 
-def _ways(group: ReferenceGroup, robot: Robot, leg: float) -> list[Floats]:
-    """Cumulative travel at each pose of each run, in legs."""
-    records = (run.record for run in group.every.runs)
-    return [
-        np.interp(
-            record.measured.time,
-            record.counters.time,
-            record.counters.way(robot, leg, QUARTER_TURN),
-        )
-        for record in records
-    ]
-
-
 def for_fit(prepared: PreparedRuns, robot: Robot) -> list[MatchedRun]:
     """Cut the runs into the short legs of a fit, by the travel of a robot."""
     options = prepared.options
@@ -272,40 +199,6 @@ def finely(prepared: PreparedRuns) -> Concatenated:
                 run = prepared.runs[index]
                 [found[index]] = match_for_fit([run], robot, options.leg, options.limits, parts)
     return concatenated([found[index] for index in range(len(prepared.runs))])
-
-
-def _group(
-    robot: Robot,
-    measure: Measure,
-    members: list[tuple[int, AlignedRun, bool]],
-    options: EvaluationOptions,
-) -> ReferenceGroup:
-    every = concatenated([every_pose(record) for _, record, _ in members])
-    plain = Model(robot, tuple({} for _ in members))
-    residuals, _ = residuals_of(plain, every, measure)
-    own = noise_of(robot, every, residuals, measure, options)
-    jumps = tuple(
-        jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
-    )
-    return ReferenceGroup(
-        tuple(index for index, _, _ in members),
-        measure,
-        every,
-        tuple(whole for _, _, whole in members),
-        jumps,
-        own,
-        residuals,
-    )
-
-
-def jumped_in(group: ReferenceGroup, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
-    """Legs that a jump of the reference invalidates, shape (m,)."""
-
-    def of_each(runs: Concatenated) -> NDArray[np.bool_]:
-        both = zip(group.jumps, runs.runs, strict=True)
-        return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
-
-    return runs.known(("jumped", kind), of_each)
 
 
 def judged_by(prepared: PreparedRuns) -> Literal["position", "heading"]:
