@@ -59,6 +59,8 @@ class Extent:
     sizes: Sizes
     survive: int
     """Sets."""
+    fits: int
+    """Short sessions for `calibrate fit`, beside the sets that calibration alone explains."""
     smallest: int
     """Sessions for each effect."""
     gaps: int
@@ -74,6 +76,7 @@ class Extent:
 EVERYTHING = Extent(
     ALL,
     survive=100,
+    fits=200,
     smallest=8,
     gaps=200,
     margins=(24, 1),
@@ -83,6 +86,7 @@ EVERYTHING = Extent(
 PART_OF_IT = Extent(
     SAMPLE,
     survive=12,
+    fits=64,  # with five numbers each 400 intervals in all
     smallest=2,
     gaps=40,
     margins=(1, 3),
@@ -99,7 +103,7 @@ SECONDS = {
     "field": 100.0,
     "scans": 60.0,
     "survive": 4.5,
-    "coverage": 3.0,
+    "coverage": 6.0,
     "smallest": 23.0,
     "gaps": 4.5,
     "margins": 4.5,
@@ -126,7 +130,7 @@ def works(
             {each.name: each for each in field.sets(start + SCANS, *extent.scans)}, field.by_scans
         ),
         "survive": Work(survive.tasks(wanted, extent.survive, start), survive.work),
-        "coverage": Work(coverage.tasks(wanted), coverage.work),
+        "coverage": Work(coverage.tasks(wanted, start, extent.fits), coverage.work),
         "smallest": Work(smallest.tasks(start, extent.smallest), smallest.work),
         "gaps": Work(
             {each.name: each for each in plan.evenly(wanted, extent.gaps, start)}, margins.gap
