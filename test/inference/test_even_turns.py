@@ -7,7 +7,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from test.inference.driven import run_of
 from test.inference.test_held_or_carried import held
@@ -45,23 +44,3 @@ def test_what_is_left_out_lies_within_the_record() -> None:
     found = looked_at(later(run, -0.5), ROBOT).no_driving
     assert found
     assert all(part.begin >= run.ticks.time[0] for part in found)
-
-
-@pytest.mark.parametrize(("drift", "found"), [(0.002, True), (0.2, False)])
-def test_a_gyro_that_never_turned_is_told(drift: float, found: bool) -> None:
-    """On blocks, or a gyro that sent nothing: a law was looked for, and 79° a leg were *unknown*.
-
-    A gyro that turns otherwise than the wheels is another matter.
-    """
-    time, wandering = np.arange(0.0, 12.0, 0.02), np.random.default_rng(0).normal(0.0, 1e-4, 600)
-    wheel = np.cumsum(np.where(time > 4.0, 0.02, 0.0)) * 0.9
-    counts = np.round(0.5 * wheel * ROBOT.track / ROBOT.right_tick)
-    yaw = drift * np.cumsum(np.random.default_rng(1).normal(0.0, 0.1, 600)) + wandering
-    nothing = np.full_like(time, np.nan)
-    seen = Reference(time, nothing, nothing, yaw, kind="incremental")
-    run = replace(run_of(ROBOT, 0, 10), ticks=Ticks(time, -counts, counts), reference=seen)
-    told = looked_at(run, ROBOT).no_driving or ()
-    assert any(part.why == "held" for part in told) == found
-    if found:
-        assert len(told) == 1
-        np.testing.assert_allclose((told[0].begin, told[0].end), (4.0, 12.0), atol=0.5)

@@ -44,8 +44,6 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_SET_DOWN,
     NO_DRIVING_SILENT,
     NO_DRIVING_SPLIT,
-    NO_DRIVING_STOPPED,
-    NO_DRIVING_STOPPED_FOR,
     NO_DRIVING_TREMBLES,
     NO_DRIVING_TURN,
     NO_DRIVING_TURNS,
@@ -106,8 +104,6 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
         parts = [part for part in parts if part.why != "held" or not _follows(part, by_turns)]
     parts = _with_rests(parts, counters, robot)
     parts = [part if part.words == CARRIED else as_stuck(part, reference) for part in parts]
-    if turns is not None and by_turns is None and not reference.has_position.any():
-        parts = [*parts, *(as_stuck(part, reference) for part in _never_turned(turns, robot.track))]
     if turns is not None and by_turns is None:  # to and fro on a line, carried in between
         by_hand = _turned_by_hand(turns, robot.track)
         alone = (
@@ -146,21 +142,6 @@ def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
             begin = found.pop().begin
         found.append(NoDriving(begin, end, "carried", by_hand))
     return found
-
-
-def _never_turned(windows: Windows, track: float) -> list[NoDriving]:
-    """The whole of the turning, if no heading changed by it: on blocks, or nothing measured it."""
-    by_wheels = np.abs(windows.right - windows.left) / track
-    slowest = NO_DRIVING_TURNS * windows.steps * windows.step
-    turns = np.flatnonzero((by_wheels > slowest) & np.isfinite(windows.measured))
-    measured, expected = (each[turns].sum() for each in (np.abs(windows.measured), by_wheels))
-    if turns.size < NO_DRIVING_STOPPED_FOR / windows.step or (
-        measured > NO_DRIVING_STOPPED * expected
-    ):
-        return []
-    half = 0.5 * windows.steps * windows.step
-    span = float(windows.time[turns[0]]) - half, float(windows.time[turns[-1]]) + half
-    return [NoDriving(*span, "held", HELD)]
 
 
 def _stretches(seen: MeasuredMotion) -> list[tuple[float, float]]:
