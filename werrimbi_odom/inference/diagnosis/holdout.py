@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -189,6 +189,7 @@ def judge_of(
     """Cut the legs of the fitted runs and of the held-out runs, by the given robot or another."""
     fitted_on, kept_back = tuple(runs), tuple(holdout)
     train, held = (prepare(some, cutter or given, options) for some in (fitted_on, kept_back))
+    held = replace(held, parts=min(held.parts, train.parts))
     return Judge(given, options, fitted_on, kept_back, train, held, finely(held))
 
 
