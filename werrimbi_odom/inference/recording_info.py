@@ -61,6 +61,11 @@ class Held:
     gyro_bias: float = 0.0
     """Rate of the headings at rest, which is removed (`legs.gyro_bias`) [rad/s]."""
 
+    @property
+    def judged(self) -> DrivenAmount | None:
+        """What of the driving can be judged: all of it, where it is not known what was measured."""
+        return self.seen or self.driven
+
 
 @dataclass(frozen=True)
 class Info:
@@ -87,7 +92,7 @@ class Info:
     @property
     def legs(self) -> float:
         """Total driving that was measured, in legs of one metre or a quarter turn."""
-        drives = [each.seen or each.driven for each in self.held]
+        drives = [each.judged for each in self.held]
         return sum(each.way + each.turned / QUARTER_TURN for each in drives if each is not None)
 
     @property
@@ -128,7 +133,7 @@ def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
 
 def drove(held: Held, sizes: bool) -> bool:
     """Whether it was measured as it drove far enough for a leg; true if it is not known."""
-    drive = held.seen or held.driven
+    drive = held.judged
     if drive is None:
         return True
     far = drive.way + drive.turned / QUARTER_TURN >= SHORT_LEG if sizes else True
@@ -140,9 +145,9 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     if held.problem:
         return [], []
     measures = measures_of(held)
-    if measures == "nothing" or held.driven is None:
+    drive = held.judged
+    if measures == "nothing" or drive is None:
         return [], ["anything: nothing measured the robot beside its wheels"]
-    drive = held.seen or held.driven
     if not drove(held, sizes):
         return [], [f"anything: the robot hardly moved{_while_measured(held)}"]
     can: list[str] = []

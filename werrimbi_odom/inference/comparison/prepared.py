@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import compress
 from typing import Literal, TypeVar
 
 import numpy as np
@@ -19,26 +20,17 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.poses_within_legs import parts_for_fit
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, group_of, jumped_in
-from werrimbi_odom.inference.comparison.reference_noise_source import (
-    ReferenceNoise,
-)
-from werrimbi_odom.inference.comparison.residuals import (
-    Measure,
-    measured_alike,
-)
+from werrimbi_odom.inference.comparison.reference_noise_source import ReferenceNoise
+from werrimbi_odom.inference.comparison.residuals import Measure, measured_alike
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
-from werrimbi_odom.inference.legs.cutting import cut_for_fit, leg_ends, match_for_fit
+from werrimbi_odom.inference.legs.cutting import cut_for_fit, leg_ends
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
-from werrimbi_odom.inference.rules import (
-    LEG_LENGTHS,
-    LEGS_OF_A_LENGTH,
-    LEGS_OF_A_RUN,
-)
+from werrimbi_odom.inference.rules import LEG_LENGTHS, LEGS_OF_A_LENGTH, LEGS_OF_A_RUN
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
@@ -182,23 +174,29 @@ def _cut_to_lengths(
 
 
 def for_fit(prepared: PreparedRuns, robot: Robot) -> list[MatchedRun]:
-    """Cut the runs into the short legs of a fit, by the travel of a robot."""
-    options = prepared.options
-    return match_for_fit(prepared.runs, robot, options.leg, options.limits, prepared.parts)
+    """Cut the runs into the short legs of a fit, by the travel of a robot.
+
+    Records are matched once more only for another robot than the one they were prepared with, or
+    with rows of the reference that are not judged.
+    """
+    options, there = prepared.options, dict[int, AlignedRun]()
+    for group in prepared.groups if robot is prepared.robot else ():
+        records = (run.record for run in group.every.runs)
+        there.update(compress(zip(group.index, records, strict=True), group.whole))
+    return [
+        cut_for_fit(
+            there.get(index) or record_of(run, robot, options.limits, options.leg),
+            robot,
+            options.leg,
+            prepared.parts,
+        )
+        for index, run in enumerate(prepared.runs)
+    ]
 
 
 def finely(prepared: PreparedRuns) -> Concatenated:
-    """Cut the runs as `for_fit`, by the robot they were prepared with, reusing what is there."""
-    robot, options, parts = prepared.robot, prepared.options, prepared.parts
-    found = {}
-    for group in prepared.groups:
-        for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
-            if whole:
-                found[index] = cut_for_fit(every.record, robot, options.leg, parts)
-            else:
-                run = prepared.runs[index]
-                [found[index]] = match_for_fit([run], robot, options.leg, options.limits, parts)
-    return concatenated([found[index] for index in range(len(prepared.runs))])
+    """The runs in the short legs of a fit, by the robot that they were prepared with."""
+    return concatenated(for_fit(prepared, prepared.robot))
 
 
 def judged_by(prepared: PreparedRuns) -> Literal["position", "heading"]:

@@ -65,15 +65,11 @@ def match(
 
 
 def match_for_fit(
-    runs: Sequence[Run],
-    robot: Robot,
-    leg: float,
-    limits: EncoderLimits | None = None,
-    parts: int = PARTS_OF_A_LEG,
+    runs: Sequence[Run], robot: Robot, leg: float, limits: EncoderLimits | None = None
 ) -> list[MatchedRun]:
     """Cut runs into the short legs of a fit, given the leg length used for evaluation [m]."""
     records = (record_of(run, robot, limits, leg) for run in runs)
-    return [cut_for_fit(record, robot, leg, parts) for record in records]
+    return [cut_for_fit(record, robot, leg) for record in records]
 
 
 def cut_for_fit(
