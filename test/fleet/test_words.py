@@ -81,7 +81,7 @@ def test_a_value_that_the_file_has_wrong_is_to_be_fitted_anew() -> None:
 
 def test_the_page_of_the_docs_shows_what_is_printed() -> None:
     rows = (
-        slips("robot_1", 0.0075, 0.0025, 0.03004),
+        slips("robot_1", 0.0075, 0.0025, 0.0299448, 7.8e-5),
         slips("robot_2", 0.0082, 0.0024, 0.03011, 1.04e-4),
         WIDE,
     )
