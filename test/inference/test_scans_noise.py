@@ -41,6 +41,41 @@ def scanned(seed: int, stated: bool = True) -> Run:
     )
 
 
+GOOD_WHEELS = WhiteNoiseRobot(left_noise=1e-4, right_noise=1e-4)
+
+
+def on_a_walking_map(seed: int) -> Run:
+    """A drive of the best wheels, by scans whose map walks, in a metre by 0.3 of a pose's noise."""
+    random = np.random.default_rng(seed)
+    run = drive(GOOD_WHEELS, wandering(random, 60.0), random, sigma_xy=0.0, sigma_yaw=0.0, every=5)
+    seen = run.reference
+    assert seen is not None
+    place, yaw = seen.x + 1j * seen.y, np.unwrap(seen.yaw)
+    steps = np.diff(place)
+    worth = np.abs(steps) + np.abs(np.diff(yaw)) / (0.5 * np.pi)
+    walk = 0.3 * np.sqrt(worth) * random.standard_normal((3, worth.size))
+    turned = np.concatenate([[0.0], np.cumsum(NEAR[1] * walk[2])])
+    steps = steps * np.exp(1j * turned[:-1]) + NEAR[0] * (walk[0] + 1j * walk[1])
+    place = place[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    white = np.array([NEAR[0], NEAR[0], NEAR[1]])[:, None] * random.standard_normal((3, yaw.size))
+    poses = {"x": place.real + white[0], "y": place.imag + white[1], "yaw": yaw + turned + white[2]}
+    stated = {"sigma_xy": np.full(yaw.size, NEAR[0]), "sigma_yaw": np.full(yaw.size, NEAR[1])}
+    reference = replace(seen, own_axes=True, **poses, **stated)
+    return replace(run, name=f"run_{seed}", reference=reference)
+
+
+def test_the_map_that_scans_are_matched_with_walks() -> None:
+    """With independent errors innovations were a fifth larger than stated, and correlated."""
+    robot = GOOD_WHEELS.entered()
+    laid = concatenated([match(on_a_walking_map(seed), robot, leg=0.25) for seed in range(12)])
+    options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)
+    point = start_point(laid, robot, options)
+    wheels = np.square([robot.left_wheel_noise])
+    variances = replace(point.variances, stamp=np.array([1e-12]), left=wheels, right=wheels)
+    found = innovations(robot, laid, predict_all(point.model, laid), variances, "absolute")
+    assert np.mean(found.whitened()[found.known.all(axis=1)] ** 2) == pytest.approx(1.0, abs=0.09)
+
+
 def test_innovations_are_white_in_every_part_of_a_drive() -> None:
     """With one noise for all poses those of the small room were a fifth of what they should be."""
     robot = TRUE.entered()

@@ -22,6 +22,7 @@ from werrimbi_odom.inference.fitting.likelihood import (
     quantisation_variance,
     wheel_covariance,
 )
+from werrimbi_odom.inference.fitting.map_walk import map_walk
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
@@ -209,7 +210,8 @@ def _reference_part(
     lever[:, 0, 2], lever[:, 1, 2] = -prediction.relative[:, 1], prediction.relative[:, 0]
     own = np.stack([xy, xy, yaw], axis=-1) + reading
     first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
-    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1))
+    walked = map_walk(runs, prediction, xy, yaw) if runs.own_axes else 0.0
+    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + walked)
 
 
 def _paces(robot: Robot, runs: Concatenated) -> tuple[Floats, Floats]:

@@ -31,6 +31,7 @@ from werrimbi_odom.inference.fitting.filtering import (
     filtered,
 )
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
+from werrimbi_odom.inference.fitting.map_walk import map_walk
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
@@ -198,6 +199,8 @@ def innovations(
     reading = _reading(robot, variances, runs, prediction, kind)
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
+    if kind == "absolute" and runs.own_axes:
+        noise += map_walk(runs, prediction, variances.xy[:, None], variances.yaw[:, None])
     legs = FilterInput(
         prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch
     )
