@@ -18,11 +18,11 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.calibration.any_driving import calibrate
-from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figures_of
+from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figures_of, paths
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
-from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, YAW_DRIFT, Model
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, START_YAW, YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
@@ -109,6 +109,16 @@ def test_a_noise_that_few_poses_tell_makes_no_model_wrong() -> None:
         told_wrong += far_above_noise(fine, Model(NOMINAL, ({},)))
         assert not far_above_noise(fine, right)
     assert told_wrong >= 3
+
+
+def test_a_first_leg_whose_heading_is_unknown_makes_no_model_wrong() -> None:
+    """Its error counted by the variance of the others, of which five legs had 4.9 times."""
+    prepared = prepare([short_drive(2)], NOMINAL)
+    right = replace(NOMINAL, wheel_separation_multiplier=1.0 / 0.83)
+    (path,) = paths(prepared, Model(right, ({},)))
+    for off in (-1.0, 1.0):
+        own = {START_YAW: float(path.predicted_yaw[0]) + off}
+        assert not far_above_noise(prepared, Model(right, (own,)))
 
 
 def test_the_drift_of_a_gyro_that_a_fit_knows_is_no_error_of_the_robot() -> None:

@@ -245,10 +245,11 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     """Whether a model's errors are larger than any noise of wheels and reference explains.
 
     A likelihood with free noise accepts any model. This test uses the largest plausible wheel
-    noise, and the reference noise from its own small differences. The limit is the median variance,
-    as that of a first leg with an unknown heading is arbitrary. By Fisher's F, chance must not
-    exceed it either: few poses tell their noise poorly, and fewer not at all. The reference's share
-    of the variance is all that is uncertain (Satterthwaite, Biometrics Bull. 2, 1946).
+    noise, and the reference noise from its own small differences. Each leg counts by its own
+    variance: of positions, a first leg has an unknown heading and may end anywhere. By Fisher's F,
+    chance must not exceed it either: few poses tell their noise poorly, and fewer not at all. The
+    reference's share of the variance is all that is uncertain (Satterthwaite, Biometrics Bull. 2,
+    1946).
     """
     legs = judged_legs(prepared, model, prepared.options.leg).quiet
     kept = legs.errors.chosen(~legs.outlier)
@@ -264,7 +265,7 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
         np.trace(each[known, places, places], axis1=1, axis2=2)
         for each in (kept.covariance - kept.wheels, (1.0 + softest) * kept.wheels)
     )
-    ratio = float(np.mean(error[known]) / np.median(reference + wheels))
+    ratio = float(np.mean(error[known] / (reference + wheels)))
     share = float(np.median(reference / (reference + wheels)))
     freedom = min(group.own.freedom[by_heading] for group in prepared.groups) / share**2
     chance = fisher_survival(ratio, float(np.isfinite(kept.error[:, places]).sum()), freedom)
