@@ -240,12 +240,13 @@ def rivals(start: int, sizes: Sizes) -> list[HiddenSet]:
     arm = _arm_along_x(first + 16)
     found = [
         # A reference that is late by d is behind by v d; so is a robot that slips by v^2 / 2 at a
-        # start. At one speed, and not by much, nobody knows which.
-        HiddenSet("rivals", ("reference_delay=0.01",), first + 8, lines),
-        HiddenSet("rivals", ("longitudinal_slip=0.06",), first + 7, lines),
+        # start. At one speed, and not by much, nobody knows which: poses within the starts tell v
+        # from v^2, by a cost that grows with the square of the size (21 at 10 ms, 3 at 4 ms).
+        HiddenSet("rivals", ("reference_delay=0.004",), first + 8, lines),
+        HiddenSet("rivals", ("longitudinal_slip=0.03",), first + 7, lines),
         # A point at x is at x ahead, one that is late by d at v d behind, where only positions are
         # measured; a late one is also aside, by half the curvature times (v d)^2, so d is small.
-        HiddenSet("rivals", ("reference_lever_arm=0.006",), arm, curves, "positions_alone"),
+        HiddenSet("rivals", ("reference_lever_arm=0.003",), arm, curves, "positions_alone"),
         HiddenSet("rivals", ("reference_delay=0.015",), first + 6, curves, "positions_alone"),
         # A point at x moves sideways by x times the turn; a tyre by creep times speed times turn.
         HiddenSet("rivals", ("lateral_slip=0.02",), first + 5, curves),

@@ -27,10 +27,12 @@ from test.inference.set_up_mistakes import (
     without_yaw,
 )
 from test.model.drives import ROBOT
+from test.white_noise_robot import WhiteNoiseRobot, drive, square
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.leg_errors import errors_of, statistics
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.candidate_law import loaded
 from werrimbi_odom.inference.drafting.law_forms import Seen, spot_form
@@ -322,6 +324,29 @@ def test_two_poses_a_drive_name_it_or_claim_nothing(session: list[Run], name: st
 def test_two_poses_a_drive_name_the_commonest(session: list[Run], name: str) -> None:
     mistake = {**WIRING, **SIZES}[name]
     assert found([two_poses(run) for run in session], NOMINAL, mistake).findings
+
+
+def test_one_window_of_noisy_positions_shows_no_mistake() -> None:
+    """A lap of a square by positions of 0.1 m: a base of four times, and one wheel of a quarter.
+
+    Three sizes were fitted to the positions of one window, whose errors go together.
+    """
+    random = np.random.default_rng([1045, 11])
+    drawn = random.uniform(size=6)
+    noise = 1.5e-4 * (2e-3 / 1.5e-4) ** drawn[2]
+    wheel, ratio = 0.02 + 0.08 * drawn[1], 0.7 + 0.7 * drawn[5]
+    true = WhiteNoiseRobot(0.15 + 0.45 * drawn[0], wheel, wheel, noise, ratio * noise, 2520.0)
+    random.choice(4), random.uniform(size=2)
+    lap = square(random.uniform(0.6, 1.5), random.choice([-1, 1]))
+    still = np.zeros(25)
+    random.uniform(), random.choice(5), random.uniform()
+    sigma = random.uniform(0.02, 0.3)
+    commands = tuple(np.concatenate([still, part, still]) for part in lap)
+    run = drive(true, (commands[0], commands[1]), random, sigma_xy=sigma, every=10)
+    assert run.reference is not None
+    run.reference.yaw[:] = np.nan
+    fitted, _ = set_aside((run,))
+    assert look_for_mistakes(fitted, true.entered(wheel)).findings == ()
 
 
 def test_no_reference_no_findings(session: list[Run]) -> None:

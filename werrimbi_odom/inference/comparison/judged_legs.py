@@ -20,11 +20,12 @@ from werrimbi_odom.inference.comparison.leg_errors import (
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, jumped_in
 from werrimbi_odom.inference.comparison.residuals import Residual, residuals_of
+from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.fitting.run_phases import model_in_runs
-from werrimbi_odom.inference.rules import DRIFT_LEGS, FAR_ABOVE_NOISE, MOST_WHEEL_NOISE
+from werrimbi_odom.inference.rules import DRIFT_LEGS, FAR_ABOVE_NOISE, MOST_WHEEL_NOISE, SURE
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -244,18 +245,28 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     """Whether a model's errors are larger than any noise of wheels and reference explains.
 
     A likelihood with free noise accepts any model. This test uses the largest plausible wheel
-    noise, and the reference noise from its own small differences. The limit is the median variance,
-    as that of a first leg with an unknown heading is arbitrary.
+    noise, and the reference noise from its own small differences. Each leg counts by its own
+    variance: of positions, a first leg has an unknown heading and may end anywhere. By Fisher's F,
+    chance must not exceed it either: few poses tell their noise poorly, and fewer not at all. The
+    reference's share of the variance is all that is uncertain (Satterthwaite, Biometrics Bull. 2,
+    1946).
     """
     legs = judged_legs(prepared, model, prepared.options.leg).quiet
     kept = legs.errors.chosen(~legs.outlier)
-    places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
+    by_heading = judged_by(prepared) == "heading"
+    places = slice(2, 3) if by_heading else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)
-    least = max(min(model.robot.left_wheel_noise, model.robot.right_wheel_noise), 1e-6)
-    softest = max((MOST_WHEEL_NOISE / least) ** 2 - 1.0, 0.0)
-    covariance = kept.covariance + softest * kept.wheels
-    promised = np.trace(covariance[:, places, places], axis1=1, axis2=2)
     known = np.isfinite(error)
     if not known.any():
         return False
-    return bool(np.mean(error[known]) > FAR_ABOVE_NOISE**2 * np.median(promised[known]))
+    least = max(min(model.robot.left_wheel_noise, model.robot.right_wheel_noise), 1e-6)
+    softest = max((MOST_WHEEL_NOISE / least) ** 2 - 1.0, 0.0)
+    reference, wheels = (
+        np.trace(each[known, places, places], axis1=1, axis2=2)
+        for each in (kept.covariance - kept.wheels, (1.0 + softest) * kept.wheels)
+    )
+    ratio = float(np.mean(error[known] / (reference + wheels)))
+    share = float(np.median(reference / (reference + wheels)))
+    freedom = min(group.own.freedom[by_heading] for group in prepared.groups) / share**2
+    chance = fisher_survival(ratio, float(np.isfinite(kept.error[:, places]).sum()), freedom)
+    return freedom > 0.0 and ratio > FAR_ABOVE_NOISE**2 and chance < SURE

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
@@ -15,7 +16,7 @@ from werrimbi_odom.inference.comparison.reference_noise import reference_noise, 
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW, TYPICAL_MATCH
+from werrimbi_odom.inference.rules import FREEDOM_OF_A_DIFFERENCE, TAPE_XY, TAPE_YAW, TYPICAL_MATCH
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -58,6 +59,9 @@ class OwnNoise:
     """For each run [rad]."""
     wandering: Variances | None
     """Noise of a reference on a local map."""
+    freedom: tuple[float, float]
+    """Degrees of freedom of the variances of positions and of headings: infinite where they are
+    given or stated, none where they are assumed."""
 
 
 def noise_of(
@@ -100,7 +104,15 @@ def noise_of(
     heading, of_heading, yaw_told = _known(options.sigma_yaw, stated[1], estimated[1], usual[1])
     stamp = stamp_noise(every, residuals)
     noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk)
-    return OwnNoise(noise, of_position, of_heading, wandering)
+    counts = (
+        2 * sum(int(np.isfinite(item.measured).sum()) for item in residuals),
+        sum(int(np.isfinite(item.measured_yaw).sum()) for item in residuals),
+    )
+    freedom = tuple(
+        {"estimated": FREEDOM_OF_A_DIFFERENCE * count, "assumed": 0.0}.get(how, math.inf)
+        for how, count in zip((told, yaw_told), counts, strict=True)
+    )
+    return OwnNoise(noise, of_position, of_heading, wandering, (freedom[0], freedom[1]))
 
 
 def _known(

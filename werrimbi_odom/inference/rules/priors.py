@@ -116,5 +116,6 @@ drive's own."""
 
 FAR_ABOVE_NOISE = 2.5
 """Errors of legs relative to those by the noise of the softest wheels, above which a model is wrong
-whatever its likelihood. With ten legs noise alone exceeds this once in 10^16; a base that is 17 %
-wrong makes 2.8 times in a short drive with positions of 14 mm alone."""
+whatever its likelihood, if it is beyond chance (`SURE`). With ten legs, noise that is known exceeds
+this once in 10^16, noise that 30 differences told (`FREEDOM_OF_A_DIFFERENCE`) once in 100. A base
+that is 17 % wrong makes 2.7 times in a short drive with positions of 14 mm alone."""

@@ -135,8 +135,9 @@ DELAY_BETTER = 1.1
 less than a tenth to gain, the drives have no turn that determines a lag."""
 
 DELAY_EVIDENCE = 15.0
-"""Logarithm of that ratio times the number of independent seconds, a log-likelihood, for a lag to
-be found. Of the 101 lags chance exceeds it in 101 exp(-15) = 3e-5 of sessions."""
+"""Logarithm of that ratio times the number of independent seconds (intervals, where poses are rarer
+than that), a log-likelihood, for a lag to be found. Of the 101 lags chance exceeds it in 101
+exp(-15) = 3e-5 of sessions."""
 
 DELAY_SPANS = 4
 """Shortest run in multiples of the largest lag, so that three quarters of it are left to compare at
@@ -178,6 +179,13 @@ circles any arm is as good as a base."""
 POSITIONS_WIDE = 2.0
 """Factor by which another set-up must lower the typical error. More than `WIDE`, since every window
 has its own heading, which may hide or imitate a mistake."""
+
+POSITIONS_EVIDENCE = 14.0
+"""Logarithm of that factor, times two coordinates of each window beside the first: errors within a
+window are its heading's and its first position's, and go together. Of two fitted sizes and n
+coordinates, chance lowers the error by a factor r in r^(2 - n) of cases (the F distribution with 2
+and n - 2 degrees of freedom), so by any of 1260 set-ups in 1260 exp(-14) = `SURE`. One window alone
+shows nothing."""
 
 WINDOW_FLOOR = 0.01
 """Floor of a window's error as a share of a cut's length: smaller errors are treated as equal."""

@@ -11,7 +11,7 @@ would be that of the jitter and not of the motion.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -21,6 +21,9 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import touched
 from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
+
+Wheels = Callable[[int], tuple[Floats, Floats]]
+"""Ways of both wheels over each window, (n,) each, by lag in steps of the grid."""
 
 _Numbers = TypeVar("_Numbers", np.float64, np.complex128)
 
@@ -39,22 +42,17 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
         Ratio of the unexplained variance without delay to that with it; 1 for no delay.
     """
     most = round(rules.DELAY_LONGEST / _PERIOD)
-    sums = [_Sums(width, most) for width in (2, 3)]
+    sums = [_Sums(width, most) for width in (2, 3)]  # of turns, and of squared steps
     for record in records:
         grid = np.arange(record.time[0], record.time[-1], _PERIOD)
         if grid.size < rules.DELAY_SPANS * most or record.seen.size < rules.FEWEST_CUTS:
             continue
-        left = _over(np.interp(grid, record.time, record.left))
-        right = _over(np.interp(grid, record.time, record.right))
-        products = np.stack([left**2, left * right, right**2])
+        wheels = _wheels(record, grid)
         unseen = [*record.not_driven, *record.taken_out, *_silences(record.seen)]
-        for total, wheels, measured in (
-            (sums[0], np.stack([left, right]), _turns(record, grid)),
-            (sums[1], products, _squared_steps(record, grid)),
-        ):
+        for total, measured in ((sums[0], _turns(record, grid)), (sums[1], _squares(record, grid))):
             if measured is not None:
                 measured[_in_any(touched(grid, unseen))] = np.nan
-                total.add(wheels, measured)
+                total.add(wheels, measured, _interval(record))
     used = [total for total in sums if total.rows > rules.DELAY_ROWS]
     if not used:
         return 0.0, 1.0
@@ -68,7 +66,7 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
         if bend > 0.0:
             lag += 0.5 * _PERIOD * float(before - after) / float(bend)
     gain = float(np.exp(misfit[most] - misfit[best]))
-    seconds = used[0].rows * _PERIOD
+    seconds = used[0].seconds
     if (
         abs(lag) < rules.DELAY_SHORTEST
         or gain < rules.DELAY_BETTER
@@ -86,37 +84,79 @@ class _Sums:
     """
 
     def __init__(self, width: int, most: int) -> None:
+        self.width = width
         self.most = most
         self.rows = 0
+        self.seconds = 0.0  # that are independent
         lags = 2 * most + 1
         self.square = np.zeros(lags)
         self.gram = np.zeros((lags, width, width))
         self.cross = np.zeros((lags, width))
 
-    def add(self, wheels: Floats, measured: Floats) -> None:
-        """Add a run: (p, n) of the wheels, (n,) measured on the same grid, NaN where unmeasured."""
+    def add(self, wheels: Wheels, measured: Floats, interval: float) -> None:
+        """Add a run: (n,) measured on the grid, NaN where unmeasured, and the wheels at any lag."""
         known = np.isfinite(measured)
         if known.sum() < rules.DELAY_SPANS * self.most:
             return
         scale = np.std(measured[known])
         if scale == 0.0:
             return
-        inputs = wheels - wheels[:, known].mean(axis=1, keepdims=True)
         output = (measured - measured[known].mean()) / scale
         self.rows += int(known.sum())
+        self.seconds += float(known.sum()) * _PERIOD / max(1.0, interval)
+        middle = np.nanmean(self._inputs(wheels(0))[:, known], axis=1, keepdims=True)
         for number, lag in enumerate(range(-self.most, self.most + 1)):
-            first, last = max(lag, 0), min(output.size, output.size + lag)
-            both = known[first:last]
-            seen, driven = output[first:last][both], inputs[:, first - lag : last - lag][:, both]
+            inputs = self._inputs(wheels(lag))
+            both = known & np.isfinite(inputs[0])
+            seen, driven = output[both], inputs[:, both] - middle
             self.square[number] += seen @ seen
             self.gram[number] += driven @ driven.T
             self.cross[number] += driven @ seen
+
+    def _inputs(self, both: tuple[Floats, Floats]) -> Floats:
+        """Regressors: of turns the ways of both wheels, of squared steps their products."""
+        left, right = both
+        return np.stack([left, right] if self.width == 2 else [left**2, left * right, right**2])
 
     def residual_innovations(self) -> Floats:
         """Unexplained share of the variance at each lag."""
         inverse = np.linalg.pinv(self.gram, rcond=1e-9, hermitian=True)
         explained = np.einsum("ki,kij,kj->k", self.cross, inverse, self.cross) / self.square
         return np.asarray(np.clip(1.0 - explained, rules.DELAY_UNEXPLAINED, 1.0))
+
+
+def _interval(record: SetUpRecord) -> float:
+    """Usual time between two poses [s]."""
+    return float(np.median(np.diff(record.seen)))
+
+
+def _wheels(record: SetUpRecord, grid: Floats) -> Wheels:
+    """Ways of both wheels over each window, at any lag in steps of the grid; NaN outside.
+
+    Between rare poses a measured path is a straight line, at an even speed. So is that of the
+    wheels then: where only one of the two knows a turn's begin, a wrong lag may fit better.
+    """
+    sides = record.left, record.right
+    if _interval(record) > rules.DELAY_WINDOW:
+
+        def at_poses(lag: int) -> tuple[Floats, Floats]:
+            then = record.seen - lag * _PERIOD
+            left, right = (np.interp(then, record.time, side, np.nan, np.nan) for side in sides)
+            return _over(np.interp(grid, record.seen, left)), _over(
+                np.interp(grid, record.seen, right)
+            )
+
+        return at_poses
+    left, right = (_over(np.interp(grid, record.time, side)) for side in sides)
+    return lambda lag: (_shifted(left, lag), _shifted(right, lag))
+
+
+def _shifted(values: Floats, lag: int) -> Floats:
+    """Values so many rows later, NaN where there are none."""
+    found = np.full(values.size, np.nan)
+    first, last = max(lag, 0), min(values.size, values.size + lag)
+    found[first:last] = values[first - lag : last - lag]
+    return found
 
 
 def _silences(seen: Floats) -> list[tuple[float, float]]:
@@ -134,7 +174,7 @@ def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
     return _winsorised(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
 
 
-def _squared_steps(record: SetUpRecord, grid: Floats) -> Floats | None:
+def _squares(record: SetUpRecord, grid: Floats) -> Floats | None:
     known = np.isfinite(record.place)
     if known.sum() < rules.FEWEST_CUTS:
         return None

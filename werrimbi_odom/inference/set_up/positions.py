@@ -42,6 +42,11 @@ class CutWindows:
     floor: float
     """Error below which fits count as equal [m]."""
 
+    @property
+    def count(self) -> int:
+        """Number of windows."""
+        return self.cuts.count // rules.WINDOW
+
     def misfit(
         self, left: float, right: float, half_base: float | None = None, arm: complex = 0j
     ) -> float:
@@ -186,7 +191,10 @@ def search_positions(
 
     found = findings_of(setting, ways, misfit)
     entered = windows.misfit(1.0 / track, 1.0 / track, 0.5 * track)
-    if not found or entered < rules.POSITIONS_WIDE * misfit(setting):
+    gain = entered / misfit(setting)
+    apart = min(windows.count, cuts.count / rules.WINDOW)  # windows overlap
+    evidence = 2.0 * (apart - 1) * math.log(gain)
+    if not found or gain < rules.POSITIONS_WIDE or evidence < rules.POSITIONS_EVIDENCE:
         return [], None
     return found, setting
 
