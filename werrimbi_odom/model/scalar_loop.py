@@ -3,8 +3,8 @@
 """A recorded run as scalar operations, step by step: the functions that `compiled` compiles.
 
 They do what `Odometer` does at each message, by the same functions, so results agree to the last
-bit. In plain Python they would be as slow as the odometer; for that case `pieces_recorded` and
-`recorded_propagation` have array operations.
+bit (but for `follow`, of fits alone: to the last digits). In plain Python they would be as slow as
+the odometer; for that case `pieces_recorded` and `recorded_propagation` have array operations.
 """
 
 from __future__ import annotations
