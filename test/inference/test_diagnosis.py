@@ -14,13 +14,14 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.diagnosis import forward_selection
 from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import summed_over_legs
-from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount, step_jacobians
 from werrimbi_odom.inference.diagnosis.variables import variables_of
-from werrimbi_odom.inference.fitting import caches
+from werrimbi_odom.inference.fitting import caches, concatenated_runs
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
@@ -240,3 +241,21 @@ def test_derivatives_worked_out_side_by_side_are_the_same_to_the_last_bit(
     assert np.array_equal(one, other)
     assert [score.gain for score in gains] == [score.gain for score in its]
     assert len(gains) > 20
+
+
+def test_fits_side_by_side_are_the_same_to_the_last_bit(
+    laid: Concatenated, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(forward_selection, "worth_fitting", lambda ordered: ordered[:3])
+    found = []
+    for worth in (range(10**6), range(0)):
+        monkeypatch.setattr(caches, "WORTH_THREADS", worth)
+        monkeypatch.setattr(concatenated_runs, "WORTH_COPIES", worth)
+        runs = concatenated(laid.runs)
+        found.append(search_round(runs, fit_calibration(runs, ROBOT), LIBRARY, ROBOT))
+        given = runs.side_by_side([lambda own: own] * 2)
+        assert len({id(each) for each in (*given, runs)}) == (3 if worth else 1)
+    one, other = found
+    assert [fit.total for fit in one.tried] == [fit.total for fit in other.tried]
+    assert len(one.tried) > 1
+    assert [cell.gain for cell in one.dependences] == [cell.gain for cell in other.dependences]

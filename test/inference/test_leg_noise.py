@@ -22,6 +22,8 @@ from werrimbi_odom.inference.fitting.prediction import extrinsics_of, path_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model import recorded_propagation
 from werrimbi_odom.model.compiled import compiled
+from werrimbi_odom.model.motion import BodyMotion
+from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.scalar_loop import follow
 
 EFFECTS = (
@@ -67,3 +69,14 @@ def test_machine_code_follows_the_steps_as_arrays_do(
     assert np.ptp(yaw) > 1.0
     np.testing.assert_allclose(its_position, position, rtol=0.0, atol=1e-12)
     np.testing.assert_array_equal(its_yaw, yaw)
+
+
+@pytest.mark.parametrize("most", [0.01, 0.3, 4.0])
+def test_steps_are_followed_to_the_last_digits_however_far_they_turn(most: float) -> None:
+    random = np.random.default_rng(3)
+    motion = BodyMotion(*(size * random.uniform(-1.0, 1.0, 1000) for size in (0.02, 0.01, most)))
+    places, yaw = np.zeros((1001, 2)), np.zeros(1001)
+    follow(motion, places, yaw)
+    x, y, heading = recorded_propagation.integrated(Pose(), motion)
+    np.testing.assert_allclose(places, np.stack([x, y], axis=-1), rtol=0.0, atol=1e-14)
+    np.testing.assert_array_equal(yaw, heading)

@@ -161,11 +161,21 @@ def covariance_over(
     motion: BodyMotion[Number], noise: PathNoise[Number], chord: Chord[Number]
 ) -> PoseCovariance[Number]:
     """`piece_covariance`, given the piece's chord."""
+    return covariance_of_bend(motion, noise, chord, entire(0.5 * motion.turn, chord.shrink))
+
+
+def covariance_of_bend(
+    motion: BodyMotion[Number],
+    noise: PathNoise[Number],
+    chord: Chord[Number],
+    bent: tuple[Number, Number, Number],
+) -> PoseCovariance[Number]:
+    """`covariance_over`, given T, U and V: the same for all noises of a piece."""
     along, sideways, turn = motion
     a, b, c = noise
     S, cos, sin = chord
     h = 0.5 * turn
-    T, U, V = entire(h, S)
+    T, U, V = bent
     # Covariance in the chord frame: x along the heading at the middle of the piece.
     m_x, m_y = -0.5 * h * V, 0.5 * S  # mean lever arm of the heading noise, per travel
     m_xx, m_yy, m_xy = 0.25 * h * h * U, 0.25 * (S * S + 0.5 * T), -0.25 * h * S * V

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
@@ -128,18 +130,11 @@ def search_round(
     ordered = best_of_each(found)
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
 
-    def fitted_from(start: Point, score: Score) -> Fitted:
+    def fitted_from(runs: Concatenated, start: Point, score: Score) -> Fitted:
         numbers = (*before.numbers, *parameters_of_candidate(score.candidate))
         return fitted(runs, start, (*before.names, score.candidate.name), numbers, given)
 
-    tried = []
-    chosen = worth_fitting(ordered)
-    for score in ordered:
-        looked = [] if score in chosen else [looked_for(runs, point, score)]
-        for start in (*looked, in_place_of_jitter(runs, point, score)):
-            fit = None if start is None else fitted_from(start, score)
-            tried += [fit] if fit is not None and fit.told else []
-    for score in chosen:
+    def best_fit(score: Score, runs: Concatenated) -> list[Fitted]:
         variants = [
             other
             for other in found
@@ -152,9 +147,20 @@ def search_round(
             options.append((point, max(variants, key=lambda other: other.gain)))
         if score.candidate.name in instead:
             options.append((as_given(point, given), instead[score.candidate.name]))
-        fits = [fitted_from(started_with(runs, begin, option), option) for begin, option in options]
-        fits = [fit for fit in fits if fit.told]
-        tried += [min(fits, key=lambda fit: fit.total)] if fits else []
+        starts = [(started_with(runs, begin, option), option) for begin, option in options]
+        fits = [fit for fit in (fitted_from(runs, *start) for start in starts) if fit.told]
+        return [min(fits, key=lambda fit: fit.total)] if fits else []
+
+    tried = []
+    chosen = worth_fitting(ordered)
+    for score in ordered:
+        looked = [] if score in chosen else [looked_for(runs, point, score)]
+        for start in (*looked, in_place_of_jitter(runs, point, score)):
+            fit = None if start is None else fitted_from(runs, start, score)
+            tried += [fit] if fit is not None and fit.told else []
+    works: list[Callable[[Concatenated], Any]] = [partial(best_fit, score) for score in chosen]
+    cells, *best = runs.side_by_side([lambda runs: dependences(runs, point, turned), *works])
+    tried += [fit for fits in best for fit in fits]
     cheapest: dict[str, Fitted] = {}
     for fit in sorted(tried, key=lambda fit: fit.total):
         cheapest.setdefault(fit.names[-1], fit)
@@ -163,7 +169,7 @@ def search_round(
         before,
         tuple(ordered),
         tuple(sensor_first(tried) if runs.own_axes else tried),
-        dependences(runs, point, turned),
+        cells,
         len(looked_at),
     )
 

@@ -19,7 +19,9 @@ from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,
+    covariance_of_bend,
     covariance_over,
+    entire,
     noise_of_wheel_variances,
 )
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, chord_of
@@ -93,13 +95,14 @@ def step_by_step(
         for step in range(begin[leg], end[leg]):
             moved = BodyMotion(motion.along[step], motion.sideways[step], motion.turn[step])
             chord = chord_of(moved.turn, yaw[step] - facing[leg])
+            bent = entire(0.5 * moved.turn, chord.shrink)
             dx, dy = ends[leg, 0] - places[step + 1, 0], ends[leg, 1] - places[step + 1, 1]
             ahead, aside = cos * dx + sin * dy, cos * dy - sin * dx
             rolled = abs(travel.left[step]), abs(travel.right[step])
             for wheel in range(2):
                 left, right = (rolled[0], 0.0) if wheel == 0 else (0.0, rolled[1])
                 noise = noise_of_wheel_variances(left, right, track)
-                own = carried(covariance_over(moved, noise, chord), ahead, aside)
+                own = carried(covariance_of_bend(moved, noise, chord, bent), ahead, aside)
                 found[0, wheel, leg] += own.xx
                 found[1, wheel, leg] += own.xy
                 found[2, wheel, leg] += own.xyaw
