@@ -154,5 +154,5 @@ any, and an effect that turns the robot on lines would pass for another drive.""
 
 NO_TURN = 0.05
 """Turn of a reference of headings, relative to that of the wheels, below which it showed none. By
-the headings of another drive it is about one; of a dead gyro its noise and bias are left, here a
-hundredth."""
+the headings of another drive it is about one; of a dead gyro its noise and what is left of its bias
+remain: next to nothing where the robot turned."""
