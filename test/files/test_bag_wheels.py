@@ -168,6 +168,28 @@ def test_odometry_on_tf_alone_is_turned_back(tmp_path: Path, ros: Any, robot: An
     np.testing.assert_array_equal(wished.ticks.left, run.ticks.left)
 
 
+def test_odometry_that_is_set_back_to_its_origin_is_no_way(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """A driver's reset in mid-drive, at (2, 1) and 0.5 rad: it was told as a counter that leapt."""
+    poses = [(0.04 * n, 0.02 * n, 0.01 * n) for n in range(51)]
+    poses += [(0.04 * n, 0.0, 0.0) for n in range(50)]
+    entries = [
+        ("/odom", n * 100 * MS, ros.odometry(n * 100 * MS, *at)) for n, at in enumerate(poses)
+    ]
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    before, after = run.ticks.left[50], run.ticks.left[51]
+    assert after == before
+    assert run.ticks.left[-1] > before
+    assert any("5.1 s after its first message the odometry was set back" in n for n in run.notes)
+    home = [(0.04 * abs(50 - n), 0.0, 0.0) for n in range(100)]  # it drives home, and on
+    entries = [
+        ("/odom", n * 100 * MS, ros.odometry(n * 100 * MS, *at)) for n, at in enumerate(home)
+    ]
+    run = read_run(ros.write(tmp_path / "home", entries), robot())
+    assert not any("set back" in note for note in run.notes)
+
+
 def sideways(ros: Any, ahead: float, aside: float) -> list[Any]:
     """Odometry of 10 s, 0.3 m/s ahead and then as fast to the left, for so many seconds each."""
     entries = []

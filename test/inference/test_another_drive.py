@@ -88,6 +88,24 @@ def test_the_reference_of_another_drive_is_said_to_be_that(
     assert "On the robot" not in words
 
 
+@pytest.mark.parametrize("noise", [0.0, 1e-5])
+def test_a_gyro_that_is_dead_is_said_to_show_no_turn(noise: float) -> None:
+    random = np.random.default_rng(5)
+
+    def dead(reference: Reference) -> Reference:
+        still = 5e-4 * (reference.time - reference.time[0]) * (noise > 0.0)
+        drift = np.cumsum(random.normal(0.0, noise, still.size))
+        return replace(headings(reference), yaw=still + drift, kind="incremental")
+
+    runs = [with_reference_of(driven(seed), driven(seed), dead) for seed in (1, 2)]
+    told = diagnosed(*runs, holdout=(driven(4),))
+    assert told.diagnosis.of_another_drive
+    words = spoken(told)
+    assert "shows next to no turn" in words
+    assert "turn the robot by hand" in words
+    assert "another drive" not in words
+
+
 @MEASURED
 def test_that_of_this_drive_is_not(keep: Callable[[Reference], Reference]) -> None:
     runs = [with_reference_of(driven(seed), driven(seed), keep) for seed in (1, 2)]

@@ -21,12 +21,14 @@ from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.common_cause import alike
-from werrimbi_odom.inference.events.events import looked_at
+from werrimbi_odom.inference.events.events import Events, looked_at
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.remarks import without_events
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.simulation import TrueRobot, free, out_and_back, record, write_run
 from werrimbi_odom.simulation.hidden.knocks import Knock
@@ -145,6 +147,8 @@ def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: 
     assert found.holdout.after == pytest.approx(after, rel=1e-12)
     quiet = found.quiet[1]
     assert quiet.after < quiet.before < found.holdout.before
+    assert without_events(Told(found, None, ()))
+    assert not without_events(Told(replace(found, happened=Events()), None, ())), "of no event told"
     said = json_of(found, None)
     assert said["without_events"]["holdout"]["after"] == quiet.after
     base, *radii = said["calibration"].values()

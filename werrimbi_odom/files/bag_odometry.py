@@ -37,6 +37,14 @@ _ASIDE = 0.3
 """Sideways part of a step that goes sideways: 17 degrees. Made of two wheels it is zero."""
 _OFTEN = 0.1
 """Share of such steps; where the poses are set back to an origin there is one."""
+_ORIGIN = 1e-6
+"""Place [m] and heading [rad] up to which a pose is the origin."""
+_LEAPS = 10.0
+"""Length of a step to the origin over a usual one, from which on it was no driving."""
+SET_BACK = (
+    "{:.1f} s after its first message the odometry was set back to its origin: the robot is taken "
+    "to have stood in that step"
+)
 FROM_TWIST = "its poses never change, so its twist was integrated"
 
 
@@ -114,7 +122,10 @@ class OdometryTurnedBack:
             whole = np.isfinite(x + y + yaw)
             time = time[whole]
             self._refuse_sideways(time, x[whole], y[whole], yaw[whole])
-            along, turned = _driven(x[whole], y[whole], yaw[whole])
+            poses = x[whole], y[whole], yaw[whole]
+            back = _set_back(*poses)
+            words += [SET_BACK.format(time[row + 1] - time[0]) for row in np.flatnonzero(back)]
+            along, turned = _driven(*poses, back)
         robot = self._robot
         half = 0.5 * robot.wheel_separation * turned
         left, right = (
@@ -134,12 +145,26 @@ def _chords(x: Floats, y: Floats, yaw: Floats) -> tuple[NDArray[np.complex128], 
     return steps, turns
 
 
-def _driven(x: Floats, y: Floats, yaw: Floats) -> tuple[Floats, Floats]:
+def _set_back(x: Floats, y: Floats, yaw: Floats) -> NDArray[np.bool_]:
+    """Steps in which the odometry was set back to its origin, (n - 1,).
+
+    A robot that drives home passes its origin by less than a step, and not to the last digit.
+    """
+    place = np.hypot(x, y)
+    home = (place < _ORIGIN) & (np.abs(yaw) < _ORIGIN)
+    moved = np.abs(_chords(x, y, yaw)[0])
+    usual = np.median(moved[moved > 0.0]) if moved.any() else 0.0
+    return np.asarray(home[1:] & ~home[:-1] & (moved > np.maximum(_LEAPS * usual, _ORIGIN)))
+
+
+def _driven(x: Floats, y: Floats, yaw: Floats, back: NDArray[np.bool_]) -> tuple[Floats, Floats]:
     """Cumulative path of the axle's midpoint, backwards negative, and turn at each pose.
 
-    Between two poses the robot drove an arc; its length follows from chord and turn.
+    Between two poses the robot drove an arc; its length follows from chord and turn. Where its
+    odometry was set back, nothing is known of the way in that step.
     """
     steps, turns = _chords(x, y, yaw)
+    steps[back], turns[back] = 0.0, 0.0
     chord = np.abs(steps) * np.where(steps.real < 0.0, -1.0, 1.0)
     arc = chord / np.sinc(0.5 * turns / np.pi)
     return tuple(np.concatenate([[0.0], np.cumsum(part)]) for part in (arc, turns))  # type: ignore[return-value]

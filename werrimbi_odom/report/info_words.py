@@ -191,7 +191,8 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
     if sizes and "drove" in times:
         turned = math.degrees(drive.turned)
         way = f" By its wheels it went {drive.way:.1f} m and turned {turned:.0f}°"
-        way += f", and changed its direction {drive.reversals} times." if drive.reversals else "."
+        times_told = "once" if drive.reversals == 1 else f"{drive.reversals} times"
+        way += f", and changed its direction {times_told}." if drive.reversals else "."
         if held.seen is not None and unseen_much(held):
             seen, turned = held.seen, math.degrees(held.seen.turned)
             way += f" The reference measured {seen.way:.1f} m and {turned:.0f}° of it."

@@ -139,6 +139,14 @@ def remark_words(remark: ReferenceRemark) -> str:
             "large as the way itself. It is the reference of another robot or another drive, its "
             "clock is far off, or its topic is not where the robot is."
         )
+    if remark.what == "no_turn":
+        shown, turned = (f"{math.degrees(each):.0f}°" for each in (remark.size, remark.usual))
+        return (
+            f"The reference shows next to no turn: {shown} in all, to and fro, where the wheels "
+            f"turned {turned}. Its gyro is dead, is not read, or another of its axes points up. Or "
+            "the robot did not turn: it was held, its wheels were off the floor, or it drove "
+            "straight and one of its counters is still or runs backwards."
+        )
     if remark.what == "places":
         return (
             "The reference turns as the wheels do, but goes elsewhere: whatever is put right, its "

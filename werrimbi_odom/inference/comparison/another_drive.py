@@ -47,6 +47,30 @@ def turns_alike(prepared: PreparedRuns, model: Model) -> bool:
     return _untold(every, _by_heading, rules.OTHER_DRIVE_TURN) is False
 
 
+def unturned(prepared: PreparedRuns, model: Model) -> tuple[float, float] | None:
+    """Turn by a reference of headings alone and by the wheels [rad], where it is next to none.
+
+    Sums over the legs of all runs of each leg's turn by size. A steady drift of the headings is no
+    turn.
+    """
+    if any(run.reference is not None and run.reference.has_position.any() for run in prepared.runs):
+        return None
+    legs = judged_legs(prepared, model, min(prepared.cuts))
+    shown = 0.0
+    for number, run in enumerate(prepared.runs):
+        mine = legs.run == number
+        if run.reference is None or not mine.any():
+            continue
+        known = run.reference.has_yaw
+        time, yaw = run.reference.time[known], np.unwrap(run.reference.yaw[known])
+        begin, end = legs.start_time[mine], legs.end_time[mine]
+        turn = np.interp(end, time, yaw) - np.interp(begin, time, yaw)
+        drift = np.median(turn / (end - begin))
+        shown += float(np.sum(np.abs(turn - drift * (end - begin))))
+    turned = float(np.sum(np.abs(legs.errors.turn)))
+    return (shown, turned) if shown < rules.NO_TURN * turned else None
+
+
 def _by_position(legs: Legs) -> tuple[slice, Floats, Floats]:
     return slice(0, 2), legs.errors.along, np.hypot(legs.end_x - legs.x, legs.end_y - legs.y)
 

@@ -31,12 +31,12 @@ _PAIRED = 100
 """Stretches of a drive whose pairwise slopes are used (Theil-Sen)."""
 
 What = Literal[
-    "another_drive", "places", "short", "sideways", "sideways_by_place", "apart", "metre"
+    "another_drive", "no_turn", "places", "short", "sideways", "sideways_by_place", "apart", "metre"
 ]
-"""Kind of anomaly. another_drive: nothing in common with the wheels; places: only its turns; short:
-path shorter (or longer) in places; sideways: constant angle between path and heading;
-sideways_by_place: such an angle in places; apart: an angle that grows; metre: another metric
-scale."""
+"""Kind of anomaly. another_drive: nothing in common with the wheels; no_turn: headings that do not
+change; places: only its turns; short: path shorter (or longer) in places; sideways: constant angle
+between path and heading; sideways_by_place: such an angle in places; apart: an angle that grows;
+metre: another metric scale."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class ReferenceRemark:
     size: float
     """short, metre: relative path length error, negative if shorter; else an angle [rad]."""
     usual: float = 0.0
-    """Value over the normal stretches."""
+    """Value over the normal stretches; no_turn: what the wheels turned [rad]."""
     stretches: tuple[Stretch, ...] = ()
     """Stretches concerned; empty if all."""
 

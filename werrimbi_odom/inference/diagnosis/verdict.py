@@ -17,8 +17,13 @@ from werrimbi_odom.inference.calibration_parametrisation import (
     sizes_of,
     std_as_effect,
 )
-from werrimbi_odom.inference.comparison.another_drive import of_another_drive, turns_alike
+from werrimbi_odom.inference.comparison.another_drive import (
+    of_another_drive,
+    turns_alike,
+    unturned,
+)
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -111,7 +116,8 @@ class Diagnosis:
     @property
     def of_another_drive(self) -> bool:
         """Whether wheels and reference have at most their turns in common: there is no result."""
-        return any(remark.what in ("another_drive", "places") for remark in self.remarks)
+        nothing = ("another_drive", "no_turn", "places")
+        return any(remark.what in nothing for remark in self.remarks)
 
     @property
     def robot(self) -> Robot:
@@ -222,10 +228,17 @@ def told(
         ),
         rivals_of_others(found, rivals, rounds, final, given, laid),
         judge.left_out,
-        (ReferenceRemark("places" if alike else "another_drive", 0.0),)
-        if another
-        else remarks_on(judge.train),
+        (_nothing_in_common(judge.train, as_given, alike),) if another else remarks_on(judge.train),
     )
+
+
+def _nothing_in_common(train: PreparedRuns, given: Model, alike: bool) -> ReferenceRemark:
+    """What a reference has in common with the wheels at most: its turns, or not even these."""
+    if alike:
+        return ReferenceRemark("places", 0.0)
+    if (turns := unturned(train, given)) is not None:
+        return ReferenceRemark("no_turn", *turns)
+    return ReferenceRemark("another_drive", 0.0)
 
 
 def _is_news(name: str, final: Fitted, tried: int) -> bool:

@@ -156,3 +156,8 @@ less."""
 OTHER_DRIVE_TURN = 0.2
 """Turn of a typical leg [rad] above which headings are tested as well: straight lines have hardly
 any, and an effect that turns the robot on lines would pass for another drive."""
+
+NO_TURN = 0.05
+"""Turn of a reference of headings, relative to that of the wheels, below which it showed none. By
+the headings of another drive it is about one; of a dead gyro its noise and what is left of its bias
+remain: next to nothing where the robot turned."""

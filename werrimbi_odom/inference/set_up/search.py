@@ -158,9 +158,11 @@ def look_for_mistakes(
     try:
         mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
     except ValueError as error:  # a size beyond what its effect allows
+        of_a_gyro = "radians, about the upright axis of a gyro that is alive"
         raise InputError(
             f"{runs[0].path}: wheels and reference have nothing in common (no robot is as far off "
-            "as would explain it): is it the reference of this robot and this drive, in metres?"
+            "as would explain it): is it the reference of this robot and this drive, in "
+            f"{of_a_gyro if measured == 'heading' else 'metres'}?"
         ) from error
     return SetUp(findings, mended)
 

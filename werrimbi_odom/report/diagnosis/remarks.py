@@ -112,7 +112,9 @@ def _or_a_held_law(told: Told) -> str:
 
 
 def without_events(told: Told) -> list[str]:
-    """Errors without the legs of abrupt events."""
+    """Errors without the legs of abrupt events that are told."""
+    if not told.diagnosis.happened.events:
+        return []  # marked beside a first model, and none beside the last
     every, quiet = told.diagnosis.holdout, told.diagnosis.quiet[1]
     if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
         return []

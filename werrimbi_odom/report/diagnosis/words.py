@@ -236,6 +236,12 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             "Next: ask again with fewer drives, as above.",
         ]
     if diagnosis.of_another_drive:
+        if any(remark.what == "no_turn" for remark in diagnosis.remarks):
+            return [
+                "Nothing can be told of the robot from these drives.",
+                "Next: turn the robot by hand once about, from a line on the floor back onto it: "
+                "the reference's heading must turn by 360° with it.",
+            ]
         unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
         mend = " Give the reference of the same drive." if unrelated else ""
         return [
