@@ -18,7 +18,7 @@ from werrimbi_odom.driving.plan import SLACK, ManoeuvrePlan, room_of, seen_from
 from werrimbi_odom.driving.stop_conditions import SLIP_WINDOW, OdometryReading, Watch, fault_between
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
-from werrimbi_odom.model.turn_comparison import Turns
+from werrimbi_odom.model.slip import Turns
 
 State = Literal["waiting", "driving", "done", "stopped"]
 

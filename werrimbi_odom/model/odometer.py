@@ -7,6 +7,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
+from werrimbi_odom.model.compiled import of_floats
 from werrimbi_odom.model.covariance import (
     CERTAIN,
     PoseCovariance,
@@ -19,7 +20,6 @@ from werrimbi_odom.model.covariance import (
 from werrimbi_odom.model.driven_motion import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import Encoder, EncoderLimits, EncoderTally, WheelStep
-from werrimbi_odom.model.float_versions import of_floats
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, mean_twist
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, PieceTolerance

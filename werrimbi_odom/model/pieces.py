@@ -8,8 +8,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from werrimbi_odom.model.compiled import of_floats
 from werrimbi_odom.model.covariance import PoseCovariance
-from werrimbi_odom.model.float_versions import of_floats
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Pose

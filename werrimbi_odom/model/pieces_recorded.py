@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.float_versions import of_floats
+from werrimbi_odom.model.compiled import of_floats
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, allowed_lead, extended, off_arc
 from werrimbi_odom.model.pose import Floats, Pose

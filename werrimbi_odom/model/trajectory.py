@@ -1,11 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Odometry of a whole recorded run at once: the result of `Odometer` row by row."""
+"""Odometry of a whole recorded run at once: the result of `Odometer` row by row, and its pieces.
+
+The pieces are stored in columns; few of a million are read at a time.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +21,68 @@ from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits, EncoderTally
 from werrimbi_odom.model.encoder_recorded import lost_travel, wheel_steps
-from werrimbi_odom.model.motion import WheelTravel, wheels_to_body
-from werrimbi_odom.model.pieces import Piece
-from werrimbi_odom.model.pieces_of_run import PiecesOfRun
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
+from werrimbi_odom.model.pieces import Piece, kind_of
 from werrimbi_odom.model.pieces_online import PieceRule, PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose
-from werrimbi_odom.model.recorded_propagation import course_of
+from werrimbi_odom.model.recorded_propagation import PathInPieces, course_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.uncertainty import known
+
+_BLOCK = 1024  # pieces constructed together
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PiecesOfRun(Sequence[Piece]):
+    """A run cut into pieces; each is constructed when it is accessed."""
+
+    track: float
+    time: Floats
+    """Stamps before the first step and after each [s], shape (n + 1,)."""
+    course: PathInPieces
+
+    def __len__(self) -> int:
+        return self.course.start.size
+
+    @overload
+    def __getitem__(self, which: int) -> Piece: ...
+
+    @overload
+    def __getitem__(self, which: slice) -> tuple[Piece, ...]: ...
+
+    def __getitem__(self, which: int | slice) -> Piece | tuple[Piece, ...]:
+        if isinstance(which, slice):
+            return tuple(self[at] for at in range(*which.indices(len(self))))
+        (piece,) = self._made(range(len(self))[which], 1)
+        return piece
+
+    def __iter__(self) -> Iterator[Piece]:
+        for first in range(0, len(self), _BLOCK):
+            yield from self._made(first, min(_BLOCK, len(self) - first))
+
+    def _made(self, first: int, count: int) -> Iterator[Piece]:
+        course, which = self.course, slice(first, first + count)
+        begin = course.start[which]
+        end = np.append(course.start[first + 1 :][:count], self.time.size - 1)[:count]
+        columns = zip(
+            self.time[begin].tolist(),
+            self.time[end].tolist(),
+            course.poses[:, begin].T.tolist(),
+            course.covariances[:, begin].T.tolist(),
+            course.sums[:, which].T.tolist(),
+            strict=True,
+        )
+        for at, (since, until, pose, errors, (left, right, *motion)) in enumerate(columns, first):
+            body = BodyMotion(*motion)
+            yield Piece(
+                kind_of(body, self.track),
+                since,
+                until,
+                Pose(*pose),
+                WheelTravel(left, right),
+                body,
+                course.reset.get(at) or PoseCovariance(*errors),
+            )
 
 
 @dataclass(frozen=True, slots=True)
