@@ -18,7 +18,7 @@ from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_acro
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.ros.estimate_status import length_in_words
+from werrimbi_odom.ros.diagnostics import length_in_words
 from werrimbi_odom.ros.odometry_messages import OdometryMessage
 
 ROBOTS = {

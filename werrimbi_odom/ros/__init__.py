@@ -3,8 +3,8 @@
 """The ROS 2 nodes: thin layers over the model, without physics of their own.
 
 `odom_node.OdomNode` is the main node. `counter_inputs` and `wheel_side` convert any input to two
-counters. `odometry_messages`, `markers` and `estimate_status` convert an estimate to messages;
+counters. `odometry_messages` and `markers` convert an estimate to messages, `diagnostics` to words;
 `input_health` counts for /diagnostics. `odom_parameters` reads the robot file, and
-`parameter_trial` tests its values. `topics` publishes and subscribes, `planar` checks incoming
-poses, `graph` finds other nodes, `slip` and `phase_learning` use a gyro.
+`live_odometer` tests its values. `topics` publishes, subscribes and finds other nodes, `planar`
+checks incoming poses, `slip` and `phase_learning` use a gyro.
 """

@@ -37,10 +37,9 @@ from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
 from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
-from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.live_diagnosis import watching_of
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.topics import publisher, subscribe
+from werrimbi_odom.ros.topics import Company, full_name, publisher, subscribe
 
 WAITING = 1_000
 """Largest number of reference poses that wait for odometry."""

@@ -36,9 +36,8 @@ from werrimbi_odom.ros import drive_parameters, planar
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
-from werrimbi_odom.ros.graph import full_name, others_on
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.topics import publisher, subscribe
+from werrimbi_odom.ros.topics import full_name, others_on, publisher, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 TICK = 0.02

@@ -34,8 +34,8 @@ from werrimbi_odom.files.text_files import place_of, replacing
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.ros import counter_inputs
 from werrimbi_odom.ros.diagnostics import diagnostic, tell
-from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.recent_messages import Kept
+from werrimbi_odom.ros.topics import full_name
 
 LOOKER = "werrimbi_odom.api.live_diagnosis"
 """Run as a process, never imported: the node loads neither scipy nor the diagnosis."""

@@ -26,9 +26,7 @@ from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import counter_inputs, odom_parameters
-from werrimbi_odom.ros.diagnostics import diagnostics_publisher, tell
-from werrimbi_odom.ros.estimate_status import status_of
-from werrimbi_odom.ros.graph import Company, full_name
+from werrimbi_odom.ros.diagnostics import diagnostics_publisher, status_of, tell
 from werrimbi_odom.ros.input_health import Health
 from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
@@ -36,8 +34,7 @@ from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.phase_learning import learning_of, told
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
-from werrimbi_odom.ros.topics import publisher, subscribe
-from werrimbi_odom.ros.transforms import transform_sender
+from werrimbi_odom.ros.topics import Company, full_name, publisher, subscribe, transform_sender
 
 STATUS_PERIOD = 0.2
 """Period of ~/status [s]."""

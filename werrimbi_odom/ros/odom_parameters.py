@@ -26,7 +26,7 @@ from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.counter_inputs import robot_at_counters
-from werrimbi_odom.ros.parameter_trial import rehearse
+from werrimbi_odom.ros.live_odometer import rehearse
 
 CHANGEABLE = frozenset(
     {

@@ -29,10 +29,8 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import simulated_parameters
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic
-from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.topics import publisher, subscribe
-from werrimbi_odom.ros.transforms import transform_sender
+from werrimbi_odom.ros.topics import full_name, publisher, subscribe, transform_sender
 
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import AxlePose

@@ -1,17 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Publishers and subscriptions of the nodes, without the default callbacks for QoS events.
+"""Publishers and subscriptions of the nodes, transforms on /tf, and other nodes in the ROS graph.
 
-Every default callback costs the executor some 10 µs per message. With best effort and volatile no
-QoS of a subscription can be incompatible; an incompatible subscriber reports it on its own side.
+The default callbacks for QoS events are left out: each costs the executor some 10 µs per message.
+With best effort and volatile no QoS of a subscription can be incompatible; an incompatible
+subscriber reports it on its own side.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from geometry_msgs.msg import TransformStamped
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
@@ -92,3 +95,106 @@ def _errors_of_overrides(topic: str, overridable: bool) -> Iterator[None]:
         if not overridable:
             raise
         raise InputError(f"QoS override of {topic}: {error}") from error
+
+
+SendTransform = Callable[[TransformStamped], None]
+
+
+def transform_sender(node: Node, parameter: str) -> SendTransform:
+    """Create a function that broadcasts a transform.
+
+    Raises
+    ------
+    InputError
+        If tf2_ros is not installed; `parameter` is the one that requests it.
+    """
+    try:
+        from tf2_ros import TransformBroadcaster
+    except ImportError as error:
+        raise InputError(
+            f"{parameter} needs tf2_ros, which is not installed here: install the package "
+            f"ros-jazzy-tf2-ros-py, or set {parameter}: false"
+            + (" and let an EKF broadcast" if parameter == "enable_odom_tf" else "")
+        ) from error
+    sender: SendTransform = TransformBroadcaster(node).sendTransform
+    return sender
+
+
+KILLED = 21.0
+"""Delay before others are reported [s]: DDS lists a killed node for 20 s."""
+UNNAMED = "_NODE_NAME_UNKNOWN_"
+"""Name that rmw gives to a node while only its publisher has been discovered."""
+
+
+def full_name(node: Node) -> str:
+    """Name with namespace; it distinguishes the diagnostics of several robots."""
+    return str(node.get_fully_qualified_name().lstrip("/"))
+
+
+def others_on(node: Node, topic: str, *, own: bool) -> str:
+    """Other publishers on a topic, in words; "" if there are none.
+
+    Parameters
+    ----------
+    topic : str
+        With its namespace.
+    own : bool
+        Whether the node itself publishes it.
+    """
+    if node.count_publishers(topic) <= own:
+        return ""
+    names = [_name(each) for each in node.get_publishers_info_by_topic(topic)]
+    if own and (name := f"/{full_name(node)}") in names:
+        names.remove(name)
+    return (
+        f"another publishes {topic} too ({', '.join(sorted(names))}); a node that was killed is "
+        "listed for 20 s"
+    )
+
+
+class Company:
+    """Detects publishers and nodes that should not exist, once they have lasted for a while.
+
+    Parameters
+    ----------
+    node : Node
+        Its name should be unique.
+    topics : tuple of str
+        Topics that should have one publisher each.
+    """
+
+    def __init__(self, node: Node, topics: tuple[str, ...]) -> None:
+        self.crowded: frozenset[str] = frozenset()
+        """Topics that had several publishers at the last check."""
+        self._node = node
+        self._topics = topics
+        self._since: dict[str, float] = {}
+
+    def look(self, *, others_welcome: bool = False) -> list[str]:
+        """Describe conflicts; `others_welcome`: several publishers are no conflict."""
+        node, now = self._node, time.monotonic()
+        self.crowded = frozenset(each for each in self._topics if node.count_publishers(each) > 1)
+        seen = [] if others_welcome else sorted(self.crowded)
+        own = (node.get_name(), node.get_namespace())
+        namesakes = sum(each == own for each in node.get_node_names_and_namespaces())
+        if namesakes > 1:
+            seen.append("")
+        self._since = {each: self._since.get(each, now) for each in seen}
+        lasting = [each for each, since in self._since.items() if now - since > KILLED]
+        return [self._of_topic(each) if each else self._of_name(namesakes) for each in lasting]
+
+    def _of_topic(self, topic: str) -> str:
+        publishers = self._node.get_publishers_info_by_topic(topic)
+        names = ", ".join(sorted(_name(each) for each in publishers))
+        return f"several publish {topic} ({names}): poses jump from one to the other"
+
+    def _of_name(self, count: int) -> str:
+        name = self._node.get_fully_qualified_name()
+        return f"{count} nodes are named {name}, and each publishes: end one, or rename it"
+
+
+def _name(endpoint: object) -> str:
+    namespace, name = (getattr(endpoint, f"node_{part}") for part in ("namespace", "name"))
+    if name == UNNAMED:
+        return "a node whose name is not known yet"
+    return f"{str(namespace).rstrip('/')}/{name}"
