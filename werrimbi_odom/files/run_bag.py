@@ -19,8 +19,8 @@ from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Collected, Reference, Run
+from werrimbi_odom.files.stamps import Lateness, on_one_clock
 from werrimbi_odom.files.text_files import readable
-from werrimbi_odom.files.two_clocks import Lateness, on_one_clock
 
 Progress = Callable[[float], None]
 """Callback for the share of the work done."""
