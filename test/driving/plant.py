@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from werrimbi_odom.driving.driver import Driver
-from werrimbi_odom.driving.limits import STILL, Command
-from werrimbi_odom.driving.stop_conditions import OdometryReading
+from werrimbi_odom.driving.limits import STILL, Command, OdometryReading
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Pose
 

@@ -17,10 +17,9 @@ from hypothesis import strategies as st
 
 from test.driving.plant import Plant
 from werrimbi_odom.driving.driver import LATER, Driver
-from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
+from werrimbi_odom.driving.limits import STILL, Area, Command, Limits, OdometryReading, Watch
 from werrimbi_odom.driving.manoeuvres import plan_of
 from werrimbi_odom.driving.plan import ManoeuvrePlan, Move, seen_from
-from werrimbi_odom.driving.stop_conditions import OdometryReading, Watch
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
 

@@ -12,10 +12,18 @@ import math
 from collections import deque
 from typing import Literal
 
-from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
+from werrimbi_odom.driving.limits import (
+    SLIP_WINDOW,
+    STILL,
+    Area,
+    Command,
+    Limits,
+    OdometryReading,
+    Watch,
+    fault_between,
+)
 from werrimbi_odom.driving.path_following import PathFollower
 from werrimbi_odom.driving.plan import SLACK, ManoeuvrePlan, room_of, seen_from
-from werrimbi_odom.driving.stop_conditions import SLIP_WINDOW, OdometryReading, Watch, fault_between
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
 from werrimbi_odom.model.slip import Turns

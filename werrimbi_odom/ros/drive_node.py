@@ -28,8 +28,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import Marker
 
 from werrimbi_odom.driving.driver import Driver
-from werrimbi_odom.driving.limits import STILL, Command
-from werrimbi_odom.driving.stop_conditions import OdometryReading
+from werrimbi_odom.driving.limits import STILL, Command, OdometryReading
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros import drive_parameters, planar

@@ -8,10 +8,9 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from werrimbi_odom.driving.limits import Area, Limits
+from werrimbi_odom.driving.limits import Area, Limits, Watch
 from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
 from werrimbi_odom.driving.plan import ManoeuvrePlan
-from werrimbi_odom.driving.stop_conditions import Watch
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.ros.declaring import table
