@@ -12,7 +12,7 @@ pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[al
 
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.live import KEPT
-from werrimbi_odom.simulation.manoeuvre import MoveLimits
+from werrimbi_odom.simulation.manoeuvres import MoveLimits
 from werrimbi_odom.simulation.recorder import wheel_speeds
 from werrimbi_odom.simulation.rooms import arena
 

@@ -10,8 +10,8 @@ recordings are independent of the odometry's own models and a fair test of them.
 >>> len(recording.t_s) == len(recording.left_ticks)
 True
 
-Reading order: `robot` (the true robot), `manoeuvre` (commands), `chassis` and `engine` (the
-physics), `wheel_noise`, `sensors` (measurements), `recorder` and `recording` (one drive),
+Reading order: `robot` (the true robot), `manoeuvres` (commands), `chassis` and `engine` (the
+physics), `sensors` (measurements), `recorder` (wheel noise) and `recording` (one drive),
 `sessions` (a set of drives), `live` (driven by commands as they arrive), `field` (recorded without
 motion capture), `hidden` (hidden effects as test data).
 """
@@ -21,12 +21,14 @@ from .field import FieldDrive, FieldSensors, as_in_the_field
 from .field_bag import write_field_bag
 from .hidden import CATALOGUE, Hidden, Peculiarity, StrengthError, UnknownEffectError, hide, wished
 from .live import LiveRobot
-from .manoeuvre import Manoeuvre, MoveLimits, moves
 from .manoeuvres import (
+    Manoeuvre,
+    MoveLimits,
     arcs,
     chain,
     figure_eight,
     free,
+    moves,
     out_and_back,
     pivots,
     spin,

@@ -14,13 +14,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .chassis import Chassis, chassis_of
-from .engine import PERIOD, AxlePose, Reshaper, Shifter, TruePath, drive
+from .engine import PERIOD, AxlePose, Reshaper, Shift, Shifter, Stride, TruePath, drive
 from .hidden.hidden_effect import Peculiarity
-from .manoeuvre import Manoeuvre
+from .manoeuvres import Manoeuvre
 from .recording import Happened, Recording
 from .robot import TrueRobot
 from .sensors import ReferenceSensor, counters, sampling_times
-from .wheel_noise import wheel_noise
+
+
+def wheel_noise(robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+    """Travel noise of both wheels.
+
+    Over a stride of path length s the left wheel errs by N(0, k_L^2 s), the right one by N(0,
+    k_R^2 s), independently (section 4 of the paper). The noise has no force, so the body is moved
+    after the step; the encoders see only the rolling.
+    """
+
+    def shift(stride: Stride) -> Shift:
+        a, b = rng.standard_normal(2)
+        left = robot.left_wheel_noise * math.sqrt(abs(stride.left)) * a
+        right = robot.right_wheel_noise * math.sqrt(abs(stride.right)) * b
+        return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
+
+    return shift
+
 
 Floats = NDArray[np.float64]
 

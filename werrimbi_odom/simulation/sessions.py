@@ -8,8 +8,19 @@ import math
 from collections.abc import Iterator, Sequence
 
 from .hidden.hidden_effect import Peculiarity
-from .manoeuvre import Manoeuvre, MoveLimits, moves
-from .manoeuvres import arcs, chain, figure_eight, free, out_and_back, pivots, spins, square
+from .manoeuvres import (
+    Manoeuvre,
+    MoveLimits,
+    arcs,
+    chain,
+    figure_eight,
+    free,
+    moves,
+    out_and_back,
+    pivots,
+    spins,
+    square,
+)
 from .manoeuvres import start_stop as hops
 from .recorder import record
 from .recording import Recording
