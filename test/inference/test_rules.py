@@ -35,7 +35,6 @@ ELSEWHERE = {
     "changes/change_points.py": {"_FEW": "time that it takes"},
     "distributions.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
-    "events/robust_noise.py": {"_ROUNDS": "passes of a robust fit"},
     "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
     "comparison/leg_errors.py": {"CHI2_95": "quantiles"},
     "comparison/local_map_errors.py": {
@@ -67,6 +66,7 @@ ELSEWHERE = {
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
     "diagnosis/evidence.py": {"BATCH": "size of a block"},
     "diagnosis/step_jacobians.py": {"BLOCK": "size of a block"},
+    "diagnosis/without_events.py": {"_ROUNDS": "passes of a robust fit"},
     "comparison/reference_checks.py": {"_PAIRED": "time that it takes"},
     "diagnosis/response_curve.py": {
         "PARTS": "of a figure",

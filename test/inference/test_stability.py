@@ -12,7 +12,7 @@ from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
-from werrimbi_odom.inference.diagnosis.stability import halves, rivals_in_halves
+from werrimbi_odom.inference.diagnosis.rivals import halves, rivals_in_halves
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot

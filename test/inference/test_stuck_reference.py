@@ -11,8 +11,8 @@ import pytest
 
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
+from werrimbi_odom.inference.legs.gaps import STUCK
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
-from werrimbi_odom.inference.legs.stuck_reference import STUCK
 
 BEGIN, END = 26.0, 27.2
 

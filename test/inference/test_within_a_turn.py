@@ -16,8 +16,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.manoeuvres.within_a_turn import shorter_leg
+from werrimbi_odom.inference.manoeuvres.advice import Told, shorter_leg
 from werrimbi_odom.report.terminal import as_text
 
 BUMPED = replace(ROBOT, effects=(find("right_tread_bump").using(height=2.0e-3, place=0.7),))

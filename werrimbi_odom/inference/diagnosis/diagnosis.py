@@ -26,6 +26,7 @@ from werrimbi_odom.inference.comparison.prepared import for_fit
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
+from werrimbi_odom.inference.diagnosis.effects_of_robot_file import outdated, rivals_of_held
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
@@ -40,8 +41,6 @@ from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.rivals_of_robot_file import rivals_of_held
-from werrimbi_odom.inference.diagnosis.values_of_robot_file import outdated
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Verdict, told
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events

@@ -24,11 +24,11 @@ from werrimbi_odom.inference.legs.even_stamps import (
     stamped_together,
     with_even_scan_stamps,
 )
+from werrimbi_odom.inference.legs.gaps import as_stuck
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.motion_states import LOST, driven
-from werrimbi_odom.inference.legs.stuck_reference import as_stuck
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
