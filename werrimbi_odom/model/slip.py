@@ -20,7 +20,7 @@ from typing import NamedTuple
 Series = deque[tuple[float, float]]
 
 KEPT = 1.0
-"""Duration that is kept of both [s]."""
+"""Duration that is kept of both [s]: the windows of 0.2 s, and how late either may arrive."""
 
 
 class Turns:

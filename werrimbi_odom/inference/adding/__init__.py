@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Effects added to a robot's model: fitted with all calibration, judged on held-out drives.
 
-Reading order: `adding` (the whole of it), `start_values`, `fits`, `worth` and `objection` (evidence
+Reading order: `adding` (the whole of it), `start_values`, `fits`, `objection` (evidence
 for and against an effect), `uncertainty`.
 """

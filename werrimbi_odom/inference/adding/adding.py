@@ -21,9 +21,9 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of, to_write
+from werrimbi_odom.inference.adding.objection import Question
 from werrimbi_odom.inference.adding.start_values import FitDrives, drives_of, with_set_up
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
-from werrimbi_odom.inference.adding.worth import Question
 from werrimbi_odom.inference.calibration_parametrisation import base_name, robot_for_cutting
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
