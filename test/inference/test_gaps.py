@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A gap is a gap: no leg spans it, no fit uses it, and it is no jump of the reference."""
+"""A gap is a gap: no leg spans it, no fit uses it, and it is no jump of the reference.
+
+A reference that repeats its pose to the last digit stands still itself.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,8 @@ from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_for_fit
-from werrimbi_odom.inference.legs.gaps import gaps_in
+from werrimbi_odom.inference.legs.gaps import STUCK, gaps_in
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 
@@ -206,3 +210,35 @@ def test_joined_legs_are_what_the_steps_say() -> None:
                 np.testing.assert_allclose(
                     getattr(quick, name), expected, rtol=1e-7, atol=1e-9 * np.abs(expected).max()
                 )
+
+
+BEGIN, END = 26.0, 27.2
+
+
+@pytest.mark.parametrize("rate", [5, 10, 20])
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+def test_a_repeated_pose_is_told_of_the_reference(rate: float, noise: float) -> None:
+    """As incremental references are judged, whose equal poses are not taken out."""
+    run, random = run_of(ROBOT, 3, 40), np.random.default_rng(3)
+    seen = run.reference
+    assert seen is not None
+    time = np.arange(seen.time[0], seen.time[-1], 1.0 / rate)
+    poses = np.stack(
+        [
+            np.interp(time, seen.time, part) + 1e-3 * random.standard_normal(time.size)
+            for part in (seen.x, seen.y, np.unwrap(seen.yaw))
+        ]
+    )
+    inside = (time > BEGIN) & (time < END)
+    last = poses[:, inside][:, :1]
+    poses[:, inside] = last + noise * random.standard_normal((3, inside.sum()))
+    x, y, yaw = poses
+    found = looked_at(replace(run, reference=replace(seen, time=time, x=x, y=y, yaw=yaw)), ROBOT)
+    assert found.no_driving is not None
+    (part,) = found.no_driving
+    assert part.begin == pytest.approx(BEGIN, abs=0.3)
+    assert part.end == pytest.approx(END, abs=0.3)
+    if noise:
+        assert part.why in ("held", "carried")
+    else:
+        assert (part.why, part.words) == ("gap", STUCK)

@@ -8,6 +8,7 @@ import math
 import re
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,11 +28,13 @@ from werrimbi_odom.inference.comparison.consistency import (
 )
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.document import document_of
 from werrimbi_odom.report.comparison.phrases import covariance_words
 from werrimbi_odom.report.number_format import from_start
+from werrimbi_odom.report.phrases import left_out_words
 from werrimbi_odom.report.terminal import printed
 
 SYSTEMATIC = Systematic("line", "heading", "travel", 0.1, 0.01, 1e-9, 0.1, 0.1, True)
@@ -189,3 +192,23 @@ def test_where_two_poses_are_all_no_shorter_leg_is_advised() -> None:
     assert "4 legs of 2 m, 10 are the least. Drive more, or measure the robot more often" in words
     assert "Errors of legs of 2 m (rms)" in words
     assert "shorter --leg" not in words
+
+
+def test_what_lasts_no_time_was_at_a_time() -> None:
+    run = Path("run")
+    leap = LeftOut(run, 0.001, 0.02, "counter", "the right counter leapt by 13.5 m")
+    held = LeftOut(run, 9.7, 11.2, "carried", "the robot was carried")
+    at_once, lasting = left_out_words([leap, held])
+    assert at_once == "At 0.0 s the right counter leapt by 13.5 m: left out."
+    assert lasting == "From 9.7 s to 11.2 s the robot was carried: left out."
+
+
+def test_the_longest_stretches_are_told_in_their_order() -> None:
+    """Of sixty silences, those of half a second stood in the way of the half hour that mattered."""
+    run = Path("run")
+    short = [LeftOut(run, 10.0 * n, 10.0 * n + 0.5, "gap", "silent") for n in range(1, 8)]
+    long = LeftOut(run, 100.0, 843.0, "carried", "the heading is not known")
+    *told, rest = left_out_words([*short, long])
+    assert told[-1] == "From 100.0 s to 843.0 s of run the heading is not known: left out."
+    assert told[0].startswith("From 10.0 s")
+    assert rest == "So are 3 more such stretches, 1.5 s in all."

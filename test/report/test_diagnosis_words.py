@@ -1,23 +1,31 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Words of a diagnosis: costs that fall, what is not shown, sizes that no drive tells apart."""
+"""Words of a diagnosis and of `add`: costs, what is not shown or not told apart, what to drive."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+import werrimbi_odom as wo
+from test.cli.commands import ROBOT_FILE, write_run
+from test.inference.driven import run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.set_up.search import _late
+from werrimbi_odom.report.adding.words import _headline
 from werrimbi_odom.report.diagnosis import phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
 from werrimbi_odom.report.diagnosis.remarks import drowned, like_noise, nearest, not_shown
+from werrimbi_odom.report.diagnosis.words import how_long
 
 
 def told_of(after: float) -> Any:
@@ -179,3 +187,57 @@ def test_by_scans_a_change_may_be_the_floor_s(
     told: Any = SimpleNamespace(diagnosis=diagnosis, changes=(SimpleNamespace(surely_from="arcs"),))
     said = " ".join(words._changes(told))
     assert ("Or the floor is why. What lies on the floor" in said) == or_the_floor
+
+
+@pytest.mark.parametrize(
+    ("minutes", "chance", "says"),
+    [
+        (3.0, 0.97, "About 3 min of it are enough."),
+        (30.0, 0.704, "About 30 min of it tell them apart in 70 % of cases."),
+    ],
+)
+def test_of_a_drive_it_is_said_how_long_and_how_surely_it_tells(
+    minutes: float, chance: float, says: str
+) -> None:
+    move = ProposedManoeuvre("spins", "they differ", "spin", minutes, chance)
+    first, then = how_long(move, "werrimbi diagnose")
+    assert first == says
+    assert then == "Then give that drive to `werrimbi diagnose` together with these."
+
+
+def test_of_what_is_no_drive_no_minutes_are_said() -> None:
+    assert not list(
+        how_long(ProposedManoeuvre("push", "one and the same", "push it", 0.0), "werrimbi")
+    )
+
+
+def test_drives_that_no_mount_fits_are_not_said_to_be_lost(tmp_path: Path) -> None:
+    """A mower's compass beside its UWB: the reference "is lost, it slides, or sits far away"."""
+    (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
+    places = []
+    for number, angle in enumerate((1.57, 1.57, -1.57, -1.57)):
+        run = run_of(ROBOT, number, 60)
+        assert run.reference is not None
+        turned = replace(run.reference, yaw=run.reference.yaw + angle)
+        places.append(tmp_path / f"run_{number}")
+        write_run(places[-1], replace(run, reference=turned))
+    told = wo.diagnose(wo.read_robot(tmp_path / "robot.yaml"), places).summary()
+    words = " ".join(told.split())
+    assert "Between run_1 and run_2 the reference came to be mounted otherwise" in words
+    assert "No mount of the reference fits all of these drives" in words
+    assert "It is lost" not in words
+
+
+def test_of_what_could_not_be_judged_no_number_is_told() -> None:
+    """A spin that was held again and again, and added by force: nan mm, and nan % higher."""
+    added: Any = SimpleNamespace(
+        holdout=SimpleNamespace(sides=Sides(math.nan, math.nan), after=SimpleNamespace(leg=1.0)),
+        effects=[SimpleNamespace(name="reference_lever_arm")],
+        also=(),
+        objection="reference_lever_arm cannot be judged",
+    )
+    said = _headline(added)
+    assert "nan" not in said
+    assert said.startswith("What reference_lever_arm does to the error of the held-out drives")
+    added.holdout.sides = Sides(0.1, 0.05)
+    assert "50.00 mm where it was 100 mm (50 % lower" in _headline(added)
