@@ -20,8 +20,7 @@ from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.rivals import possible_twins
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
-from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.proposal import for_twins, next_manoeuvre
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, START_YAW, YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
+from werrimbi_odom.inference.manoeuvres.proposal import for_twins
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=5e-4, right_wheel_noise=5e-4)

@@ -3,9 +3,9 @@
 """What to drive next, or to remount: the simplest thing that tells apart what these drives cannot.
 
 For rivals the manoeuvres of the library are weighed by what they would show in a minute
-(`expected_evidence`). For twins no drive can tell, and the mount or a hand has to (`by_hand`). For
-an error that no effect explains, a drive that varies what the error depends on, and holds the rest
-(`for_unexplained_errors`).
+(`expected_evidence`). For twins no drive can tell, and the mount or a hand has to, as the effects
+declare. For an error that no effect explains, a drive that varies what the error depends on, and
+holds the rest (`for_unexplained_errors`).
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ import numpy as np
 from scipy.special import ndtr
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
-from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
@@ -43,8 +43,39 @@ from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import (
 )
 from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measured_in
-from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.effect import AppliedEffect, Effect, Twin, twin_of
 from werrimbi_odom.model.pose import Floats
+
+
+def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:
+    """The declared equivalence of two effects, if it holds for this kind of reference."""
+    twin = twin_of(one, other)
+    return None if twin is None or (twin.of_headings and positions) else twin
+
+
+def for_twins(rivals: Sequence[Effect], positions: bool) -> ProposedManoeuvre | None:
+    """What to do at the robot; None if drives may tell some rivals apart, or nothing is declared.
+
+    Set-up mistakes are equivalent in larger sets than pairs: two of them may equal a third. A check
+    by hand tells them all apart.
+    """
+    pairs = [twin_where(*pair, positions) for pair in combinations(rivals, 2)]
+    twins = [twin for twin in pairs if twin is not None]
+    mistakes = [effect for effect in rivals if effect.is_mistake]
+    said = next((twin for twin in twins if twin.do), None)
+    if said is not None and (len(twins) == len(pairs) or mistakes):
+        return ProposedManoeuvre(said.manoeuvre, said.told_apart_by, said.do, said.minutes)
+    if not mistakes:
+        return None
+    checks = dict.fromkeys(" ".join(page_of(each).sections["Ruler"].split()) for each in mistakes)
+    return ProposedManoeuvre(
+        "push_by_hand",
+        "no drive can tell them apart, because the robot file alone says which end is ahead; a "
+        "hand can",
+        "; ".join(checks),
+        0.0,
+    )
+
 
 __all__ = ["Discrimination", "ProposedManoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
