@@ -21,9 +21,8 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
+from werrimbi_odom.ros.compare_legs import LASTS, Both, LegCutter, LegError, Window
 from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
-from werrimbi_odom.ros.compare_window import LASTS, Window
 
 TRUE = WhiteNoiseRobot()
 SIGMA_XY, SIGMA_YAW = 1e-3, 2e-3

@@ -31,10 +31,9 @@ from werrimbi_odom.ros.compare_inputs import (
     odometry_of,
     reference_reader,
 )
-from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
+from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError, Window
 from werrimbi_odom.ros.compare_motion import Motion
 from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
-from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.live_diagnosis import watching_of
