@@ -44,7 +44,7 @@ class Messages:
     def __init__(self) -> None:
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-        from werrimbi_odom.files.drivers import DEFINITIONS
+        from werrimbi_odom.files.driver_messages import DEFINITIONS
 
         self.store = get_typestore(Stores.ROS2_JAZZY)
         self.noetic = get_typestore(Stores.ROS1_NOETIC)

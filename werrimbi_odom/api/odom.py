@@ -29,7 +29,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 from werrimbi_odom.progress import Show, silent
 from werrimbi_odom.report.dead_reckoning_summary import Reckoning, reckoning_of
-from werrimbi_odom.report.odom_summary import document_of, json_of
+from werrimbi_odom.report.odom import document_of, json_of
 
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
 _BLOCK = 32768  # rows formatted at once

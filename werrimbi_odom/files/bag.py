@@ -12,7 +12,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.drivers import Types
+from werrimbi_odom.files.driver_messages import Types
 from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
 
 ROS1 = ".bag"

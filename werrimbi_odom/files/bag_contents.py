@@ -18,7 +18,7 @@ from typing import Any, Literal
 
 from werrimbi_odom.files.bag import Bag, Topic
 from werrimbi_odom.files.derived_references import copies, second_hand
-from werrimbi_odom.files.drivers import DRIVERS
+from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
 from werrimbi_odom.files.own_odometry import (

@@ -30,7 +30,7 @@ from werrimbi_odom.files.bag_contents import (
 from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
 from werrimbi_odom.files.counter_pairs import Pairing
-from werrimbi_odom.files.drivers import DRIVERS
+from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks

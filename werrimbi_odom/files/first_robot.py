@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.drivers import DRIVERS
+from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.wheel_joints import SIDES
 from werrimbi_odom.model.pose import Floats
 

@@ -34,7 +34,7 @@ from werrimbi_odom.ros.compare_inputs import (
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError, Window
 from werrimbi_odom.ros.compare_motion import Motion
 from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
-from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.live_diagnosis import watching_of
 from werrimbi_odom.ros.running import run

@@ -9,7 +9,7 @@ import math
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
-from werrimbi_odom.ros.declaring import table
+from werrimbi_odom.ros.declared_parameters import table
 
 LEAST, MOST = 1e-9, 1e6
 """Range of a standard deviation of the reference: its square must be finite and not zero."""

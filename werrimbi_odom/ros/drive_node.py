@@ -32,7 +32,7 @@ from werrimbi_odom.driving.limits import STILL, Command, OdometryReading
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros import drive_parameters, planar
-from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.running import run

@@ -13,7 +13,7 @@ from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
 from werrimbi_odom.driving.plan import ManoeuvrePlan
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
-from werrimbi_odom.ros.declaring import table
+from werrimbi_odom.ros.declared_parameters import table
 
 FASTEST = 5.0
 """Upper limit of all speeds [m/s], [rad/s]."""

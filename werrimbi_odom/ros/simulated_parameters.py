@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.node_parameter import NodeParameter
-from werrimbi_odom.ros.declaring import table
+from werrimbi_odom.ros.declared_parameters import table
 
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, LiveRobot, TrueRobot
