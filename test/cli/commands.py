@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from test.inference.driven import run_of
+from test.robot_file import BARE
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.model.robot import Robot
@@ -44,15 +45,7 @@ def called(verb: ModuleType, *words: object) -> int:
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
-ROBOT_FILE = """odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: 2000.0
-    left_wheel_noise: 4.0e-4
-    right_wheel_noise: 4.0e-4
-"""
+ROBOT_FILE = f"{BARE}    left_wheel_noise: 4.0e-4\n    right_wheel_noise: 4.0e-4\n"
 
 
 def written(

@@ -97,8 +97,12 @@ CASES = [
 
 
 @cache
-def recorded(odd: Peculiarity | None, brisk: bool) -> Recording:
-    robot = TrueRobot(left_ticks_per_revolution=PER_TURN, right_ticks_per_revolution=PER_TURN)
+def recorded(odd: Peculiarity | None, brisk: bool, *, keeps_zero: bool = False) -> Recording:
+    robot = TrueRobot(
+        left_ticks_per_revolution=PER_TURN,
+        right_ticks_per_revolution=PER_TURN,
+        counters_keep_zero=keeps_zero,
+    )
     manoeuvre = BRISK if brisk else CALM
     return record(robot, manoeuvre, seed=1, hidden=[odd] if odd else [])
 
@@ -144,12 +148,7 @@ def test_the_law_explains_the_engine(
 def test_an_eccentric_wheel_by_geometry(side: str) -> None:
     """The hub's rise and fall pitches the body too, so half a millimetre of position remains."""
     odd = EccentricWheel(side, 1.5e-3, 0.7)  # type: ignore[arg-type]
-    robot = TrueRobot(
-        left_ticks_per_revolution=PER_TURN,
-        right_ticks_per_revolution=PER_TURN,
-        counters_keep_zero=True,
-    )
-    recording = record(robot, BRISK, seed=1, hidden=[odd])
+    recording = recorded(odd, True, keeps_zero=True)
     law: Effect = find(f"eccentric_{side}_wheel")
     before = errors(recording)
     after = errors(recording, law.using(amplitude=1.5e-3, phase=-0.7))
@@ -161,12 +160,7 @@ def test_an_eccentric_wheel_by_geometry(side: str) -> None:
 def test_an_oval_wheel_by_geometry(side: str) -> None:
     """The engine's lies on its broad side at zero, so its largest radius is a quarter turn away."""
     odd = OvalWheel(side, 2e-3)  # type: ignore[arg-type]
-    robot = TrueRobot(
-        left_ticks_per_revolution=PER_TURN,
-        right_ticks_per_revolution=PER_TURN,
-        counters_keep_zero=True,
-    )
-    recording = record(robot, BRISK, seed=1, hidden=[odd])
+    recording = recorded(odd, True, keeps_zero=True)
     law: Effect = find(f"oval_{side}_wheel")
     before = errors(recording)
     after = errors(recording, law.using(amplitude=2e-3, phase=math.pi))
@@ -179,12 +173,7 @@ def test_an_oval_wheel_by_geometry(side: str) -> None:
 def test_a_bump_under_a_soft_tread(side: str, thickness: float) -> None:
     """The engine's has edges as soft as the tread, and covers as much as the law's."""
     odd = TreadBump(side, thickness, math.pi / 3, 0.9)  # type: ignore[arg-type]
-    robot = TrueRobot(
-        left_ticks_per_revolution=PER_TURN,
-        right_ticks_per_revolution=PER_TURN,
-        counters_keep_zero=True,
-    )
-    recording = record(robot, BRISK, seed=1, hidden=[odd])
+    recording = recorded(odd, True, keeps_zero=True)
     law = find(f"{side}_tread_bump").using(height=thickness, place=-0.9)
     before, after = errors(recording), errors(recording, law)
     assert after[1] < before[1] / 50

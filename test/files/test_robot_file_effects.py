@@ -27,14 +27,9 @@ odom_node:
     left_ticks_per_revolution: 2000.0
     right_ticks_per_revolution: 2000.0
 """
-HOLDING = """\
+HOLDING = f"""\
 # my robot
-odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05  # m
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: 2000.0
+{BARE}\
     effects: [eccentric_left_wheel, lateral_slip]  # two of them
     # the bent axle
     eccentric_left_wheel:  # since March

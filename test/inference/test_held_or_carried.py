@@ -139,13 +139,19 @@ def test_a_robot_that_is_held_on_a_line_and_turns_when_let_go_is_found() -> None
     assert found[2] == {"held"}
 
 
+def at_ten_hertz(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Times of a slower reference, and its poses (3, n)."""
+    given = run.reference
+    assert given is not None
+    time = np.arange(given.time[0], given.time[-1], 0.1)
+    columns = (given.x, given.y, np.unwrap(given.yaw))
+    return time, np.stack([np.interp(time, given.time, each) for each in columns])
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -> None:
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
-    assert run.reference is not None
-    columns = (run.reference.x, run.reference.y, np.unwrap(run.reference.yaw))
-    time = np.arange(run.reference.time[0], run.reference.time[-1], 0.1)
-    x, y, yaw = (np.interp(time, run.reference.time, each) for each in columns)
+    time, (x, y, yaw) = at_ten_hertz(run)
     jump = np.where(time > begin - 0.5, 0.4, 0.0)
     jumped = replace(run, reference=Reference(time, x + jump, y - jump, yaw))
     assert span(jumped)[:2] == pytest.approx((begin, end), abs=NEAR)
@@ -155,14 +161,12 @@ def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -
 def test_a_localiser_that_wanders_does_not_make_it_longer(seed: int) -> None:
     """By 8 mm and 4 mrad in half a second; in one of these the robot stands where it is let go."""
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
-    assert run.reference is not None
-    columns = (run.reference.x, run.reference.y, np.unwrap(run.reference.yaw))
-    time = np.arange(run.reference.time[0], run.reference.time[-1], 0.1)
+    time, poses = at_ten_hertz(run)
     wander, random = np.zeros(3), np.random.default_rng([seed, 5])
     seen = []
-    for now in time:
+    for pose in poses.T:
         wander = 0.993 * wander + [3.5e-3, 3.5e-3, 1.8e-3] * random.standard_normal(3)
-        seen.append([np.interp(now, run.reference.time, each) for each in columns] + wander)
+        seen.append(pose + wander)
     found = span(replace(run, reference=Reference(time, *np.array(seen).T)))
     assert found[:2] == pytest.approx((begin, end), abs=NEAR)
 

@@ -13,6 +13,7 @@ import pytest
 import werrimbi_odom as wo
 from test.inference.positions import positions_of_a_point
 from test.model.drives import ROBOT
+from test.robot_file import BARE
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
@@ -20,16 +21,7 @@ from werrimbi_odom.inference.manoeuvres.advice import Told, shorter_leg
 from werrimbi_odom.report.terminal import as_text
 
 BUMPED = replace(ROBOT, effects=(find("right_tread_bump").using(height=2.0e-3, place=0.7),))
-FILE = """\
-odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: 2000.0
-    left_wheel_noise: 0.0004
-    right_wheel_noise: 0.0004
-"""
+FILE = f"{BARE}    left_wheel_noise: 0.0004\n    right_wheel_noise: 0.0004\n"
 
 
 def on_a_circle(seconds: int, seed: int) -> Run:

@@ -13,6 +13,7 @@ import pytest
 from test.model.drives import ROBOT
 from test.model.test_effects_live_and_recorded import assert_alike, drive, estimates
 from werrimbi_odom.effects.contract import check_effect
+from werrimbi_odom.effects.contract.demands import typical
 from werrimbi_odom.effects.shapes import mean_sin, share_inside
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
 from werrimbi_odom.model.motion import WheelTravel
@@ -58,7 +59,7 @@ def test_it_keeps_the_laws(effect: Effect) -> None:
     ids=lambda effects: "+".join(effect.name for effect in effects),
 )
 def test_it_acts_alike_live_and_recorded(effects: tuple[Effect, ...]) -> None:
-    robot = replace(ROBOT, effects=tuple(effect.using(**_typical(effect)) for effect in effects))
+    robot = replace(ROBOT, effects=tuple(effect.using(**typical(effect)) for effect in effects))
     live, recorded = Odometer(robot), trajectory(robot, *drive(), start=Pose())
     assert_alike(estimates(live, drive()), recorded)
     plain = trajectory(ROBOT, *drive())
@@ -79,7 +80,3 @@ def test_a_turn_that_jumps_with_the_heading_is_refused() -> None:
 
     with pytest.raises(AssertionError, match=r"splitting|gently"):
         check_effect(torn)
-
-
-def _typical(effect: Effect) -> dict[str, float]:
-    return {name: item.typical for name, item in effect.parameters.items()}

@@ -16,6 +16,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
+from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.ros.domain import free_domain
@@ -30,13 +31,7 @@ NUMBERS = st.one_of(
         st.sampled_from(["", "e1", "E1", "_"]),
     ),
 )
-START = """\
-odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: """
+START = BARE.removesuffix("2000.0\n")
 
 
 @settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -54,15 +54,20 @@ def test_starts_and_stops_are_no_noise_of_the_lidar() -> None:
     assert 0.7 < found.steps()[1].mean() < 1.5
 
 
+def turning_hard(path: TruePath, time: np.ndarray) -> np.ndarray:
+    """Steps between poses in which the rate of turning changes by more than 3 rad/s^2."""
+    hard = np.abs(np.gradient(np.gradient(path.yaw_rad, path.t_s), path.t_s)) > 3.0
+    begin = time[:-1] - 0.05
+    changing = np.interp(begin + 0.2, path.t_s, np.cumsum(hard))
+    changing -= np.interp(begin, path.t_s, np.cumsum(hard))
+    return changing > 0.0
+
+
 def test_a_brisk_robot_is_as_sure_as_it_says() -> None:
     """Starts of up to 6 rad/s^2 have no course that is smooth for longer than half a second."""
     path = brisk(40.0, seed=4)
     found = matched(path, rooms.around(path.x_m, path.y_m, 4), Lidar(), seed=4)
-    hard = np.abs(np.gradient(np.gradient(path.yaw_rad, path.t_s), path.t_s)) > 3.0
-    begin = found.path.time[:-1] - 0.05
-    changing = np.interp(begin + 0.2, path.t_s, np.cumsum(hard))
-    changing -= np.interp(begin, path.t_s, np.cumsum(hard))
-    assert 0.8 < found.steps()[1][changing > 0.0].mean() < 1.5
+    assert 0.8 < found.steps()[1][turning_hard(path, found.path.time)].mean() < 1.5
     assert 0.8 < found.legs(0.25)[1].mean() < 1.25
 
 
@@ -70,11 +75,7 @@ def test_where_turning_begins_and_ends_a_scan_is_deskewed_by_its_own_course() ->
     """With a parabola through five poses steps erred by more than stated (NEES 1.5 and more)."""
     path = brisk(30.0, seed=5)
     found = matched(path, rooms.around(path.x_m, path.y_m, 5), Lidar(), seed=5)
-    hard = np.abs(np.gradient(np.gradient(path.yaw_rad, path.t_s), path.t_s)) > 3.0
-    begin = found.path.time[:-1] - 0.05
-    changing = np.interp(begin + 0.2, path.t_s, np.cumsum(hard))
-    changing -= np.interp(begin, path.t_s, np.cumsum(hard))
-    assert found.steps()[1][changing > 0.0].mean() < 1.35
+    assert found.steps()[1][turning_hard(path, found.path.time)].mean() < 1.35
 
 
 def test_far_walls_with_cupboards_before_them_do_not_let_the_path_walk() -> None:
