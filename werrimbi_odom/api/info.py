@@ -23,7 +23,6 @@ from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
-from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_poses
 from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
@@ -118,7 +117,7 @@ def _held(
 ) -> tuple[Held, FirstRobot]:
     bag = bag_at(path)
     if bag is None:
-        run = _read(path, source, first, None, None)
+        run = read_run(path, source or robot_file_of(first))
         return _judged(Held(path, None, None, None, {}, run, ""), source, first), first
     held, first = _of_bag(path, bag, source, first, ticks_topic, reference_topic)
     try:
@@ -127,7 +126,8 @@ def _held(
         reference = reference_topic or (held.reference.name if held.reference else "none")
         if source is None:
             first = _with_ticks(path, held.wheels, first)
-        run = _read(path, source, first, held.wheels.name, reference)
+        file, topic = source or robot_file_of(first), held.wheels.name
+        run = read_run(path, file, ticks_topic=topic, reference_topic=reference)
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first
@@ -141,7 +141,8 @@ def _at_fault(
     if held.wheels is None:
         return ""
     try:
-        _read(path, source, first, held.wheels.name, "none")
+        file, topic = source or robot_file_of(first), held.wheels.name
+        read_run(path, file, ticks_topic=topic, reference_topic="none")
     except InputError:
         ours = (held.joints.left, held.joints.right)
         named = None if source is None else tuple(wheel_names(source, side) for side in SIDES)
@@ -198,24 +199,14 @@ def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first
     turn = 2.0 * math.pi
-    run = _read(path, None, replace(first, ticks=turn), wheels.name, "none")
+    run = read_run(
+        path,
+        robot_file_of(replace(first, ticks=turn)),
+        ticks_topic=wheels.name,
+        reference_topic="none",
+    )
     angles = (run.ticks.left, run.ticks.right)
     return with_steps(first, [np.asarray(each, dtype=np.float64) for each in angles])
-
-
-def _read(
-    path: Path,
-    source: RobotFile | None,
-    first: FirstRobot,
-    ticks_topic: str | None,
-    reference_topic: str | None,
-) -> Run:
-    return read_run(
-        path,
-        source or robot_file_of(first),
-        ticks_topic=ticks_topic,
-        reference_topic=reference_topic,
-    )
 
 
 def robot_file_of(first: FirstRobot) -> RobotFile:
