@@ -10,12 +10,14 @@ it must be, what was not named less sure, and the second best model worse than t
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
+from inspect import getsource
 from itertools import pairwise
 from pkgutil import walk_packages
 from typing import cast
@@ -43,6 +45,9 @@ SCATTERED = tuple(
 JUDGING = tuple(f"werrimbi_odom.inference.{name}." for name in ("diagnosis", "fitting", "legs"))
 """Where a diagnosis of drives that are set up rightly reads them; others change none of it."""
 
+_READ = re.compile(r"\brules\.([A-Z_\d]+)\b")
+"""How they read a number; code from before imported it."""
+
 FACTORS = (0.7, 1.4)
 
 GROUPS = ("effect", "clean", "pair", "outsider", "rivals", "other", "poorer")
@@ -66,7 +71,7 @@ def judging() -> dict[str, float]:
         name
         for key, module in sys.modules.items()
         if key.startswith(JUDGING)
-        for name in vars(module)
+        for name in (*vars(module), *_READ.findall(getsource(module)))
     }
     return {name: value for name, value in constants().items() if name in held}
 

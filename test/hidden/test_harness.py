@@ -401,6 +401,7 @@ def test_every_deciding_number_can_be_perturbed_and_comes_back() -> None:
 def test_only_what_a_diagnosis_reads_is_made_larger_and_smaller() -> None:
     read = margins.judging()
     assert {"SURE", "RIVAL", "LAW_SHARE", "LASTING_PARTS", "JUMP_OF_A_LEG"} <= read.keys()
+    assert {"PENALTY_FLOOR", "SCORE_FLOOR", "REFITTED"} <= read.keys(), "read as rules.NAME"
     assert not {"HONEST_WITHIN", "LEAST_SQUARES", "MOST_DRAFTED", "LONGEST_DRIVE"} & read.keys()
     assert read.keys() < margins.constants().keys()
 
