@@ -49,11 +49,8 @@ class Driver:
 
     Parameters
     ----------
-    plan : ManoeuvrePlan
-    limits : Limits
     area : Area
         Allowed area, in the frame of the first start pose.
-    watch : Watch
     """
 
     def __init__(self, plan: ManoeuvrePlan, limits: Limits, area: Area, watch: Watch) -> None:

@@ -29,11 +29,6 @@ class PathFollower:
 
     Moves are laid out from the start of the plan, so an error of one move is corrected in the next.
     At its end a move creeps on but never back: a reversal would excite effects of its own.
-
-    Parameters
-    ----------
-    plan : ManoeuvrePlan
-    limits : Limits
     """
 
     def __init__(self, plan: ManoeuvrePlan, limits: Limits) -> None:

@@ -62,7 +62,6 @@ class ManoeuvrePlan:
     ----------
     name, words : str
         Name and description.
-    moves : tuple of Move
     """
 
     name: str

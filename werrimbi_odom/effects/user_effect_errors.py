@@ -23,7 +23,6 @@ def guarded(effect: Effect, place: str) -> Effect:
 
     Parameters
     ----------
-    effect : Effect
     place : str
         Its origin: a file, or a package.
     """

@@ -52,8 +52,6 @@ def spread(
 
     Parameters
     ----------
-    tasks : sequence
-    jobs : int
     work : callable
         Function of a module, called in another process.
     lost : callable

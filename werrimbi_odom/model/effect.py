@@ -60,7 +60,6 @@ class Effect:
 
     Parameters
     ----------
-    name : str
     stage : "wiring", "wheels", "body" or "reference"
         Where it acts.
     parameters : mapping of str to Parameter

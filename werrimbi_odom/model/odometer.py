@@ -102,7 +102,6 @@ class Odometer:
 
     Parameters
     ----------
-    robot : Robot
     tolerance : PieceTolerance
         When a piece ends.
     limits : EncoderLimits

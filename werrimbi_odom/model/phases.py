@@ -78,7 +78,6 @@ class Turning:
 
     Parameters
     ----------
-    robot : Robot
     effects : sequence of AppliedEffect
         `learnable` effects of the robot.
     """

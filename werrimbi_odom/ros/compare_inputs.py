@@ -77,7 +77,6 @@ def reference_reader(
 
     Parameters
     ----------
-    kind : str
     usual : PoseCovariance
         Covariance for messages without one of their own (a variance is not positive).
 

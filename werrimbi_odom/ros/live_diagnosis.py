@@ -66,7 +66,6 @@ class Watching(NoWatching):
 
     Parameters
     ----------
-    node : Node
     values : mapping
         Parameters of compare_node.
     kind : type

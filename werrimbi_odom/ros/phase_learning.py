@@ -57,7 +57,6 @@ class Learning(NoLearning):
 
     Parameters
     ----------
-    wiring : InputOptions
     robot : Robot
         With effects whose phase is unknown.
     topic, kind : str

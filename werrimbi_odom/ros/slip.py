@@ -41,8 +41,6 @@ class Slip(NoSlip):
 
     Parameters
     ----------
-    wiring : InputOptions
-    robot : Robot
     topic : str
         Topic of sensor_msgs/Imu.
     """

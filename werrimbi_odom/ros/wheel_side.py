@@ -26,7 +26,6 @@ class WheelSide:
     ----------
     counts_per_unit : float
         Counts per unit of position.
-    counts_per_revolution : float
     bits : int
         Width at which the counters wrap, to be unwrapped here; 0: they do not wrap, or the model's
         encoder unwraps them.

@@ -272,10 +272,8 @@ def drive(
 
     Parameters
     ----------
-    chassis : Chassis
     wheel_speeds : ndarray, shape (n, 2)
         Commanded mean speeds of the left and right motor in each PERIOD [rad/s].
-    start : AxlePose
     angles : (left, right)
         Angles of the encoder shafts at the start [rad].
     shifters : sequence of Shifter

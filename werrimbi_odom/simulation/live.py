@@ -38,10 +38,8 @@ class LiveRobot:
 
     Parameters
     ----------
-    robot : TrueRobot
     seed : int
         Seed of all random numbers, as in `record`.
-    reference : ReferenceSensor, optional
     start : AxlePose
         Start pose in the world.
     hidden : sequence of Peculiarity

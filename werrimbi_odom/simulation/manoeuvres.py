@@ -90,10 +90,8 @@ def moves(
 
     Parameters
     ----------
-    name : str
     steps : sequence of (length, turn)
         Signed length [m] and turn [rad] of each move; both together make an arc.
-    pace : MoveLimits, optional
     """
     pace = pace or MoveLimits()
     knots: list[Knot] = [(0.0, 0.0, 0.0)]

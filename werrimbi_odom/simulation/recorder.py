@@ -59,8 +59,6 @@ def record(
 
     Parameters
     ----------
-    robot : TrueRobot
-    manoeuvre : Manoeuvre
     seed : int
         Seed of all random numbers of this run: noises, start pose, wheel angles, counters, sampling
         times. Each has its own stream, so that switching one off does not change the others.

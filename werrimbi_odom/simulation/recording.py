@@ -75,11 +75,6 @@ class Recording:
 def write_run(recording: Recording, folder: str | Path) -> Path:
     """Write `recording` as a run folder without the truth; parent folders are created.
 
-    Parameters
-    ----------
-    recording : Recording
-    folder : path
-
     Returns
     -------
     Path

@@ -38,7 +38,6 @@ def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
 
     Parameters
     ----------
-    robot : TrueRobot
     path : path
         YAML file to write; its folder must exist.
 

@@ -83,7 +83,6 @@ def session(
 
     Parameters
     ----------
-    robot : TrueRobot
     seed : int
         Seed of the session; the seeds of the runs follow from it.
     hidden : sequence of Peculiarity
