@@ -98,10 +98,6 @@ def add_effects(
     show : Show
         Callback for progress.
 
-    Returns
-    -------
-    Added
-
     Raises
     ------
     InputError

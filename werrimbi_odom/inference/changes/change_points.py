@@ -75,10 +75,6 @@ def find_changes(
         Shapes of changes to try.
     most : int
         Largest number of changes.
-
-    Returns
-    -------
-    ChangePoints
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)

@@ -92,10 +92,6 @@ def diagnose(
     show : Show
         Callback for progress.
 
-    Returns
-    -------
-    Diagnosis
-
     Raises
     ------
     InputError

@@ -122,10 +122,6 @@ def begin(
     given : Robot, optional
         Robot by whose travel legs are cut, where that is not `robot`.
 
-    Returns
-    -------
-    Begun
-
     Raises
     ------
     InputError

@@ -76,10 +76,6 @@ class OfTwo:
 def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
     """Draft the effect that explains the strongest dependence.
 
-    Returns
-    -------
-    Draft
-
     Raises
     ------
     InputError

@@ -54,10 +54,6 @@ def selections(
         Penalty of a term.
     may_join : callable
         Whether a term may join a set of selected terms.
-
-    Returns
-    -------
-    list of Selected
     """
     alone = cross**2 / np.diag(square)
     found: dict[tuple[int, ...], Selected] = {}

@@ -59,10 +59,6 @@ def best_draft(
     tried_out : callable
         Adds a draft to the model and returns the change of the errors.
 
-    Returns
-    -------
-    (Draft, Added)
-
     Raises
     ------
     InputError

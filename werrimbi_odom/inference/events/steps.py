@@ -115,10 +115,6 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
         Runs with a leg from each pose to the next.
     point : Point
         The model with its noise.
-
-    Returns
-    -------
-    Steps
     """
     model = point.model
     prediction = predict_all(model, runs)
