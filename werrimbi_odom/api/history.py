@@ -34,7 +34,7 @@ from werrimbi_odom.inference.changes.history import (
     course_of,
     estimate_of_drive,
 )
-from werrimbi_odom.inference.changes.parameter_history import Dated, History, Unusable, in_order
+from werrimbi_odom.inference.changes.dated_drives import Dated, History, Unusable, in_order
 from werrimbi_odom.inference.rules import DATED
 from werrimbi_odom.progress import Show, silent
 

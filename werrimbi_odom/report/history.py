@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.inference.changes.dated_drives import Dated, History
 from werrimbi_odom.inference.changes.history import Number
-from werrimbi_odom.inference.changes.parameter_history import Dated, History
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import history_words as words
 from werrimbi_odom.report import style

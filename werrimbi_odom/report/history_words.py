@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 
 from werrimbi_odom.inference.changes.between_drives import Moved
+from werrimbi_odom.inference.changes.dated_drives import Dated, History
 from werrimbi_odom.inference.changes.history import Number
-from werrimbi_odom.inference.changes.parameter_history import Dated, History
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.report.changes import changes_words, in_small_unit
 from werrimbi_odom.report.document import Paragraph, Table, paragraphs

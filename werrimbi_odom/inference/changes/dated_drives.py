@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The history of a robot: its drives with their dates, and the course of its parameters."""
+"""Drives with their dates, and the history that they make: the course of a robot's parameters."""
 
 from __future__ import annotations
 
