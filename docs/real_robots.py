@@ -18,6 +18,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate
 from werrimbi_odom.inference.calibration.recorded_square import (
     SquareRecording,
@@ -29,7 +30,6 @@ from werrimbi_odom.inference.comparison.leg_errors import LegErrors, errors_of, 
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match
-from werrimbi_odom.inference.rules import PARTS_OF_A_LEG, QUARTER_TURN
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -99,8 +99,8 @@ def fitted(case: Case) -> Calibration:
         match(
             read_run(path, robot_file),
             robot_file.robot,
-            case.leg / PARTS_OF_A_LEG,
-            turn=QUARTER_TURN / PARTS_OF_A_LEG,
+            case.leg / rules.PARTS_OF_A_LEG,
+            turn=rules.QUARTER_TURN / rules.PARTS_OF_A_LEG,
         )
         for path in paths
     ]
@@ -187,7 +187,7 @@ def labyrinth() -> str:
     run = read_run(ROBOTS / "labyrinth" / "drive", robot_file)
     begin, end = float(run.ticks.time[0]), float(run.ticks.time[-1])
     cut = begin + 20.0
-    train = match(part_of(run, begin, cut), robot_file.robot, 0.25, turn=0.25 * QUARTER_TURN)
+    train = match(part_of(run, begin, cut), robot_file.robot, 0.25, turn=0.25 * rules.QUARTER_TURN)
     result = calibrate([train], robot_file.robot)
     rest = part_of(run, cut, end)
     before, after = (whole_error(robot, rest) for robot in (robot_file.robot, result.robot))

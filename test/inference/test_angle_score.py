@@ -14,6 +14,7 @@ from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
@@ -27,7 +28,6 @@ from werrimbi_odom.inference.fitting.run_phases import fitted_per_run
 from werrimbi_odom.inference.fitting.score_tests import Candidate, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
-from werrimbi_odom.inference.rules import LITTLE_OF_A_LAW, SURE
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.terminal import as_text
@@ -161,7 +161,7 @@ def test_it_is_named_and_lasts() -> None:
     assert (told.verdict, told.found) == ("named", ("reference_gyro_drift",))
     laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
     best = search_round(laid, fit_calibration(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
-    assert homogeneity_of_effect(laid, best.tried[0], "reference_gyro_drift") < SURE
+    assert homogeneity_of_effect(laid, best.tried[0], "reference_gyro_drift") < rules.SURE
 
 
 def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> None:
@@ -178,7 +178,7 @@ def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> N
     assert told.misfit is not None
     assert told.misfit.effect == "reference_gyro_drift"
     assert told.misfit.share is not None
-    assert told.misfit.share < LITTLE_OF_A_LAW
+    assert told.misfit.share < rules.LITTLE_OF_A_LAW
 
 
 def test_matched_scans_have_neither_a_gyro_nor_headings_that_come_later() -> None:

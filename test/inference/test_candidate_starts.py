@@ -14,6 +14,7 @@ from test.inference.positions import FRAME, positions_of_a_point
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
@@ -23,7 +24,6 @@ from werrimbi_odom.inference.fitting.free_parameters import START_YAW, changed
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, turns_over
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.rules import MOST_STAMP_NOISE
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
@@ -143,7 +143,7 @@ def test_jitter_of_the_stamps_does_not_stand_in_for_a_delay() -> None:
     gyro = replace(drive, reference=replace(seen, x=nowhere, y=nowhere, yaw=yaw))
     runs = concatenated(match_for_fit([gyro], ROBOT, 0.25))
     before = fit_calibration(runs, ROBOT, EvaluationOptions(reference_kind="incremental"))
-    assert before.point.variances.stamp[0] ** 0.5 > MOST_STAMP_NOISE
+    assert before.point.variances.stamp[0] ** 0.5 > rules.MOST_STAMP_NOISE
     best = search_round(runs, before, LIBRARY, ROBOT).tried[0]
     assert best.names == ("reference_delay",)
     (delay,) = best.point.model.robot.effects[-1].values.values()

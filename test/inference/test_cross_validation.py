@@ -13,8 +13,8 @@ from scipy.linalg import block_diag
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.cross_validation import (
-    FOLDS,
     cross_validated_cost,
     fold_of_leg,
     holds_when_cross_validated,
@@ -42,7 +42,7 @@ def test_every_fold_holds_some_of_every_drive() -> None:
     runs = laid_out(GIVEN, range(1, 4))
     fold = fold_of_leg(runs)
     for run in range(3):
-        assert set(fold[runs.run_of_leg == run].tolist()) == set(range(FOLDS))
+        assert set(fold[runs.run_of_leg == run].tolist()) == set(range(rules.FOLDS))
 
 
 def test_an_effect_that_is_there_holds() -> None:
@@ -78,7 +78,7 @@ def test_leaving_a_fold_out_is_what_refitting_without_it_gives() -> None:
     white, slopes = fit.design.flat()
     rows = np.repeat(fold_of_leg(runs), 3)
     brute = fit.cost
-    for fold in range(FOLDS):
+    for fold in range(rules.FOLDS):
         here = rows == fold
         step = np.linalg.pinv(slopes[~here]) @ -white[~here]
         left = white[here] + slopes[here] @ step

@@ -14,6 +14,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import chi2_survival, noncentrality
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -21,7 +22,6 @@ from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.detection_limits import _calibrated, _limits, _typical
 from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment, sensitivities_of
-from werrimbi_odom.inference.rules import POWER, SURE
 from werrimbi_odom.model.pose import Floats
 
 TRIED = 60
@@ -37,7 +37,7 @@ def limits(
     names: tuple[str, ...],
     runs: list[Run],
     options: EvaluationOptions = NOISE,
-    power: float = POWER,
+    power: float = rules.POWER,
 ) -> dict[str, dict[str, float]]:
     """Distance from null of each parameter, beside calibration and per-run parameters alone."""
     candidates = [_typical(find(name)) for name in names]
@@ -92,7 +92,7 @@ def test_at_the_limit_95_in_100_are_found(name: str, parameter: str, runs: list[
         return np.asarray(np.sum((shown - basis @ (basis.T @ shown)) ** 2, axis=0))
 
     gains = cost(nuisance) - cost(np.concatenate([nuisance, wanted], axis=-1))
-    found = [chi2_survival(gain, wanted.shape[1]) < SURE / TRIED for gain in gains]
+    found = [chi2_survival(gain, wanted.shape[1]) < rules.SURE / TRIED for gain in gains]
     assert np.mean(found) == pytest.approx(0.95, abs=0.012)
 
 
@@ -104,7 +104,7 @@ def test_a_phase_of_each_run_costs_two_numbers_a_run(runs: list[Run]) -> None:
         [drives.nuisances(()), *(columns(drives, each) for each in CALIBRATED)], axis=-1
     )
     basis = np.linalg.svd(nuisance / np.linalg.norm(nuisance, axis=0), full_matrices=False)[0]
-    wanted = noncentrality(4, SURE / TRIED, 0.95)
+    wanted = noncentrality(4, rules.SURE / TRIED, 0.95)
     shown = []
     for phase in (0.0, 0.5 * np.pi):
         signal = change(drives, "eccentric_left_wheel", amplitude=amplitude, phase=phase)

@@ -14,6 +14,7 @@ from test.inference.driven import run_by
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
@@ -22,7 +23,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.rules import NOISE_NUMBERS, VERY_SURE
 
 GYRO = EvaluationOptions(reference_kind="incremental")
 
@@ -37,14 +37,14 @@ def likeliest_by_chance(seed: int) -> float:
     nowhere = np.full(seen.time.size, np.nan)
     turned = replace(seen, x=nowhere, y=nowhere, yaw=seen.yaw + wandering)
     runs = concatenated(match_for_fit([replace(spin, reference=turned)], ROBOT, 1.0))
-    assert 8 <= runs.data < NOISE_NUMBERS
+    assert 8 <= runs.data < rules.NOISE_NUMBERS
     point = fit_model(runs, start_point(runs, ROBOT, GYRO), CALIBRATION).point
     return dependences(runs, point, CALIBRATION)[0].p_value
 
 
 def test_noise_larger_than_assumed_is_no_dependence() -> None:
     found = [likeliest_by_chance(seed) for seed in range(6)]
-    assert min(found) > VERY_SURE, found
+    assert min(found) > rules.VERY_SURE, found
 
 
 def test_a_size_is_as_sure_as_few_data_know_their_noise() -> None:
@@ -67,6 +67,6 @@ def test_what_was_not_fitted_is_no_surer_than_what_was() -> None:
     turned = replace(seen, x=nowhere, y=nowhere, yaw=seen.yaw + wandering)
     options = replace(GYRO, leg=0.25)
     found = diagnose([replace(spin, reference=turned)], ROBOT, LIBRARY, options)
-    assert found.runs.data < NOISE_NUMBERS
+    assert found.runs.data < rules.NOISE_NUMBERS
     assert found.verdict in ("none", "unknown")
-    assert min(item.p_value for item in found.ranking if item.p_value is not None) > VERY_SURE
+    assert min(item.p_value for item in found.ranking if item.p_value is not None) > rules.VERY_SURE

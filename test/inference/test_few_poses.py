@@ -19,6 +19,7 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
@@ -27,7 +28,6 @@ from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import SET_ASIDE_ROWS, SURE
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.as_json import json_of as json_of_added
@@ -57,7 +57,7 @@ def test_of_few_data_the_noise_itself_is_hardly_known(seed: int) -> None:
     this = search_round(laid, before, LIBRARY, robot.entered(0.05))
     within = [fit for fit in this.tried if not fit.at_bound]
     assert within
-    assert min(chance(fit, before, this.number) for fit in within) > SURE
+    assert min(chance(fit, before, this.number) for fit in within) > rules.SURE
 
 
 def by_tape(run: Run) -> Run:
@@ -198,4 +198,4 @@ def test_of_a_drive_seen_only_at_its_end_the_last_poses_are_put_aside() -> None:
     parts = set_aside([replace(run, reference=seen)])
     poses = [each.reference.time.size for part in parts for each in part if each.reference]
     assert min(poses) > 0.2 * sum(poses)
-    assert sum(poses) == seen.time.size < SET_ASIDE_ROWS
+    assert sum(poses) == seen.time.size < rules.SET_ASIDE_ROWS

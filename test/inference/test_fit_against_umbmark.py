@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, square
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.recorded_square import (
     SquareRecording,
     recorded_square,
@@ -16,7 +17,6 @@ from werrimbi_odom.inference.calibration.recorded_square import (
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.legs.cutting import match
-from werrimbi_odom.inference.rules import QUARTER_TURN
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
@@ -40,7 +40,7 @@ def both(seed: int) -> tuple[np.ndarray, np.ndarray]:
         )
         records.append(recorded_square(record, NOMINAL, SIDE))
     old = corrected(NOMINAL, umbmark(squares_of(records, SIDE), NOMINAL).factors)
-    matched = [match(run, NOMINAL, 0.25, turn=0.25 * QUARTER_TURN) for run in runs]
+    matched = [match(run, NOMINAL, 0.25, turn=0.25 * rules.QUARTER_TURN) for run in runs]
     new = fit_model(matched, start_point(matched, NOMINAL)).robot
     return tuple(  # type: ignore[return-value]
         np.array(

@@ -14,10 +14,10 @@ from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
-from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -47,7 +47,7 @@ def by_gyro(speed: np.ndarray, turning: np.ndarray, base: float, bias: float, se
 @pytest.mark.parametrize("base", [1.0, 1.1])
 def test_a_few_legs_err_by_what_the_robot_errs(base: float) -> None:
     legs = compare([short_drive(base)], ROBOT, INCREMENTAL).main.all
-    assert legs.figures.count < DRIFT_LEGS
+    assert legs.figures.count < rules.DRIFT_LEGS
     turned = 0.5 * 6.3 * (1.0 - 1.0 / base) / legs.figures.count
     assert legs.figures.rmse_yaw_rad == pytest.approx(turned, abs=0.01)
 

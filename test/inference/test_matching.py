@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, match
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
-from werrimbi_odom.inference.rules import RATE_OF_FIT
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
@@ -84,7 +84,7 @@ def test_a_fit_takes_fast_messages_together_and_its_legs_stay(hertz: float, toge
     found = cut_for_fit(record, ROBOT, 1.0)
     every = divided(record, found.rows)
     assert np.median(np.diff(found.time)) == pytest.approx(together / hertz)
-    assert together * RATE_OF_FIT <= max(hertz, RATE_OF_FIT)
+    assert together * rules.RATE_OF_FIT <= max(hertz, rules.RATE_OF_FIT)
     assert found.time.size < every.time.size / together + found.ends.size + 2
     assert np.array_equal(found.time[found.ends], every.time[every.ends])
     assert travelled(found) == pytest.approx(travelled(every), abs=1e-6)

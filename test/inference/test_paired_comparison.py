@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from test.inference.driven import run_of
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.model.robot import Robot
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
@@ -40,7 +40,7 @@ def test_two_models_that_err_alike_differ_beyond_chance_as_seldom_as_the_rule_sa
         common = RANDOM.normal(0.0, 1e-2, legs.errors.error.shape)
         one, other = (common + RANDOM.normal(0.0, 1e-3, common.shape) for _ in range(2))
         rose += sides_of(erring(legs, one), erring(legs, other), "m").rose
-    assert SURE_WHEN_ASKED / 5 < rose / count < 2.5 * SURE_WHEN_ASKED
+    assert rules.SURE_WHEN_ASKED / 5 < rose / count < 2.5 * rules.SURE_WHEN_ASKED
 
 
 def test_a_rise_that_two_totals_hide_is_seen_leg_by_leg(legs: Legs) -> None:

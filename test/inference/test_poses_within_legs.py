@@ -13,10 +13,9 @@ from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import add_effects
-from werrimbi_odom.inference.comparison import poses_within_legs as module
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, prepare
-from werrimbi_odom.inference.rules import LEGS_OF_A_FIT, PARTS_OF_A_LEG
 
 ROBOT = WhiteNoiseRobot(left_noise=4e-4, right_noise=5e-4)
 
@@ -50,24 +49,24 @@ def with_slow_error(run: Run, seconds: float, sigma: float) -> Run:
 def test_short_drives_with_independent_poses_are_fitted_by_each_pose() -> None:
     given = prepared(drives())
     poses = sum(run.reference.time.size for run in given.runs if run.reference)
-    assert given.parts > 5 * PARTS_OF_A_LEG
-    assert 0.5 * poses < finely(given).begin.size <= LEGS_OF_A_FIT
+    assert given.parts > 5 * rules.PARTS_OF_A_LEG
+    assert 0.5 * poses < finely(given).begin.size <= rules.LEGS_OF_A_FIT
 
 
 @pytest.mark.parametrize("lasting_s", [0.3, 1.0])
 def test_an_error_that_lasts_longer_than_a_pose_is_not_averaged_away(lasting_s: float) -> None:
     slow = [with_slow_error(run, lasting_s, 2e-3) for run in drives()]
-    assert prepared(slow).parts == PARTS_OF_A_LEG
+    assert prepared(slow).parts == rules.PARTS_OF_A_LEG
 
 
 def test_many_drives_are_fitted_by_longer_legs() -> None:
     parts = [prepared(drives(60.0, count)).parts for count in (2, 8)]
-    assert parts[0] > parts[1] > PARTS_OF_A_LEG
+    assert parts[0] > parts[1] > rules.PARTS_OF_A_LEG
 
 
 @pytest.mark.parametrize("kind", ["incremental", "local_map"])
 def test_a_reference_whose_error_goes_on_keeps_the_usual_legs(kind: str) -> None:
-    assert prepared(drives(30.0, 2), reference_kind=kind).parts == PARTS_OF_A_LEG
+    assert prepared(drives(30.0, 2), reference_kind=kind).parts == rules.PARTS_OF_A_LEG
 
 
 def test_each_pose_tells_where_the_marker_points(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,8 +78,8 @@ def test_each_pose_tells_where_the_marker_points(monkeypatch: pytest.MonkeyPatch
         if run.reference is not None
     ]
     found = {}
-    for most in (LEGS_OF_A_FIT, 0):
-        monkeypatch.setattr(module, "LEGS_OF_A_FIT", most)
+    for most in (rules.LEGS_OF_A_FIT, 0):
+        monkeypatch.setattr(rules, "LEGS_OF_A_FIT", most)
         mount = [find("reference_yaw_offset")]
         added = add_effects(mount, turned[:3], ROBOT.entered(), holdout=turned[3:])
         found[most] = added.parameters["angle"]

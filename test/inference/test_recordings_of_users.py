@@ -16,6 +16,7 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.lookup import load_file
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -29,7 +30,6 @@ from werrimbi_odom.inference.drafting.draft import draft_effect
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.rules import DRIFT_LEGS, SURE
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.comparison.words import words_of
@@ -95,7 +95,7 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     )
     found = diagnose([run], off, LIBRARY, holdout=[run])
     chances = [each.p_value for each in found.ranking if each.effect in found.found]
-    assert all(each is not None and each < SURE for each in chances)
+    assert all(each is not None and each < rules.SURE for each in chances)
     assert found.found == (() if away < 3.0 else ("track_width",))
 
 
@@ -137,10 +137,10 @@ def test_a_drift_of_a_gyro_is_not_learnt_from_one_leg() -> None:
     assert run.reference is not None
     rows = np.flatnonzero(run.reference.time < run.reference.time[0] + 2.5)
     short = replace(run, reference=run.reference.chosen(rows))
-    for some, fewest in ((short, 1), (run, DRIFT_LEGS)):
+    for some, fewest in ((short, 1), (run, rules.DRIFT_LEGS)):
         legs = compare([some], ROBOT, EvaluationOptions(leg=0.5)).legs
         assert legs.run.size >= fewest
-        assert (legs.run.size < DRIFT_LEGS) == (some is short)
+        assert (legs.run.size < rules.DRIFT_LEGS) == (some is short)
         assert statistics(legs.errors).rmse_yaw_rad > 0.05
 
 

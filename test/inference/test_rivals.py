@@ -12,13 +12,13 @@ import pytest
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import Round, fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import halves, rivals_in_halves, rivals_of
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.robot import Robot
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
@@ -47,23 +47,23 @@ def of_sizes(needed: tuple[str, ...], dearer: float, **what: object) -> tuple[st
 
 @pytest.mark.parametrize("needed", [(), ("wheel_radius_scale",)])
 def test_an_effect_beside_which_the_size_is_needless_is_its_rival(needed: tuple[str, ...]) -> None:
-    assert of_sizes(needed, 0.5 * RIVAL) == ("unequal_wheel_radii", "lateral_slip")
+    assert of_sizes(needed, 0.5 * rules.RIVAL) == ("unequal_wheel_radii", "lateral_slip")
 
 
 def test_one_that_needs_the_size_as_well_is_none() -> None:
-    assert of_sizes(("unequal_wheel_radii",), 0.5 * RIVAL) == ()
+    assert of_sizes(("unequal_wheel_radii",), 0.5 * rules.RIVAL) == ()
 
 
 def test_nor_one_that_needs_another_size_in_its_place() -> None:
-    assert of_sizes(("track_width", "wheel_radius_scale"), 0.5 * RIVAL) == ()
+    assert of_sizes(("track_width", "wheel_radius_scale"), 0.5 * rules.RIVAL) == ()
 
 
 def test_nor_one_that_costs_more_than_chance_makes() -> None:
-    assert of_sizes((), 1.5 * RIVAL) == ()
+    assert of_sizes((), 1.5 * rules.RIVAL) == ()
 
 
 def test_nor_one_that_ran_against_what_physics_allows() -> None:
-    assert of_sizes((), 0.5 * RIVAL, at_bound=("lateral_slip.creep",)) == ()
+    assert of_sizes((), 0.5 * rules.RIVAL, at_bound=("lateral_slip.creep",)) == ()
 
 
 def having(name: str, **values: float) -> Robot:

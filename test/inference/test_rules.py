@@ -190,6 +190,16 @@ def of_rules() -> dict[str, tuple[str, ast.stmt | None]]:
     return found
 
 
+def test_rules_are_read_in_one_way() -> None:
+    """As rules.NAME, so that one sees where a number that decides is from."""
+    wrong = [
+        path.relative_to(PACKAGE).as_posix()
+        for path in PACKAGE.rglob("*.py")
+        if f"from {rules.__name__} import" in path.read_text("utf-8")
+    ]
+    assert not wrong
+
+
 def test_no_other_module_names_a_number() -> None:
     found = {
         (module, name)
@@ -275,26 +285,19 @@ def test_what_decides_on_the_robot_has_its_reason_where_it_stands(file: str) -> 
 
 
 def used() -> set[str]:
-    """Rules that some module reads (imported, or as rules.NAME), or that another is made of."""
+    """Rules that some module reads as rules.NAME, or that another rule is made of."""
     found = set()
     for path in PACKAGE.rglob("*.py"):
-        tree = ast.parse(path.read_text("utf-8"))
-        own = {each for each, _, _ in assigned(tree.body)} if path.parent == RULES else set()
-        imported = {
-            each.asname or each.name: each.name
-            for part in tree.body
-            if isinstance(part, ast.ImportFrom) and part.module == rules.__name__
-            for each in part.names
-        } | {name: name for name in own}
-        read = {
-            part.id
-            for part in ast.walk(tree)
-            if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load)
-        }
-        found |= {imported[name] for name in read & set(imported)}
+        parts = list(ast.walk(ast.parse(path.read_text("utf-8"))))
+        if path.parent == RULES:
+            found |= {
+                part.id
+                for part in parts
+                if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load)
+            }
         found |= {
             part.attr
-            for part in ast.walk(tree)
+            for part in parts
             if isinstance(part, ast.Attribute) and getattr(part.value, "id", "") == "rules"
         }
     return found

@@ -18,6 +18,7 @@ from scipy import stats
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
@@ -29,7 +30,6 @@ from werrimbi_odom.inference.comparison.consistency import (
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.document import document_of
 from werrimbi_odom.report.comparison.phrases import covariance_words
@@ -108,7 +108,7 @@ def test_sentences_are_true_to_their_table(seed: int) -> None:
     main = lengths[min(2, len(lengths) - 1)].nees
     (text,) = covariance_words(judged, main)
     rows = said_of(text, lengths, main)
-    enough = [item for item in lengths if item.count >= FEWEST_LEGS]
+    enough = [item for item in lengths if item.count >= rules.FEWEST_LEGS]
     says = {item.says for item in enough}
     if "honest" in text and "in straight driving" not in text:
         assert says == {"honest"}
@@ -138,10 +138,10 @@ def test_one_rule_for_few_legs_and_many() -> None:
     """Chance rules while legs are few, what matters to a user when they are many."""
     for freedom in (15, 60, 300, 3000, 300_000):
         low, high = honest_bounds(freedom)
-        tail = 0.5 * (1.0 - HONEST_CHANCE)
+        tail = 0.5 * (1.0 - rules.HONEST_CHANCE)
         exact = stats.chi2.ppf([tail, 1.0 - tail], freedom) / freedom
-        assert low == pytest.approx(min(exact[0], 1.0 / HONEST_WITHIN), rel=0.09)
-        assert high == pytest.approx(max(exact[1], HONEST_WITHIN), rel=0.02)
+        assert low == pytest.approx(min(exact[0], 1.0 / rules.HONEST_WITHIN), rel=0.09)
+        assert high == pytest.approx(max(exact[1], rules.HONEST_WITHIN), rel=0.02)
         assert consistency(1.0, freedom) == "honest"
         assert consistency(1.01 * high, freedom) == "too small"
         assert consistency(0.99 * low, freedom) == "too large"
@@ -152,7 +152,7 @@ def test_a_covariance_is_honest_only_where_it_is_so_at_every_length() -> None:
     good = [AtLength(1.0, 1000, 1.02, 3000), AtLength(4.0, 500, 1.41, 1500)]
     assert of_all(good) == "honest"
     assert of_all([*good, AtLength(16.0, 100, 28.8, 300)]) == "too small"
-    assert of_all([*good, AtLength(16.0, FEWEST_LEGS - 1, 28.8, 27)]) == "honest"
+    assert of_all([*good, AtLength(16.0, rules.FEWEST_LEGS - 1, 28.8, 27)]) == "honest"
     assert of_all([]) == "unknown"
 
 

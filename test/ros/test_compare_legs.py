@@ -14,9 +14,8 @@ from scipy import stats
 pytest.importorskip("rclpy")
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.consistency import chi_squared_quantile
-from werrimbi_odom.inference.rules import HONEST_CHANCE as ALARM
-from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
@@ -145,7 +144,7 @@ def test_a_dishonest_covariance_is_said_and_which_way(noise: float, said: str) -
 
 
 def test_a_perfect_reference_with_the_usual_sigmas_is_said_to_be_a_reason() -> None:
-    xy, yaw = TAPE_XY**2, TAPE_YAW**2
+    xy, yaw = rules.TAPE_XY**2, rules.TAPE_YAW**2
     window = Window(60)
     for leg in legs_of(1, sigmas=(1e-9, 1e-9), stated=PoseCovariance(xy, 0.0, 0.0, xy, 0.0, yaw)):
         window.take(leg.deviation, leg.grows)
@@ -220,7 +219,7 @@ def test_the_bounds_are_those_of_chi_squared(freedom: int) -> None:
         exact = stats.chi2.ppf(p, freedom)
         assert chi_squared_quantile(p, freedom) == pytest.approx(exact, rel=0.005)
     # Where it is off, far out with few legs, it is slower to raise an alarm.
-    low, high = 0.5 - ALARM / 2, 0.5 + ALARM / 2
+    low, high = 0.5 - rules.HONEST_CHANCE / 2, 0.5 + rules.HONEST_CHANCE / 2
     assert 0.92 < chi_squared_quantile(low, freedom) / stats.chi2.ppf(low, freedom) < 1.0
     assert 1.0 < chi_squared_quantile(high, freedom) / stats.chi2.ppf(high, freedom) < 1.01
 

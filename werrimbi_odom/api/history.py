@@ -28,14 +28,14 @@ from werrimbi_odom.files.recordings import DriveOptions, gathered, refuse_twice
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.changes.dated_drives import Dated, History, Unusable, in_order
 from werrimbi_odom.inference.changes.history import (
     Course,
     DriveEstimate,
     course_of,
     estimate_of_drive,
 )
-from werrimbi_odom.inference.changes.dated_drives import Dated, History, Unusable, in_order
-from werrimbi_odom.inference.rules import DATED
 from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def _each(tasks: Sequence[DriveTask]) -> Iterable[Looked]:
 
 
 def _dated(run: Path, told: DriveEstimate) -> Dated:
-    if told.begin > DATED:
+    if told.begin > rules.DATED:
         return Dated(run, told, told.begin, "stamp")
     try:
         return Dated(run, told, written_at(run), "file")

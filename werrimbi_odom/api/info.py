@@ -33,13 +33,13 @@ from werrimbi_odom.files.wheel_joints import (
     joints_told_apart,
     of_another_robot,
 )
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.motion_states import driven
 from werrimbi_odom.inference.recording_info import Held, Info
-from werrimbi_odom.inference.rules import FEW_POSES
 from werrimbi_odom.report.info import document_of, info_json
 
 DESCRIPTION = "/robot_description"
@@ -189,7 +189,7 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
     """The requested reference, or the independent one that measures most."""
     if wish is not None:
         return next((each for each in references if each.name == wish), None)
-    usable = [each for each in references if each.independent and each.messages >= FEW_POSES]
+    usable = [each for each in references if each.independent and each.messages >= rules.FEW_POSES]
     usable = usable or [each for each in references if each.independent]
     return min(usable, key=preference, default=None)
 

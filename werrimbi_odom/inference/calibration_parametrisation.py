@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
-from werrimbi_odom.inference.rules import CUT_ANEW
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -92,7 +92,7 @@ def robot_for_cutting(robot: Robot, given: Robot) -> Robot:
     """
     found = with_sizes_in_multipliers(robot, given)
     off = max(abs(math.log(one)) for one in sizes_of(found).over(sizes_of(given)))
-    return found if off > math.log(CUT_ANEW) else robot
+    return found if off > math.log(rules.CUT_ANEW) else robot
 
 
 def base_name(effect: Effect) -> str | None:

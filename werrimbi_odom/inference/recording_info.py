@@ -16,18 +16,9 @@ from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
-from werrimbi_odom.inference.rules import (
-    FEWEST_LEGS,
-    LEG_OF_POSITIONS,
-    LEGS_ENOUGH,
-    QUARTER_TURN,
-    SEEN_IN_FULL,
-    SHORT_LEG,
-    TURN_SHOWS,
-    WAY_SHOWS,
-)
 
 
 @dataclass(frozen=True)
@@ -93,7 +84,9 @@ class Info:
     def legs(self) -> float:
         """Total driving that was measured, in legs of one metre or a quarter turn."""
         drives = [each.judged for each in self.held]
-        return sum(each.way + each.turned / QUARTER_TURN for each in drives if each is not None)
+        return sum(
+            each.way + each.turned / rules.QUARTER_TURN for each in drives if each is not None
+        )
 
     @property
     def leg(self) -> float:
@@ -101,12 +94,12 @@ class Info:
         longer = max((_needed(each) for each in self.held), default=0.0)
         if longer > 1.0:
             return longer
-        return SHORT_LEG if self.sizes and self.legs < LEGS_ENOUGH else 1.0
+        return rules.SHORT_LEG if self.sizes and self.legs < rules.LEGS_ENOUGH else 1.0
 
 
 def leg_of_positions(noise: float) -> float:
     """Leg length whose chord gives a heading, for position noise `noise` [m]; to one digit."""
-    least = LEG_OF_POSITIONS * noise
+    least = rules.LEG_OF_POSITIONS * noise
     digit = 10.0 ** math.floor(math.log10(least))
     return float(f"{math.ceil(round(least / digit, 6)) * digit:g}")
 
@@ -136,7 +129,7 @@ def drove(held: Held, sizes: bool) -> bool:
     drive = held.judged
     if drive is None:
         return True
-    far = drive.way + drive.turned / QUARTER_TURN >= SHORT_LEG if sizes else True
+    far = drive.way + drive.turned / rules.QUARTER_TURN >= rules.SHORT_LEG if sizes else True
     return far and any(span.what == "drove" for span in drive.spans)
 
 
@@ -162,12 +155,12 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     far = measures in ("poses", "positions")
     if sizes:  # without it neither distance nor a wheel counting backwards is known
         while_so = _while_measured(held)
-        told(drive.turned >= TURN_SHOWS, "the base", f"too little turning{while_so}")
-        long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
+        told(drive.turned >= rules.TURN_SHOWS, "the base", f"too little turning{while_so}")
+        long = drive.turned >= rules.TURN_SHOWS or drive.way >= rules.WAY_SHOWS
         told(long, "the ratio of the radii", f"too little driving{while_so}")
     if sizes or not far:
         told(
-            far and drive.way >= WAY_SHOWS,
+            far and drive.way >= rules.WAY_SHOWS,
             "the size of the radii",
             f"the way is too short{_while_measured(held)}"
             if far
@@ -183,7 +176,10 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
         "what happens at reversals (a castor's kick, backlash)",
         f"the robot never drove to and fro{_while_measured(held)}",
     )
-    if sizes and drive.way + drive.turned / QUARTER_TURN < SHORT_LEG * FEWEST_LEGS:
+    if (
+        sizes
+        and drive.way + drive.turned / rules.QUARTER_TURN < rules.SHORT_LEG * rules.FEWEST_LEGS
+    ):
         cannot.append(f"much of anything: too little was driven{_while_measured(held)}")
     return can, cannot
 
@@ -192,8 +188,8 @@ def unseen_much(held: Held) -> bool:
     """Whether the reference did not see a part of the driving that is worth telling."""
     if held.seen is None or held.driven is None:
         return False
-    seen, whole = (one.way + one.turned / QUARTER_TURN for one in (held.seen, held.driven))
-    return seen < SEEN_IN_FULL * whole and whole >= SHORT_LEG
+    seen, whole = (one.way + one.turned / rules.QUARTER_TURN for one in (held.seen, held.driven))
+    return seen < rules.SEEN_IN_FULL * whole and whole >= rules.SHORT_LEG
 
 
 def _while_measured(held: Held) -> str:

@@ -8,10 +8,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import LONGER_LEG
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.number_format import from_start, picked, with_std
 
@@ -56,7 +56,7 @@ def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
 
 def rarer_than_asked(length: float, asked: float) -> bool:
     """Whether legs are longer than was asked for [m], because poses are rare."""
-    return length > LONGER_LEG * asked
+    return length > rules.LONGER_LEG * asked
 
 
 def leg_words(length: float, asked: float) -> str:

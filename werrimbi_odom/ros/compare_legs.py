@@ -18,11 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.consistency import chance_bounds, honest_bounds
 from werrimbi_odom.inference.comparison.leg_errors import CHI2_95, squared_deviation
 from werrimbi_odom.inference.legs.cutting import legs_worth
 from werrimbi_odom.inference.legs.gaps import are_gaps
-from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_LEG, QUARTER_TURN
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.pose import Floats, between, wrap
 from werrimbi_odom.ros.compare_track import TimedPose
@@ -82,7 +82,7 @@ class LegCutter:
         Turn on the spot that also makes a leg [rad]; path and turn add up.
     """
 
-    def __init__(self, length: float, turn: float = QUARTER_TURN) -> None:
+    def __init__(self, length: float, turn: float = rules.QUARTER_TURN) -> None:
         self._length, self._turn = length, turn
         self._start: Both | None = None
         self._last: Both | None = None
@@ -115,7 +115,7 @@ class LegCutter:
         """Whether there is a gap in the reference, compared with its usual intervals."""
         duration = both.reference.time - last.reference.time
         way = self._way(last, both)
-        if way >= GAP_LEG and len(self._intervals) >= GAP_FEWEST:
+        if way >= rules.GAP_LEG and len(self._intervals) >= rules.GAP_FEWEST:
             usual = (median(column) for column in zip(*self._intervals, strict=True))
             if are_gaps(np.array(duration), np.array(way), *usual):
                 return True

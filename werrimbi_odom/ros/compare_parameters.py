@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
-from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
+from werrimbi_odom.inference import rules
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declared_parameters import table
 
@@ -39,7 +39,7 @@ PARAMETERS: tuple[NodeParameter, ...] = (
     ),
     NodeParameter(
         "reference_sigma_xy",
-        TAPE_XY,
+        rules.TAPE_XY,
         "Standard deviation of the reference's x and y, where its messages state none.",
         unit="m",
         minimum=LEAST,
@@ -47,7 +47,7 @@ PARAMETERS: tuple[NodeParameter, ...] = (
     ),
     NodeParameter(
         "reference_sigma_yaw",
-        TAPE_YAW,
+        rules.TAPE_YAW,
         "The same of its heading.",
         unit="rad",
         minimum=LEAST,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import Consistency
@@ -23,7 +24,6 @@ from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import UNUSUAL_PROMISE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -75,7 +75,7 @@ class JudgedSide:
             promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
         if promised.size == 0:
             return float("nan")
-        usual = promised <= UNUSUAL_PROMISE * np.median(promised)
+        usual = promised <= rules.UNUSUAL_PROMISE * np.median(promised)
         return float(np.sqrt(np.mean(promised[usual])))
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of, to_write
@@ -50,7 +51,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, beyond_wheel_noise, with_noise
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -242,7 +242,7 @@ def _noise(
     """Wheel noise, remaining dependences, misfit, and whether the noise is plausible."""
     noises = noises_of(drives, fit)
     found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.numbers))
-    remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
+    remaining = tuple(cell for cell in found if cell.p_value < rules.VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
     sane = not any(beyond_wheel_noise(item) for item in wheels)
     return noises, remaining, misfit_of_found(fit, remaining, drives.laid), sane

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import (
     base_name,
     base_told,
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     is_determined,
 )
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, SIGNIFICANT
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
 
@@ -57,7 +57,7 @@ class FittedParameter:
         """Whether it differs significantly from null."""
         if self.value is None or not self.std:
             return False
-        return abs(self.value - self.declared.null) > SIGNIFICANT * self.std
+        return abs(self.value - self.declared.null) > rules.SIGNIFICANT * self.std
 
 
 def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, FittedParameter]:
@@ -120,7 +120,7 @@ def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     std = value * std_as_effect(effect.name, robot, fit.covariance[np.ix_(where, where)])
     declared = next(iter(effect.parameters.values()))
     return FittedParameter(
-        declared, value, std, "fitted" if std < CALIBRATION_KNOWN * value else "undetermined"
+        declared, value, std, "fitted" if std < rules.CALIBRATION_KNOWN * value else "undetermined"
     )
 
 
@@ -197,7 +197,7 @@ def _forgotten(applied: AppliedEffect, own: set[str]) -> AppliedEffect:
 
 
 def weakest(
-    effect: Effect, found: Mapping[str, FittedParameter], limit: float = SIGNIFICANT
+    effect: Effect, found: Mapping[str, FittedParameter], limit: float = rules.SIGNIFICANT
 ) -> str | None:
     """The parameter that the data show least, if others remain without it; or None.
 

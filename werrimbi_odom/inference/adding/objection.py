@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.added import JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, parameters_of
@@ -21,7 +22,6 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -86,7 +86,7 @@ class Question:
             )
         [size] = found.values()
         away = ((size.value or 0.0) - size.declared.null) / size.std if size.std else 0.0
-        return chi2_survival(away**2, 1) < SURE_WHEN_ASKED
+        return chi2_survival(away**2, 1) < rules.SURE_WHEN_ASKED
 
     def _without(self, effect: Effect) -> Fitted:
         return self.fits.without.get(effect.name, self.fits.none)
@@ -171,7 +171,7 @@ def _told(error: float, unit: str) -> str:
 
 
 def _by_chance(name: str, worth: Worth) -> str | None:
-    if worth.held or worth.chance is None or worth.chance <= SURE_WHEN_ASKED:
+    if worth.held or worth.chance is None or worth.chance <= rules.SURE_WHEN_ASKED:
         return None
     return (
         f"the drives do not show {name}: chance alone would make the fit as much better "

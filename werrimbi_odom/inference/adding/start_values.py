@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
@@ -38,7 +39,6 @@ from werrimbi_odom.inference.fitting.score_tests import (
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.matched_run import at_edges
-from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.robot import Robot
@@ -187,7 +187,9 @@ def _best_shapes(found: Sequence[Score]) -> list[Score]:
     ordered = sorted(found, key=lambda score: -score.gain)
     chosen: list[Score] = []
     for per_run in (True, False):
-        chosen += [score for score in ordered if score.candidate.per_run == per_run][:SHAPES_FITTED]
+        chosen += [score for score in ordered if score.candidate.per_run == per_run][
+            : rules.SHAPES_FITTED
+        ]
     return chosen
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.calibration_parametrisation import with_sizes_in_multipliers
 from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes, choices
@@ -30,7 +31,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, map_variances, noise_estimates
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, stacked
-from werrimbi_odom.inference.rules import NOISE_TOLD
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
@@ -106,7 +106,7 @@ def with_spread(
     for index, name in enumerate(names):
         if name in scales:
             value = value_of(fit.point.model.robot, name)
-            share = min(math.sqrt(variances[index]) / value, NOISE_TOLD)
+            share = min(math.sqrt(variances[index]) / value, rules.NOISE_TOLD)
             variances[index] = max(variances[index], upper_part(value, share) ** 2)
     size = np.ones(len(columns))
     size[told] = np.sqrt(variances / np.diag(fit.covariance)[told])

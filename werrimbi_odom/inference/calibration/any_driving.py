@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
-from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -104,7 +104,7 @@ def calibrate(
     )
     turned = [number for number in numbers if number.per_run or number in fit.free]
     found = dependences(concatenated(runs), fit.point, turned)
-    misfit = tuple(item for item in found if item.p_value < SURE)
+    misfit = tuple(item for item in found if item.p_value < rules.SURE)
     strange = _strange(fit, noises)
     names = [number.name for number in fit.free]
     spread = np.sqrt(np.diag(fit.covariance)) * precision.widening(noises, names)
@@ -143,7 +143,7 @@ def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]
     for name in ("left_wheel_noise", "right_wheel_noise"):
         if beyond_wheel_noise(noises[name]):
             said.append(
-                f"{name} would have to be {STRANGE_NOISE:g} m^0.5 or more, "
+                f"{name} would have to be {rules.STRANGE_NOISE:g} m^0.5 or more, "
                 "which is no rolling wheel's noise"
             )
     return tuple(said)

@@ -26,9 +26,9 @@ import numpy as np
 from scipy import optimize, stats
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.noise_likelihood import EndErrorDesign, Likelihood
 from werrimbi_odom.inference.distributions import NORMAL_95
-from werrimbi_odom.inference.rules import ADVISED_RUNS, LEAST_RUNS, SURE_WHEN_ASKED, UNKNOWN_SPLIT
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
 
@@ -113,10 +113,10 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
         If there are too few runs, or their dispersion is no more than the reference's noise.
     """
     runs = len(errors)
-    if runs < LEAST_RUNS:
+    if runs < rules.LEAST_RUNS:
         raise InputError(
-            f"too few runs: {runs} given, at least {LEAST_RUNS} needed; {ADVISED_RUNS} tell k to "
-            "about 13 %, the paper drove 60"
+            f"too few runs: {runs} given, at least {rules.LEAST_RUNS} needed; {rules.ADVISED_RUNS} tell "
+            "k to about 13 %, the paper drove 60"
         )
     data = np.asarray(np.cov(errors.T))
     if not (np.diag(data) > 0.0).all():
@@ -124,7 +124,7 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     likelihood = Likelihood(design, data, runs - 1)
     same = likelihood.same()
     best = likelihood.best(same)
-    split_known = _split_std(likelihood.covariance(same, same), same) <= UNKNOWN_SPLIT
+    split_known = _split_std(likelihood.covariance(same, same), same) <= rules.UNKNOWN_SPLIT
     left, right = _each(likelihood, best) if split_known else _alike(likelihood, same)
     spread = _of_roots(likelihood.covariance(*(best if split_known else (same, same))), left, right)
     mean = errors.mean(axis=0)
@@ -146,7 +146,7 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
         model=design.covariance(*written),
         misfit_p=misfit_p,
         missing_reference=_missing_reference(likelihood, same)
-        if misfit_p < SURE_WHEN_ASKED
+        if misfit_p < rules.SURE_WHEN_ASKED
         else None,
     )
 
@@ -172,7 +172,7 @@ def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, floa
         cost, start, method="Nelder-Mead", bounds=bounds, options={"maxfev": 4000}
     ).x
     assumed, left, right = with_noise(found)
-    if assumed.misfit_p(left, right, 4) < SURE_WHEN_ASKED:
+    if assumed.misfit_p(left, right, 4) < rules.SURE_WHEN_ASKED:
         return None
     return float(unit[0] * math.exp(found[2])), float(unit[2] * math.exp(found[3]))
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.squares import CountedSquare, Squares
-from werrimbi_odom.inference.rules import LAP_TOLERANCE, LEG_TOLERANCE, TURN_TOLERANCE
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
 from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
@@ -111,7 +111,7 @@ def recorded_square(
     measured = _turned(x[-1] - x[0], y[-1] - y[0], -facing)
     reckoned = _turned(path.x[-1], path.y[-1], -first_leg)
     gap = min(float(np.hypot(*measured)), float(np.hypot(*reckoned)))
-    if gap > LAP_TOLERANCE * side:
+    if gap > rules.LAP_TOLERANCE * side:
         raise InputError(
             f"{record.name}: the square is not closed: it ends {gap:.2f} m from its start, by "
             "odometry and by the reference. Drive all four legs, back to the mark"
@@ -152,7 +152,7 @@ def _reckoned(
 
 def _sense(name: str, path: _Path) -> int:
     turned = float(path.yaw[-1])
-    if abs(abs(turned) - 2.0 * math.pi) > TURN_TOLERANCE:
+    if abs(abs(turned) - 2.0 * math.pi) > rules.TURN_TOLERANCE:
         raise InputError(
             f"{name}: the square is not closed: the heading turns by {math.degrees(turned):.0f} "
             "degrees in all, one lap by 360. Turn the last corner too, and record each lap as a "
@@ -174,8 +174,8 @@ def _check_legs(name: str, path: _Path, corners: NDArray[np.intp], side: float) 
     straight = np.hypot(np.diff(path.x[ends]), np.diff(path.y[ends]))[:4]
     steps = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(path.x), np.diff(path.y)))])
     driven = np.diff(steps[ends])
-    wrong = np.abs(np.concatenate([straight, driven[:4]]) - side) > LEG_TOLERANCE * side
-    if wrong.any() or driven[4] > LEG_TOLERANCE * side:
+    wrong = np.abs(np.concatenate([straight, driven[:4]]) - side) > rules.LEG_TOLERANCE * side
+    if wrong.any() or driven[4] > rules.LEG_TOLERANCE * side:
         shown = ", ".join(f"{length:.2f}" for length in driven[:4])
         raise InputError(
             f"{name}: not a square of side {side:g} m: by odometry its legs are {shown} m, and "

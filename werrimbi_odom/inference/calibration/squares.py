@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.rules import ADVISED_SQUARES, LARGEST_OFFSET, LEAST_SQUARES
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 
@@ -66,18 +66,18 @@ class Squares:
             raise InputError(f"the side must be a length in metres above zero, not {self.side:g}")
         missing = []
         for sense, runs in (("cw", len(self.cw)), ("ccw", len(self.ccw))):
-            if runs < LEAST_SQUARES:
-                missing.append(f"{LEAST_SQUARES - runs} more {sense} ({runs} given)")
+            if runs < rules.LEAST_SQUARES:
+                missing.append(f"{rules.LEAST_SQUARES - runs} more {sense} ({runs} given)")
         if missing:
             raise InputError(
                 f"too few squares: missing at least {' and '.join(missing)}. One sense alone "
                 "cannot tell the base from the wheels, and one run alone has no scatter; "
-                f"{ADVISED_SQUARES} of each are usual"
+                f"{rules.ADVISED_SQUARES} of each are usual"
             )
         for sense, offsets in (("cw", self.cw), ("ccw", self.ccw)):
             length = np.hypot(*offsets.T)
             worst = int(np.argmax(np.where(np.isfinite(length), length, np.inf)))
-            if not length[worst] <= LARGEST_OFFSET * self.side:
+            if not length[worst] <= rules.LARGEST_OFFSET * self.side:
                 x, y = offsets[worst]
                 raise InputError(
                     f"{sense} square number {worst + 1}: its offset ({x:g}, {y:g}) m is more than "

@@ -26,6 +26,7 @@ import numpy as np
 from scipy import optimize, stats
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.squares import Squares, covariance_of_mean, e_max_syst
 from werrimbi_odom.inference.calibration.umbmark_equations import (
     QUARTER,
@@ -37,7 +38,6 @@ from werrimbi_odom.inference.calibration.umbmark_equations import (
     paper_factors,
 )
 from werrimbi_odom.inference.distributions import NORMAL_95
-from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -234,7 +234,7 @@ class _Across:
     def check(self, measured: Floats) -> None:
         """Reject offsets that lie across the diagonals rather than along them."""
         most = np.linalg.norm(self.left_over) > np.linalg.norm(measured - self.left_over)
-        if most and not self.probability > SURE:
+        if most and not self.probability > rules.SURE:
             raise InputError(
                 "the offsets cannot come from base and radii: these put clockwise offsets near "
                 "x = y and anticlockwise ones near x = -y. Is x along the first leg, y positive to "

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.squares import Squares
-from werrimbi_odom.inference.rules import LARGEST_MISTAKE
 from werrimbi_odom.model.pose import Floats
 
 QUARTER = 0.5 * math.pi
@@ -91,7 +91,7 @@ def paper_factors(angles: Angles, side: float, track: float) -> Factors:
 
 def check_size(base: float, ratio: float) -> None:
     """Reject corrections too large for a calibration."""
-    if abs(base - 1.0) > LARGEST_MISTAKE or abs(ratio - 1.0) > LARGEST_MISTAKE:
+    if abs(base - 1.0) > rules.LARGEST_MISTAKE or abs(ratio - 1.0) > rules.LARGEST_MISTAKE:
         raise InputError(
             f"the offsets ask for a base {100 * (base - 1.0):+.0f} % and a ratio of the radii "
             f"{100 * (ratio - 1.0):+.0f} % off: more than a calibration mends. Are offsets and "

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.change_evidence import Evidence, evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
 from werrimbi_odom.inference.changes.parameter_groups import PARTS, groups_of
@@ -30,7 +31,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import Score, candidates, scores
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE, WORTH_OF_A_CHANGE
 from werrimbi_odom.model.effect import Effect
 
 
@@ -101,8 +101,8 @@ def _beside(
     if not steps:
         return ()
     worth = sum(step.gain - fit.penalty_of_one * (step.degrees + 1) for step in steps)
-    least = WORTH_OF_A_CHANGE * _worth_of(dependences, fit)
-    if worth < max(_worth_of_effects(diagnosis, fit, effects) + RIVAL, least, RIVAL):
+    least = rules.WORTH_OF_A_CHANGE * _worth_of(dependences, fit)
+    if worth < max(_worth_of_effects(diagnosis, fit, effects) + rules.RIVAL, least, rules.RIVAL):
         return ()
     more = [cell for cell in dependences if _worth_of([cell], fit) > worth]
     if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
@@ -127,7 +127,7 @@ def is_within(moved: Moved, bounds: Mapping[str, tuple[float, float]]) -> bool:
 
 def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
     """Order of the drives by their stamps, if these are dates; else as they were given."""
-    if all(start > DATED for start in starts):
+    if all(start > rules.DATED for start in starts):
         return np.argsort(np.array(starts), kind="stable")
     return np.arange(len(starts))
 
@@ -142,7 +142,7 @@ def _of_several(step: GroupChange, drives: int, kind: ReferenceKind) -> bool:
     """
     if kind == "absolute" and step.group.what in PARTS:
         return True
-    several = MOST_ALONE < step.shape.first < drives - MOST_ALONE
+    several = rules.MOST_ALONE < step.shape.first < drives - rules.MOST_ALONE
     return several and step.shape.kind != "alone"
 
 
@@ -159,7 +159,9 @@ def _lasts(
     column = evidence.columns(step, place)
     free, rest = beside.residual(column), beside.residual(evidence.white)
     test = score_test(column, free, rest)
-    return test is not None and lasting_columns(runs, test.gain, test.degrees, free, rest) < SURE
+    return (
+        test is not None and lasting_columns(runs, test.gain, test.degrees, free, rest) < rules.SURE
+    )
 
 
 def _stands_beside(
@@ -181,7 +183,9 @@ def _stands_beside(
     beside = nuisance(np.concatenate([evidence.shared, evidence.own, pattern], axis=-1))
     test = score_test(columns, beside.residual(columns), beside.residual(evidence.white))
     penalty = fit.penalty_of_one * len(steps)
-    return test is not None and test.gain - fit.penalty_of_one * test.degrees - penalty > RIVAL
+    return (
+        test is not None and test.gain - fit.penalty_of_one * test.degrees - penalty > rules.RIVAL
+    )
 
 
 def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> float:

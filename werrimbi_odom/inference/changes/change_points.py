@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.changes.shapes import Kind, Rows, Shape, first_drives, gains, rows_of
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
-from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE, WHICH_DRIVE
 from werrimbi_odom.model.pose import Floats
 
 _FEW = 5
@@ -59,7 +59,7 @@ def find_changes(
     groups: Sequence[NumberGroup],
     penalty: float,
     kinds: Sequence[Kind] = ("step", "alone"),
-    most: int = MOST_CHANGES,
+    most: int = rules.MOST_CHANGES,
 ) -> ChangePoints:
     """Find the changes.
 
@@ -153,7 +153,7 @@ def _worth(step: GroupChange, penalty: float) -> float:
 
 def _doubt(kind: Kind) -> float:
     """Extra penalty of a trend: with few drives a trend and a step look alike."""
-    return RIVAL if kind == "trend" else 0.0
+    return rules.RIVAL if kind == "trend" else 0.0
 
 
 def _refined(
@@ -193,7 +193,7 @@ def _span(rows: Rows, steps: Sequence[GroupChange], number: int) -> tuple[int, i
     if step.shape.kind == "alone" or step.shape.first not in each.first:
         return step.shape.first, step.shape.first
     place = step.shape.first - each.first.start
-    near = each.gain >= each.gain[place] - WHICH_DRIVE
+    near = each.gain >= each.gain[place] - rules.WHICH_DRIVE
     low = high = place
     while low > 0 and near[low - 1]:
         low -= 1
@@ -203,7 +203,7 @@ def _span(rows: Rows, steps: Sequence[GroupChange], number: int) -> tuple[int, i
 
 
 def _earned(step: GroupChange, penalty: float, tried: int) -> bool:
-    return _worth(step, penalty) > penalty and _chance(step, tried) < SURE
+    return _worth(step, penalty) > penalty and _chance(step, tried) < rules.SURE
 
 
 def _chance(step: GroupChange, tried: int) -> float:

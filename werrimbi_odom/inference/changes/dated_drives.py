@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.history import Course, DriveEstimate
-from werrimbi_odom.inference.rules import COPIED_WITHIN
 from werrimbi_odom.model.robot import Robot
 
 DateFrom = Literal["stamp", "file", "order"]
@@ -63,7 +63,7 @@ def in_order(drives: Sequence[Dated]) -> tuple[Dated, ...]:
     """Sort by date; keep the given order if the dates are those of copied files."""
     dates = [drive.date for drive in drives]
     copied = any(drive.date_from != "stamp" for drive in drives)
-    if dates and copied and max(dates) - min(dates) < COPIED_WITHIN:
+    if dates and copied and max(dates) - min(dates) < rules.COPIED_WITHIN:
         return tuple(
             replace(drive, date=float(number), date_from="order")
             for number, drive in enumerate(drives)

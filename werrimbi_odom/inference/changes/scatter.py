@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.change_points import ChangePoints
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
-from werrimbi_odom.inference.rules import SCATTER_DRIVES, SURE_OF_A_CHANGE
 from werrimbi_odom.model.pose import Floats
 
 _MEDIAN_CHI2_1 = 0.4549
@@ -30,7 +30,7 @@ class Values(NamedTuple):
 
 def scatter_of(values: Floats, std: Floats) -> float:
     """Standard deviation from drive to drive, by the median of successive differences."""
-    if values.size < SCATTER_DRIVES:
+    if values.size < rules.SCATTER_DRIVES:
         return 0.0
     squares = np.diff(values) ** 2
     noise = std[1:] ** 2 + std[:-1] ** 2
@@ -68,6 +68,9 @@ def beyond_scatter(
                 return []
             usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
         worth = step.gain / step.degrees / usual
-        if bonferroni(found.tried, fisher_survival(worth, step.degrees, free)) < SURE_OF_A_CHANGE:
+        if (
+            bonferroni(found.tried, fisher_survival(worth, step.degrees, free))
+            < rules.SURE_OF_A_CHANGE
+        ):
             lasting.append(step.group)
     return lasting

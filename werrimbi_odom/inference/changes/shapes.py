@@ -14,9 +14,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.linear import DETERMINED, ROUNDING, SILENT, Nuisance
-from werrimbi_odom.inference.rules import TREND_DRIVES
 from werrimbi_odom.model.pose import Floats
 
 Kind = Literal["step", "alone", "trend"]
@@ -49,7 +49,7 @@ def first_drives(kind: Kind, count: int) -> range:
     """
     if kind == "step":
         return range(1, count)
-    return range(1, count - 1) if kind == "alone" else range(max(count - TREND_DRIVES, 0))
+    return range(1, count - 1) if kind == "alone" else range(max(count - rules.TREND_DRIVES, 0))
 
 
 class Rows(NamedTuple):

@@ -16,7 +16,7 @@ from itertools import pairwise
 from statistics import NormalDist
 from typing import Literal
 
-from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
+from werrimbi_odom.inference import rules
 
 Consistency = Literal["honest", "too small", "too large", "unknown"]
 """Result of the test of a covariance."""
@@ -39,7 +39,9 @@ class AtLength:
     @property
     def says(self) -> Consistency:
         """Whether the covariance is consistent at this length."""
-        return consistency(self.nees, self.freedom) if self.count >= FEWEST_LEGS else "unknown"
+        return (
+            consistency(self.nees, self.freedom) if self.count >= rules.FEWEST_LEGS else "unknown"
+        )
 
 
 def consistency(nees: float, freedom: int) -> Consistency:
@@ -52,8 +54,8 @@ def consistency(nees: float, freedom: int) -> Consistency:
 
 def honest_bounds(freedom: int) -> tuple[float, float]:
     """Interval of NEES that counts as consistent."""
-    low, high = chance_bounds(freedom, HONEST_CHANCE)
-    return min(low, 1.0 / HONEST_WITHIN), max(high, HONEST_WITHIN)
+    low, high = chance_bounds(freedom, rules.HONEST_CHANCE)
+    return min(low, 1.0 / rules.HONEST_WITHIN), max(high, rules.HONEST_WITHIN)
 
 
 def chance_bounds(freedom: int, share: float) -> tuple[float, float]:

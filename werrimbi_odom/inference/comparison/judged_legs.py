@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.leg_errors import (
     LegErrors,
     LegStatistics,
@@ -25,7 +26,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.fitting.run_phases import model_in_runs
-from werrimbi_odom.inference.rules import DRIFT_LEGS, FAR_ABOVE_NOISE, MOST_WHEEL_NOISE, SURE
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -162,7 +162,7 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
         order = np.argsort(slopes)
         weight = np.cumsum(runs.duration[rows][order])
         middle = int(np.searchsorted(weight, 0.5 * weight[-1])) if rows.size else 0
-        drift = float(slopes[order][middle]) if rows.size >= DRIFT_LEGS else 0.0
+        drift = float(slopes[order][middle]) if rows.size >= rules.DRIFT_LEGS else 0.0
         own.append({**mine, YAW_DRIFT: mine.get(YAW_DRIFT, 0.0) + drift})
     return Model(model.robot, tuple(own))
 
@@ -260,7 +260,7 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     if not known.any():
         return False
     least = max(min(model.robot.left_wheel_noise, model.robot.right_wheel_noise), 1e-6)
-    softest = max((MOST_WHEEL_NOISE / least) ** 2 - 1.0, 0.0)
+    softest = max((rules.MOST_WHEEL_NOISE / least) ** 2 - 1.0, 0.0)
     reference, wheels = (
         np.trace(each[known, places, places], axis1=1, axis2=2)
         for each in (kept.covariance - kept.wheels, (1.0 + softest) * kept.wheels)
@@ -269,4 +269,4 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     share = float(np.median(reference / (reference + wheels)))
     freedom = min(group.own.freedom[by_heading] for group in prepared.groups) / share**2
     chance = fisher_survival(ratio, float(np.isfinite(kept.error[:, places]).sum()), freedom)
-    return freedom > 0.0 and ratio > FAR_ABOVE_NOISE**2 and chance < SURE
+    return freedom > 0.0 and ratio > rules.FAR_ABOVE_NOISE**2 and chance < rules.SURE

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
@@ -25,7 +26,6 @@ from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.legs.cutting import cut_for_fit
 from werrimbi_odom.inference.legs.matched_run import AlignedRun
-from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -53,7 +53,7 @@ def wandering_of(
     """
     laid = concatenated([cut_for_fit(record, robot, options.leg) for record in records])
     point = start_point(laid, robot, options)
-    if laid.data < NOISE_NUMBERS:
+    if laid.data < rules.NOISE_NUMBERS:
         return Wandering(point.variances, False)
     point, numbers = with_own_values(laid, point)
     numbers = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
@@ -87,7 +87,7 @@ def errors_on_map(
             "local_map",
             excluded=jumped,
             start_yaws=model.start_yaws,
-            heading=UNKNOWN_HEADING,
+            heading=rules.UNKNOWN_HEADING,
         )
         honest = found.covariance[0] if honest is None else honest
         counted = found.known.any(axis=1)
@@ -95,7 +95,7 @@ def errors_on_map(
             break
         share = np.sum(found.whitened()[counted] ** 2, axis=1) / found.known[counted].sum(axis=1)
         usual = float(np.median(share)) / _MEDIAN_OF_A_SHARE
-        if usual <= HONEST_WITHIN:
+        if usual <= rules.HONEST_WITHIN:
             break
         doubt *= usual
     assert honest is not None

@@ -9,15 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup
 from werrimbi_odom.inference.comparison.reference_noise import independent_for
 from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
-from werrimbi_odom.inference.rules import (
-    COUNTS_UNSEEN,
-    LEGS_OF_A_FIT,
-    MOST_PARTS_OF_A_LEG,
-    PARTS_OF_A_LEG,
-)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -32,11 +27,11 @@ def parts_for_fit(
     """
     ways = [group.ways(robot, options.leg) for group in groups]
     legs = sum(float(way[-1]) for own in ways for way in own)
-    parts = min(int(LEGS_OF_A_FIT / max(legs, 1.0)), MOST_PARTS_OF_A_LEG)
-    if options.reference_kind != "absolute" or parts <= PARTS_OF_A_LEG:
-        return PARTS_OF_A_LEG
+    parts = min(int(rules.LEGS_OF_A_FIT / max(legs, 1.0)), rules.MOST_PARTS_OF_A_LEG)
+    if options.reference_kind != "absolute" or parts <= rules.PARTS_OF_A_LEG:
+        return rules.PARTS_OF_A_LEG
     independent = (_independent(*each, robot) for each in zip(groups, ways, strict=True))
-    return parts if all(independent) else PARTS_OF_A_LEG
+    return parts if all(independent) else rules.PARTS_OF_A_LEG
 
 
 def _independent(group: ReferenceGroup, ways: Sequence[Floats], robot: Robot) -> bool:
@@ -47,10 +42,10 @@ def _independent(group: ReferenceGroup, ways: Sequence[Floats], robot: Robot) ->
     """
     noise = group.own.noise
     seen = np.array([noise.sigma_xy, noise.sigma_xy, noise.sigma_yaw]) ** 2
-    counted = bool(np.any(quantisation_variance(robot) > COUNTS_UNSEEN * seen))
+    counted = bool(np.any(quantisation_variance(robot) > rules.COUNTS_UNSEEN * seen))
     steps = np.concatenate([np.diff(way) for way in ways])
     moving = steps[steps > 0.0]
     if group.measure != "pose" or group.every.has_stamp_noise or counted or not moving.size:
         return False
-    span = round(1.0 / (PARTS_OF_A_LEG * float(np.median(moving))))
+    span = round(1.0 / (rules.PARTS_OF_A_LEG * float(np.median(moving))))
     return span > 1 and independent_for(group.plain, span)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.rules import HONEST_WITHIN, UNKNOWN_HEADING
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.pose import Floats
 
 _MEDIAN_CHI2_2 = 1.386
@@ -75,7 +75,7 @@ def position_errors(
             relative, wheels, doubted, start, finish, variances, first, headings, gap
         )
         usual = float(np.median(deviation[~gap])) / _MEDIAN_CHI2_2
-        if usual <= HONEST_WITHIN or doubt >= _MOST_DOUBT:
+        if usual <= rules.HONEST_WITHIN or doubt >= _MOST_DOUBT:
             break
         doubt = min(doubt * usual, _MOST_DOUBT)
     return found
@@ -109,7 +109,7 @@ def _filtered(
     for leg in range(count):
         if leg in begins:
             state[:2], state[2] = start[leg], headings[begins[leg]]
-            known = np.diag([variances[leg], variances[leg], UNKNOWN_HEADING])
+            known = np.diag([variances[leg], variances[leg], rules.UNKNOWN_HEADING])
             parts = np.stack([known, np.zeros((3, 3)), known])
         cos, sin = np.cos(state[2]), np.sin(state[2])
         turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.poses_within_legs import parts_for_fit
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, group_of, jumped_in
 from werrimbi_odom.inference.comparison.reference_noise_source import ReferenceNoise
@@ -30,7 +31,6 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
-from werrimbi_odom.inference.rules import LEG_LENGTHS, LEGS_OF_A_LENGTH, LEGS_OF_A_RUN
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
@@ -142,7 +142,7 @@ def _cut_to_lengths(
     ways = [group.ways(robot, leg) for group in groups]
     rows: dict[float, list[list[NDArray[np.intp]]]] = {}
     counts: set[int] = set()
-    for times in sorted(LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
+    for times in sorted(rules.LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
         found = [
             [leg_ends(way, record.gap, times) for way, record in zip(*own, strict=True)]
             for own in zip(ways, records, strict=True)
@@ -153,7 +153,7 @@ def _cut_to_lengths(
             for ends, record in zip(*own, strict=True)
         )
         if times == 1.0 or (
-            count not in counts and count >= max(LEGS_OF_A_LENGTH, LEGS_OF_A_RUN * runs)
+            count not in counts and count >= max(rules.LEGS_OF_A_LENGTH, rules.LEGS_OF_A_RUN * runs)
         ):
             rows[times * leg] = found
             counts.add(count)

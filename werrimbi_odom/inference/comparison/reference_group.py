@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.reference_noise_source import OwnNoise, noise_of
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual, residuals_of
@@ -18,7 +19,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, conc
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import every_pose
 from werrimbi_odom.inference.legs.matched_run import AlignedRun
-from werrimbi_odom.inference.rules import QUARTER_TURN
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -45,7 +45,7 @@ class ReferenceGroup:
             np.interp(
                 record.measured.time,
                 record.counters.time,
-                record.counters.way(robot, leg, QUARTER_TURN),
+                record.counters.way(robot, leg, rules.QUARTER_TURN),
             )
             for record in records
         ]

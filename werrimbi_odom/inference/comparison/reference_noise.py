@@ -18,17 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
-from werrimbi_odom.inference.rules import (
-    DIFFERENCE_REACH,
-    DIFFERENCES,
-    NOISE_LEFT,
-    TURNS_ENOUGH,
-    VARIANCE_GROWS,
-)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -75,9 +69,9 @@ def independent_for(residuals: Sequence[Residual], span: int) -> bool:
         near, far = (np.concatenate(side) if side else np.zeros(0) for side in sides)
         if not near.size and not far.size:  # not measured
             continue
-        if far.size < DIFFERENCES * (_THIRD.size - 1) * span:  # so many do not overlap
+        if far.size < rules.DIFFERENCES * (_THIRD.size - 1) * span:  # so many do not overlap
             return False
-        if _variance(far) > VARIANCE_GROWS * _variance(near):
+        if _variance(far) > rules.VARIANCE_GROWS * _variance(near):
             return False
     return True
 
@@ -94,8 +88,8 @@ def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
     pairs = zip(every.runs, residuals, strict=True)
     found = [_scatter_and_rate(item, run.counters.time) for run, item in pairs]
     scatter, rate = (np.concatenate(part) for part in zip(*found, strict=True))
-    turning = rate > TURNS_ENOUGH
-    if min(turning.sum(), (~turning).sum()) < DIFFERENCES:
+    turning = rate > rules.TURNS_ENOUGH
+    if min(turning.sum(), (~turning).sum()) < rules.DIFFERENCES:
         return 0.0
     fast, slow = (
         (MEDIAN_TO_SIGMA * float(np.median(scatter[rows]))) ** 2 / 20.0
@@ -171,7 +165,7 @@ def _moving(driven: Floats, span: int) -> NDArray[np.bool_]:
     """Differences over a span that were taken in motion; all, if few were."""
     sums = np.concatenate([[0.0], np.cumsum(driven)])
     moved = sums[3 * span :] - sums[: -3 * span] > 0.0
-    return moved if moved.sum() >= DIFFERENCES else np.ones(moved.size, dtype=np.bool_)
+    return moved if moved.sum() >= rules.DIFFERENCES else np.ones(moved.size, dtype=np.bool_)
 
 
 def _level(runs: list[Differences]) -> float | None:
@@ -181,7 +175,7 @@ def _level(runs: list[Differences]) -> float | None:
         here = [run[span] for run in runs if span in run]
         left = np.concatenate([item[0] for item in here]) if here else np.zeros(0)
         reach = max((item[1] for item in here), default=0.0)
-        if left.size < DIFFERENCES or (span > 1 and reach > DIFFERENCE_REACH):
+        if left.size < rules.DIFFERENCES or (span > 1 and reach > rules.DIFFERENCE_REACH):
             break
         spans.append(float(span))
         variances.append(_variance(left))
@@ -199,12 +193,12 @@ def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
     weight = counts / np.maximum(variances, 1e-300) ** 2
     weight = weight / weight.sum()
     middle, mean = float(weight @ at), float(weight @ variances)
-    if variances.max() < VARIANCE_GROWS * variances[0]:
+    if variances.max() < rules.VARIANCE_GROWS * variances[0]:
         return mean  # not significant; a line would extrapolate chance to zero
     spread = float(weight @ (at - middle) ** 2)
     slope = float(weight @ ((at - middle) * variances)) / spread if spread > 0.0 else 0.0
     # Where growth dominates the noise, do not trust the line down to zero.
-    return max(mean - max(slope, 0.0) * middle, NOISE_LEFT * float(variances[0]))
+    return max(mean - max(slope, 0.0) * middle, rules.NOISE_LEFT * float(variances[0]))
 
 
 def _steps(item: Residual) -> Floats:
@@ -220,7 +214,7 @@ def _steps(item: Residual) -> Floats:
 def _growing(columns: Floats) -> float | None:
     """Variance of the errors of single intervals; None if there are too few."""
     known = columns[np.isfinite(columns).all(axis=1)]
-    if known.shape[0] < DIFFERENCES:
+    if known.shape[0] < rules.DIFFERENCES:
         return None
     return (MEDIAN_TO_SIGMA * float(np.median(np.abs(known)))) ** 2
 

@@ -11,12 +11,12 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.local_map_errors import wandering_of
 from werrimbi_odom.inference.comparison.reference_noise import reference_noise, stamp_noise
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.rules import FREEDOM_OF_A_DIFFERENCE, TAPE_XY, TAPE_YAW, TYPICAL_MATCH
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -88,11 +88,11 @@ def noise_of(
     """
     estimated: tuple[float | None, float | None]
     stated = [[getattr(run, name) for run in every.runs] for name in ("sigma_xy", "sigma_yaw")]
-    usual = TAPE_XY, TAPE_YAW
+    usual = rules.TAPE_XY, rules.TAPE_YAW
     wandering, walk = None, (0.0, 0.0, 0.0)
     if options.reference_kind == "local_map":
         found = wandering_of([run.record for run in every.runs], robot, options)
-        wandering, usual = found.variances, TYPICAL_MATCH
+        wandering, usual = found.variances, rules.TYPICAL_MATCH
         sigma = {name: float(np.sqrt(part[0])) for name, part in asdict(wandering).items()}
         estimated = (sigma["xy"], sigma["yaw"]) if found.estimated else (None, None)
         walk = sigma["walk_xy"], sigma["walk_yaw"], sigma["reversion"]
@@ -109,7 +109,7 @@ def noise_of(
         sum(int(np.isfinite(item.measured_yaw).sum()) for item in residuals),
     )
     freedom = tuple(
-        {"estimated": FREEDOM_OF_A_DIFFERENCE * count, "assumed": 0.0}.get(how, math.inf)
+        {"estimated": rules.FREEDOM_OF_A_DIFFERENCE * count, "assumed": 0.0}.get(how, math.inf)
         for how, count in zip((told, yaw_told), counts, strict=True)
     )
     return OwnNoise(noise, of_position, of_heading, wandering, (freedom[0], freedom[1]))

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
-from werrimbi_odom.inference.rules import FACING_POSES, POSE_ROWS
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 
@@ -53,7 +53,7 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
         return run, "pose"  # matching raises the error
     position, yaw = reference.has_position, reference.has_yaw
     both = position & yaw
-    if both.sum() >= max(2, POSE_ROWS * max(position.sum(), yaw.sum())):
+    if both.sum() >= max(2, rules.POSE_ROWS * max(position.sum(), yaw.sum())):
         whole = bool(both.all())
         return run if whole else replace(run, reference=reference.chosen(both)), "pose"
     if position.sum() >= max(2, yaw.sum()):
@@ -157,7 +157,10 @@ def _facing(
     """Heading at each pose, by aligning the predicted path with the positions around it."""
     count = measured.size
     index = np.arange(count)
-    low, high = np.maximum(index - FACING_POSES, 0), np.minimum(index + FACING_POSES, count - 1)
+    low, high = (
+        np.maximum(index - rules.FACING_POSES, 0),
+        np.minimum(index + rules.FACING_POSES, count - 1),
+    )
     chord, seen_chord = predicted[high] - predicted[low], measured[high] - measured[low]
     off = np.angle(seen_chord * np.conj(chord))
     usable = (np.abs(chord) > 0.0) & (np.abs(seen_chord) > 0.0)

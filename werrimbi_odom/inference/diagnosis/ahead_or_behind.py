@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
@@ -18,7 +19,6 @@ from werrimbi_odom.inference.fitting.start_headings import (
     starts_unmeasured,
     turned_to_the_first_legs,
 )
-from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.robot import Robot
 
 ARM = "reference_lever_arm"
@@ -35,7 +35,7 @@ def ahead_or_behind(runs: Concatenated, fit: Fitted, given: Robot) -> bool:
     start, _ = turned_to_the_first_legs(runs, there)
     other = fitted(runs, start, fit.names, fit.numbers, given)
     crossed = _ahead(other.point.model.robot) * x < 0.0
-    return crossed and other.total < fit.total + RIVAL * fit.scatter
+    return crossed and other.total < fit.total + rules.RIVAL * fit.scatter
 
 
 def _ahead(robot: Robot) -> float:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
@@ -27,7 +28,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.gauss_newton import moved
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Design, stacked
 from werrimbi_odom.inference.linear import nuisance
-from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, RIVAL, STILL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -92,7 +92,7 @@ def _surprise(logs: Floats) -> float:
     on a circle, the one that moves the robot less is the likelier. Where the data decide, it has no
     influence.
     """
-    return float(2.0 * np.sum(np.log1p((logs / CALIBRATION_KNOWN) ** 2)))
+    return float(2.0 * np.sum(np.log1p((logs / rules.CALIBRATION_KNOWN) ** 2)))
 
 
 def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: FreeSizes) -> Fitted:
@@ -126,12 +126,12 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: FreeSizes) 
         away = away + step[: sizes.free]
         others = free @ np.where(np.arange(step.size) < sizes.free, 0.0, step)
         point = replace(point, model=moved(point.model, design, others))
-        if np.max(np.abs(step) * np.where(np.isfinite(size), size, 0.0), initial=0.0) < STILL:
+        if np.max(np.abs(step) * np.where(np.isfinite(size), size, 0.0), initial=0.0) < rules.STILL:
             break
     robot = changed(point.model.robot, _sized(given, sizes, away))
     point = replace(point, model=Model(robot, point.model.own))
     cost = float(Costs(runs, point)(point.variances)[0])
-    if not cost < fit.cost + fit.penalty_of_one * fit.scatter * len(MULTIPLIERS) + RIVAL:
+    if not cost < fit.cost + fit.penalty_of_one * fit.scatter * len(MULTIPLIERS) + rules.RIVAL:
         return fit
     inverse = np.linalg.pinv((columns / size).T @ (columns / size), rcond=1e-12, hermitian=True)
     covariance = free @ (inverse / np.outer(size, size)) @ free.T

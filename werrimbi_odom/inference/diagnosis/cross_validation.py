@@ -16,9 +16,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.rules import FOLD_PARTS, FOLD_TELLS, FOLDS, USELESS_NUMBER
 
 _RANK = 1e-6
 
@@ -41,20 +41,20 @@ def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
     own_columns = np.array([run >= 0 for _, run in fit.design.columns])
     of_run = np.any(fit.moves[own_columns], axis=0)[size > 0.0]
     change = 0.0
-    for fold in range(FOLDS):
+    for fold in range(rules.FOLDS):
         here = rows == fold
         if not here.any():
             continue
         learnt, seen = scaled[~here], scaled[here]
         told = np.sum(learnt**2, axis=0)
-        here_alone = (told <= _RANK**2) | (of_run & (told < 1.0 - FOLD_TELLS))
+        here_alone = (told <= _RANK**2) | (of_run & (told < 1.0 - rules.FOLD_TELLS))
         step = np.linalg.lstsq(learnt, -white[~here], rcond=_RANK)[0]
         left = white[here] + seen[:, ~here_alone] @ step[~here_alone]
         own = seen[:, here_alone]
         if own.shape[1]:
             taken = np.linalg.lstsq(own, -left, rcond=_RANK)
             left = left + own @ taken[0]
-            change += USELESS_NUMBER * float(taken[2])
+            change += rules.USELESS_NUMBER * float(taken[2])
         change += float(left @ left - white[here] @ white[here])
     return fit.cost + change
 
@@ -63,8 +63,8 @@ def fold_of_leg(runs: Concatenated) -> NDArray[np.intp]:
     """Fold of each leg, (m,): the parts of every run, dealt in turn."""
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]
-    part = (np.arange(runs.count) - first) * FOLDS * FOLD_PARTS // count
-    return np.asarray((part + runs.run_of_leg) % FOLDS, dtype=np.intp)
+    part = (np.arange(runs.count) - first) * rules.FOLDS * rules.FOLD_PARTS // count
+    return np.asarray((part + runs.run_of_leg) % rules.FOLDS, dtype=np.intp)
 
 
 def holds_when_cross_validated(runs: Concatenated, before: Fitted, after: Fitted) -> bool:

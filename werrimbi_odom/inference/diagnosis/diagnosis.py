@@ -21,6 +21,7 @@ from dataclasses import replace
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import robot_for_cutting
 from werrimbi_odom.inference.comparison.prepared import for_fit
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
@@ -48,16 +49,6 @@ from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
-from werrimbi_odom.inference.rules import (
-    CELLS_ASKED,
-    LAW_SHARE,
-    LEGS_OF_A_PART,
-    OWN_LAW_SHARE,
-    RIVAL,
-    ROUNDS,
-    SURE,
-    VERY_SURE,
-)
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -137,8 +128,8 @@ def _searched(
     fit = fit_calibration(laid, set_up.robot, with_stated_noise(options, laid.runs))
     rounds: list[Round] = []
     beyond = misfit = None
-    for number in range(ROUNDS):
-        show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
+    for number in range(rules.ROUNDS):
+        show(0.2 + 0.7 * number / rules.ROUNDS, f"effects, round {number + 1}")
         this = search_round(laid, fit, effects, set_up.robot)
         rounds.append(this)
         best, beyond = _chosen(this, laid)
@@ -160,7 +151,7 @@ def _searched(
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, effects, set_up.robot)
     if misfit is None and beyond is None:
-        certain = [cell for cell in remaining if cell.p_value < VERY_SURE]
+        certain = [cell for cell in remaining if cell.p_value < rules.VERY_SURE]
         misfit = misfit_of_found(fit, certain, laid)
     found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
     held: Mapping[str, tuple[str, ...]] = {}
@@ -174,12 +165,12 @@ def _searched(
 
 def _refuse_few(laid: Concatenated, set_up: SetUp, judge: Judge) -> None:
     """Raise where legs are so few that no cause but a set-up mistake could ever be significant."""
-    if laid.begin.size >= LEGS_OF_A_PART or set_up.findings:
+    if laid.begin.size >= rules.LEGS_OF_A_PART or set_up.findings:
         return
     raise InputError(
         f"{', '.join(str(run.path) for run in judge.fitted_on)}: too little to diagnose: from pose "
-        f"to pose the drives have {laid.begin.size} legs to fit, and {LEGS_OF_A_PART} are the "
-        "least. Measure the robot more often on its way, or drive more; `werrimbi compare` shows "
+        f"to pose the drives have {laid.begin.size} legs to fit, and {rules.LEGS_OF_A_PART} are "
+        "the least. Measure the robot more often on its way, or drive more; `werrimbi compare` shows "
         "the errors of these"
     )
 
@@ -190,7 +181,7 @@ def _significant(this: Round) -> Fitted | None:
     if fit is None:
         return None
     before = this.before.cost + this.before.needless_gain + this.before.penalty * fit.scatter
-    significant = fit.total < before and chance(fit, this.before, this.number) < SURE
+    significant = fit.total < before and chance(fit, this.before, this.number) < rules.SURE
     return fit if significant else None
 
 
@@ -203,7 +194,7 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
     variables is no such sign.
     """
     best = _significant(this)
-    if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < SURE:
+    if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < rules.SURE:
         return best, _beyond_the_library(this, best, runs)
     lasts = _beyond_the_library(this, None, runs)
     if lasts is None or best is None or disagreeing(best, best.names[-1]):
@@ -230,7 +221,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
         ),
         None,
     )
-    certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
+    certain = [cell for cell in this.dependences if cell.p_value < rules.VERY_SURE]
     if score is not None and best is not None:
         support = support_of(score.candidate, runs.drive(this.before.point.model.robot))
         data, penalty = runs.data, this.before.penalty_of_one
@@ -241,10 +232,15 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
             own = cell.channel in support.outputs and bool(
                 support.inputs & set(cell.variable.looks_at)
             )
-            share = OWN_LAW_SHARE if own else LAW_SHARE
-            return share * (fall_of_cost(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
+            share = rules.OWN_LAW_SHARE if own else rules.LAW_SHARE
+            return (
+                share * (fall_of_cost(cell.gain, data) - penalty * cell.degrees)
+                > worth + rules.RIVAL
+            )
 
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     numbers = (*CALIBRATION, *this.before.numbers)
-    found = lasting(runs, this.before.point, numbers, certain[:CELLS_ASKED])
-    return next((each.cell for each in found if each.p_value < SURE and not each.only_in), None)
+    found = lasting(runs, this.before.point, numbers, certain[: rules.CELLS_ASKED])
+    return next(
+        (each.cell for each in found if each.p_value < rules.SURE and not each.only_in), None
+    )

@@ -16,6 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import base_name
 from werrimbi_odom.inference.diagnosis.forward_selection import best_of_each
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
@@ -28,13 +29,6 @@ from werrimbi_odom.inference.fitting.score_tests import (
     candidates,
     parameters_of_candidate,
     scores,
-)
-from werrimbi_odom.inference.rules import (
-    CALIBRATION_WORTH,
-    INSTEAD_FITTED,
-    RIVAL,
-    SURE,
-    WORTH_A_FIT,
 )
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
@@ -66,14 +60,18 @@ def _rivals(
     tried = candidates(library, {item.name for item in others}, runs.channels, len(runs.runs))
     ordered = best_of_each(scores(runs, point, (*CALIBRATION, *numbers), tried))
     gains = {score.candidate.name: score.gain for score in ordered}
-    least = WORTH_A_FIT * gains.get(held.name, max(gains.values(), default=0.0))
+    least = rules.WORTH_A_FIT * gains.get(held.name, max(gains.values(), default=0.0))
     near = [each for each in ordered if each.candidate.name != held.name and each.gain > least]
     found = {}
-    for score in near[:INSTEAD_FITTED]:
+    for score in near[: rules.INSTEAD_FITTED]:
         start = started_with(runs, point, score)
         free = (*numbers, *parameters_of_candidate(score.candidate))
         other = fitted(runs, start, (score.candidate.name,), free, given)
-        if other.told and not other.at_bound and other.total < fit.total + RIVAL * fit.scatter:
+        if (
+            other.told
+            and not other.at_bound
+            and other.total < fit.total + rules.RIVAL * fit.scatter
+        ):
             found[score.candidate.name] = other.total
     return tuple(sorted(found, key=lambda name: found[name]))
 
@@ -91,8 +89,8 @@ def outdated(fit: Fitted, given: Robot) -> tuple[str, ...]:
             continue
         spread = fit.covariance[np.ix_(columns, columns)]
         gain = float(away @ np.linalg.pinv(spread, hermitian=True) @ away)
-        sure = bonferroni(len(held), chi2_survival(gain, len(columns))) < SURE
-        if sure and gain > CALIBRATION_WORTH * fit.penalty_of_one * len(columns):
+        sure = bonferroni(len(held), chi2_survival(gain, len(columns))) < rules.SURE
+        if sure and gain > rules.CALIBRATION_WORTH * fit.penalty_of_one * len(columns):
             found.append(item.name)
     return tuple(found)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import base_told, sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_at, sizes_needed
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -20,7 +21,6 @@ from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.rules import ONE_WHEEL, SURE, VERY_SURE
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
 
 
@@ -205,7 +205,7 @@ def one_wheel(diagnosis: Diagnosis) -> str | None:
     left, right = (
         abs(math.log(sizes[name][0] / getattr(diagnosis.given, name))) for name in MULTIPLIERS[1:]
     )
-    if min(left, right) > ONE_WHEEL * max(left, right):
+    if min(left, right) > rules.ONE_WHEEL * max(left, right):
         return None
     return "left" if left > right else "right"
 
@@ -219,7 +219,9 @@ def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
     for this in diagnosis.rounds:
         for fit in this.tried:
             name = fit.names[-1]
-            helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
+            helps = (
+                fit.total < this.before.total and chance(fit, this.before, this.number) < rules.SURE
+            )
             wild = [number for number in fit.at_bound if number.startswith(f"{name}.")]
             if not helps or name in diagnosis.found:
                 continue
@@ -241,5 +243,5 @@ def reference_wanders(diagnosis: Diagnosis) -> bool:
     Such errors are correlated over seconds, and follow no law on which all parts of the drives
     agree.
     """
-    sure = any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
+    sure = any(cell.p_value < rules.VERY_SURE for cell in diagnosis.depends_on)
     return sure and diagnosis.verdict == "none" and diagnosis.misfit is None

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.step_jacobians import (
     AMOUNTS,
     BLOCK,
@@ -43,7 +44,6 @@ from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
-from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR, NOISE_NUMBERS
 from werrimbi_odom.model.pose import Floats
 
 BATCH = 500_000
@@ -92,7 +92,9 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     certain = certainty_of_places(cell)
     first = int(np.argmax(certain))
     area = np.ptp(x) * np.ptp(y) / steps.size
-    near = np.hypot(*(middle - middle[first]).T) < NEIGHBOUR * max(np.sqrt(area), FLOOR_CELL)
+    near = np.hypot(*(middle - middle[first]).T) < rules.NEIGHBOUR * max(
+        np.sqrt(area), rules.FLOOR_CELL
+    )
     same = np.sign(cell.coefficients) == np.sign(cell.coefficients[first])
     weight = certain * (near & same)
     px, py = weight @ middle / weight.sum()
@@ -134,7 +136,7 @@ def dependences(
             tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
-    spare = runs.data - frame.basis.shape[1] if runs.data < NOISE_NUMBERS else math.inf
+    spare = runs.data - frame.basis.shape[1] if runs.data < rules.NOISE_NUMBERS else math.inf
     whole = float(rest @ rest)
     shares = shares_of_steps(path_of(point.model, runs), runs.drive(point.model.robot).duration)
     cells = [

@@ -17,10 +17,10 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import judged_legs
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
@@ -56,7 +56,7 @@ def recorded_otherwise(
     found = []
     for prepared, errors in ((fitted, own), (held_out, typical_errors(held_out, mended))):
         for run, error in zip(prepared.runs, errors, strict=True):
-            if not error > GROSS * usual:
+            if not error > rules.GROSS * usual:
                 continue
             findings = _differing(run, mended, options)
             if findings:
@@ -70,7 +70,7 @@ def _differing(run: Run, mended: Robot, options: EvaluationOptions) -> tuple[Set
     except InputError:
         return ()
     clear = max((finding.gain for finding in findings), default=0.0)
-    return findings if clear > OWN_GAIN else ()
+    return findings if clear > rules.OWN_GAIN else ()
 
 
 def typical_errors(prepared: PreparedRuns, robot: Robot) -> Sequence[float]:

@@ -21,10 +21,10 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.distributions import student_survival
 from werrimbi_odom.inference.fitting.clusters import parts_of
-from werrimbi_odom.inference.rules import HELD_OUT_FALL, SURE_WHEN_ASKED
 
 Unit = Literal["m", "rad"]
 
@@ -45,12 +45,12 @@ class Sides:
     @property
     def fell(self) -> bool:
         """Whether the error fell."""
-        return self.after < self.before * (1.0 - HELD_OUT_FALL)
+        return self.after < self.before * (1.0 - rules.HELD_OUT_FALL)
 
     @property
     def rose(self) -> bool:
         """Whether the error rose, significantly."""
-        return self.chance < SURE_WHEN_ASKED
+        return self.chance < rules.SURE_WHEN_ASKED
 
 
 def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
@@ -67,7 +67,7 @@ def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
     length = float(np.median(before.errors.length)) if before.errors.length.size else 0.0
     quiet = ~(before.event | after.event)  # each model has its own view of which legs have an event
     before, after = before.chosen(quiet), after.chosen(quiet)
-    if not error_of(after, unit) > error_of(before, unit) * (1.0 + HELD_OUT_FALL):
+    if not error_of(after, unit) > error_of(before, unit) * (1.0 + rules.HELD_OUT_FALL):
         return Sides(*errors, unit, length=length)
     return Sides(*errors, unit, _chance(before, after, unit), length)
 

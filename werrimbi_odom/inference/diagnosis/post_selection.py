@@ -16,12 +16,12 @@ from itertools import chain, combinations, product
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes, choices
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.fitting.whitened_innovations import Design
 from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance
-from werrimbi_odom.inference.rules import CALIBRATION_KNOWN
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -85,7 +85,7 @@ def model_averaged_stds(
         moves[[names.index(name) for name in kept], range(sizes.free, moves.shape[1])] = 1.0
         moves = np.concatenate([moves, others], axis=1)
         heard = np.sum((marks @ moves) ** 2, axis=0) > SILENT**2
-        limits = [CALIBRATION_KNOWN] * sizes.free + [limit[name] for name in kept]
+        limits = [rules.CALIBRATION_KNOWN] * sizes.free + [limit[name] for name in kept]
         if not is_told and not heard[: len(limits)].all():
             continue
         moves, columns = moves[:, heard], marks @ moves[:, heard]

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.fitting.whitened_innovations import unexpected
-from werrimbi_odom.inference.rules import HALF_PARTS, RIVAL
 from werrimbi_odom.inference.set_up.search import SetUpFinding
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -46,7 +46,7 @@ def rivals_of(
     """The first effect and its rivals, which the runs cannot tell from it; empty if it has none."""
     if first in CALIBRATED:
         named = [first, *_sizes_in_place_of(first, final)]
-        limit = final.total + RIVAL * final.scatter
+        limit = final.total + rules.RIVAL * final.scatter
         named += [item.effect for item in instead if item.total < limit]
         named = list(dict.fromkeys((*named, *_in_place_of_a_size(first, rounds, final))))
         return tuple(named) if len(named) > 1 else ()
@@ -90,7 +90,7 @@ def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
 
 def _in_place_of_a_size(name: str, rounds: tuple[Round, ...], final: Fitted) -> Iterator[str]:
     """Effects that make a size unnecessary, in a model about as likely, in any round."""
-    limit = final.total + RIVAL * final.scatter
+    limit = final.total + rules.RIVAL * final.scatter
     for fit in (fit for this in rounds for fit in this.tried if not fit.at_bound):
         fewer = len(fit.calibrated) < len(final.calibrated) and name not in fit.calibrated
         if fewer and fit.names[-1] not in final.names and fit.total < limit:
@@ -101,7 +101,7 @@ def _near(name: str, this: Round) -> tuple[str, ...]:
     """Rivals of an effect in the round that tried it."""
     fits = [fit for fit in this.tried if not fit.at_bound]
     best = next(fit for fit in fits if fit.names[-1] == name)
-    near = (fit.names[-1] for fit in fits if fit.total - best.total < RIVAL * best.scatter)
+    near = (fit.names[-1] for fit in fits if fit.total - best.total < rules.RIVAL * best.scatter)
     return tuple(other for other in dict.fromkeys(near) if other != name)
 
 
@@ -155,7 +155,7 @@ def rivals_in_halves(runs: Concatenated, this: Round, best: Fitted) -> tuple[str
         for fit, cost in zip(others, costs, strict=True):
             dearer = (best.penalty - fit.penalty) * best.scatter
             ahead = float(np.sum((chosen - cost)[half])) + 0.5 * dearer
-            if ahead > RIVAL * best.scatter:
+            if ahead > rules.RIVAL * best.scatter:
                 found[fit.names[-1]] = None
     return tuple(found)
 
@@ -169,6 +169,6 @@ def halves(runs: Concatenated) -> Iterator[NDArray[np.bool_]]:
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]
     number = np.arange(runs.count) - first
-    for half in ((number * HALF_PARTS // count) % 2 == 0, 2 * number < count):
+    for half in ((number * rules.HALF_PARTS // count) % 2 == 0, 2 * number < count):
         yield half
         yield ~half

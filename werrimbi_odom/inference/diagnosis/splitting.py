@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.inference.rules import SET_ASIDE, SET_ASIDE_BLOCKS, SET_ASIDE_ROWS
+from werrimbi_odom.inference import rules
 
 Runs = tuple[Run, ...]
 
@@ -25,11 +25,11 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
     drive has too few poses for that, whole drives are held out; of a single such drive, the last
     quarter of its poses.
     """
-    if all(_rows(run) >= SET_ASIDE_ROWS for run in runs):
+    if all(_rows(run) >= rules.SET_ASIDE_ROWS for run in runs):
         parts = [_parted(run, number) for number, run in enumerate(runs)]
         return tuple(kept for kept, _ in parts), tuple(held for _, held in parts)
     if len(runs) > 1:
-        count = max(1, round(len(runs) * len(SET_ASIDE) / SET_ASIDE_BLOCKS))
+        count = max(1, round(len(runs) * len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS))
         every = len(runs) / count
         chosen = {int((number + 0.5) * every) for number in range(count)}
         return (
@@ -38,7 +38,7 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
         )
     (run,) = runs
     time = run.ticks.time if run.reference is None else run.reference.time[_measured(run.reference)]
-    share = 1.0 - len(SET_ASIDE) / SET_ASIDE_BLOCKS
+    share = 1.0 - len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS
     at = float(np.quantile(time, share)) if time.size else np.inf
     return tuple(_between(runs, -np.inf, at)), tuple(_between(runs, at, np.inf))
 
@@ -58,8 +58,10 @@ def _parted(run: Run, number: int) -> tuple[Run, Run]:
     reference = run.reference
     assert reference is not None
     rows = np.arange(reference.time.size)
-    block = rows * SET_ASIDE_BLOCKS // rows.size
-    held = np.isin(block, [(first + 3 * number) % SET_ASIDE_BLOCKS for first in SET_ASIDE])
+    block = rows * rules.SET_ASIDE_BLOCKS // rows.size
+    held = np.isin(
+        block, [(first + 3 * number) % rules.SET_ASIDE_BLOCKS for first in rules.SET_ASIDE]
+    )
     return _without(run, reference, ~held), _without(run, reference, held)
 
 

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import (
     name_of_base,
     sizes_of,
@@ -49,7 +50,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import CALIBRATION_WORTH, LAW_SHARE, SIGNIFICANT, SURE
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
@@ -141,7 +141,7 @@ class Diagnosis:
             if fit.names[-1] == name
         ]
         most = max((cell.gain for this in self.rounds for cell in this.dependences), default=0.0)
-        return max(falls, default=0.0) > LAW_SHARE * most
+        return max(falls, default=0.0) > rules.LAW_SHARE * most
 
 
 def told(
@@ -244,8 +244,8 @@ def _nothing_in_common(train: PreparedRuns, given: Model, alike: bool) -> Refere
 def _is_news(name: str, final: Fitted, tried: int) -> bool:
     """Whether a size is a finding: significant, with a gain well above its penalty."""
     worth = final.importance[name]
-    certain = bonferroni(tried, p_value_of_size(final, name)) < SURE
-    return certain and worth > CALIBRATION_WORTH * final.penalty_of_one
+    certain = bonferroni(tried, p_value_of_size(final, name)) < rules.SURE
+    return certain and worth > rules.CALIBRATION_WORTH * final.penalty_of_one
 
 
 def _differs(name: str, final: Fitted, given: Robot) -> bool:
@@ -258,7 +258,7 @@ def _differs(name: str, final: Fitted, given: Robot) -> bool:
     where = [columns.index(multiplier) for multiplier in MULTIPLIERS]
     std = std_as_effect(name, robot, final.covariance[np.ix_(where, where)])
     size = sizes_of(robot).over(sizes_of(given)).as_effects[name]
-    return abs(math.log(size)) > SIGNIFICANT * std
+    return abs(math.log(size)) > rules.SIGNIFICANT * std
 
 
 def _plain(fit: Fitted, given: Robot) -> Model:

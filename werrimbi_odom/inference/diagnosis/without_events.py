@@ -14,6 +14,7 @@ from typing import TypeVar
 import numpy as np
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.holdout import Judge
 from werrimbi_odom.inference.distributions import chi2_median
 from werrimbi_odom.inference.events.events import Events, EventSide, events_among, without
@@ -21,7 +22,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, unexpected
-from werrimbi_odom.inference.rules import EVENT_ROUNDS, NOISE_NUMBERS, NOISE_TRIMMED
 
 _ROUNDS = 4
 
@@ -35,10 +35,10 @@ def noise_of_most(runs: Concatenated, point: Point) -> Variances:
         deviation = np.sum(found.whitened() ** 2, axis=-1)
         numbers = found.known.sum(axis=-1).astype(np.float64)
         counted = (numbers > 0) & (deviation > 0.0)
-        if counted.sum() < NOISE_NUMBERS:
+        if counted.sum() < rules.NOISE_NUMBERS:
             break
         usual = np.median(deviation[counted] / chi2_median(numbers[counted]))
-        far = deviation > NOISE_TRIMMED * usual
+        far = deviation > rules.NOISE_TRIMMED * usual
         if not (far & ~point.skip).any():
             break
         out = far | point.skip
@@ -71,7 +71,7 @@ def refit_without_events(
         The last result, and the events beside it.
     """
     found, happened = fit(runs, holdout, True)
-    for _ in range(EVENT_ROUNDS):
+    for _ in range(rules.EVENT_ROUNDS):
         if not happened.left_out:
             break
         both = [[without(run, happened) for run in some] for some in (runs, holdout)]

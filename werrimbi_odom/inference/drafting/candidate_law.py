@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.lookup import load_file
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.start_values import FitDrives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -23,7 +24,6 @@ from werrimbi_odom.inference.drafting.variable_source import rounded
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.score_tests import Score
-from werrimbi_odom.inference.rules import WIDER_THAN_FITTED
 from werrimbi_odom.model.effect import Effect
 
 
@@ -119,7 +119,7 @@ def with_values(diagnosis: Diagnosis, option: Option) -> LawForm:
         else:
             typical = abs(rounded(value)) if item.bounds[0] == 0.0 else rounded(value)
             low, high = item.bounds
-            wider = max(high, WIDER_THAN_FITTED * abs(typical))
+            wider = max(high, rules.WIDER_THAN_FITTED * abs(typical))
             if item.name == "share":
                 wider = high
             parameters.append(replace(item, typical=typical, bounds=(low and -wider, wider)))

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.linear import DETERMINED
-from werrimbi_odom.inference.rules import FIRST_TERMS, MOST_TERMS
 from werrimbi_odom.model.pose import Floats
 
 
@@ -57,9 +57,9 @@ def selections(
     """
     alone = cross**2 / np.diag(square)
     found: dict[tuple[int, ...], Selected] = {}
-    for first in np.argsort(-alone)[:FIRST_TERMS].tolist():
+    for first in np.argsort(-alone)[: rules.FIRST_TERMS].tolist():
         chosen = [first]
-        while len(chosen) < MOST_TERMS:
+        while len(chosen) < rules.MOST_TERMS:
             more = _gains(square, cross, chosen)
             joins = [may_join(chosen, one) for one in range(cross.size)]
             more[~np.array(joins)] = 0.0

@@ -19,10 +19,10 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects.shapes import mean_product, mean_ratio, mean_step, steady
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.law_forms import unit_of
 from werrimbi_odom.inference.drafting.variable_source import Signal
-from werrimbi_odom.inference.rules import CLEAR_OF_ZERO, GATE_SPEEDS, GATE_WIDTH, ROLLS_BACKWARDS
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats
 
@@ -144,21 +144,21 @@ def _ratio(one: Signal, other: Signal) -> Term:
 
 def _gates(speed: Signal) -> Iterator[Term]:
     """Gates: rolling backwards, and above some speeds."""
-    left, right = (f"({source} < {-ROLLS_BACKWARDS})" for source in speed.source)
+    left, right = (f"({source} < {-rules.ROLLS_BACKWARDS})" for source in speed.source)
     yield Term(
         "gated law",
         "(v < 0)",
         (replace(speed, variable="direction"),),
         (left, right),
-        lambda side: np.asarray(_values(speed, side) < -ROLLS_BACKWARDS, dtype=np.float64),
+        lambda side: np.asarray(_values(speed, side) < -rules.ROLLS_BACKWARDS, dtype=np.float64),
         {},
         "(v < 0)",
     )
     sizes = np.abs(np.concatenate([_values(speed, side) for side in (0, 1)]))
-    moving = sizes[sizes > ROLLS_BACKWARDS]
-    for share in GATE_SPEEDS if moving.size else ():
+    moving = sizes[sizes > rules.ROLLS_BACKWARDS]
+    for share in rules.GATE_SPEEDS if moving.size else ():
         edge = float(f"{np.quantile(moving, share):.2g}")
-        width = float(f"{GATE_WIDTH * float(moving.max()):.1g}")
+        width = float(f"{rules.GATE_WIDTH * float(moving.max()):.1g}")
         left, right = (
             f"mean_step(steady(abs({source})), {edge:g}, {width:g})" for source in speed.source
         )
@@ -206,7 +206,7 @@ def _clear_of_zero(other: Signal) -> bool:
     spans: list[Span[Floats]] = list(other.values)
     ends = np.concatenate([end for span in spans for end in span])
     least = float(np.min(ends)) if np.all(ends > 0.0) else -float(np.max(ends))
-    return other.spans and least > CLEAR_OF_ZERO * float(np.max(np.abs(ends)))
+    return other.spans and least > rules.CLEAR_OF_ZERO * float(np.max(np.abs(ends)))
 
 
 def _times(one: dict[str, int], other: dict[str, int], power: int) -> dict[str, int]:

@@ -20,13 +20,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import chi2_median, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.filtering import Shocks
 from werrimbi_odom.inference.fitting.likelihood import Innovations, innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.inference.rules import EVENT_SLOW, MOST_EVENTS, SURE_OF_EVENT
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.reference_view import View
@@ -78,7 +78,7 @@ class Steps:
         runs = self.runs
         own = np.flatnonzero((runs.run_of_leg == runs.run_of_leg[leg]) & ~runs.gap)
         since = np.abs(runs.ends_at[own] - runs.ends_at[leg])
-        near = own[since <= max(EVENT_SLOW, 3.0 * runs.duration[leg])]
+        near = own[since <= max(rules.EVENT_SLOW, 3.0 * runs.duration[leg])]
         column = self.spread(near, np.full(near.size, leg)) / near.size
         return np.asarray(column * self.told.known[leg])
 
@@ -150,7 +150,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
         gain = gains.get(local) or _gain(*_asked(local, shocks, of_shape[local]))
         scatter = _scatter(runs, gain, told)
         new = _peaks(runs, gains, scatter, tests)
-        if not new or len(steps) + len(new) > MOST_EVENTS:
+        if not new or len(steps) + len(new) > rules.MOST_EVENTS:
             break
         steps += [step for step, _ in new]
         chances += [chance for _, chance in new]
@@ -165,7 +165,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     scatter = np.maximum(scatter, _scatter(runs, gains["robot"], told))
     kept = _kept(runs, steps, columns, white.ravel(), scatter, tests)
     columns = columns[:, [3 * step + axis for step in kept for axis in range(3)]]
-    many = bool(new) and 2 * len(kept) > MOST_EVENTS
+    many = bool(new) and 2 * len(kept) > rules.MOST_EVENTS
     steps, chances = [steps[step] for step in kept], [chances[step] for step in kept]
     spread = np.diagonal(told.covariance[0], axis1=1, axis2=2)
     return Steps(
@@ -200,7 +200,7 @@ def _kept(
         gain = float(size @ np.linalg.solve(covariance[own, own], size))
         degrees = int((np.diag(covariance)[own] < 1.0).sum())
         gain /= scatter[runs.run_of_leg[step.leg]]
-        if degrees and tests * chi2_survival(gain, degrees) < SURE_OF_EVENT:
+        if degrees and tests * chi2_survival(gain, degrees) < rules.SURE_OF_EVENT:
             kept.append(index)
     return kept
 
@@ -259,9 +259,9 @@ def _peaks(
         for leg in legs[np.argsort(-best)].tolist():
             gain, degrees = (float(part[leg]) for part in gains[names[shape[leg]]])
             chance = tests * chi2_survival(gain / own[leg], degrees) if degrees else 1.0
-            if chance >= SURE_OF_EVENT:
+            if chance >= rules.SURE_OF_EVENT:
                 break
-            near = legs[np.abs(end[legs] - end[leg]) < 2.0 * EVENT_SLOW]
+            near = legs[np.abs(end[legs] - end[leg]) < 2.0 * rules.EVENT_SLOW]
             if every[:, near].max() <= every[shape[leg], leg]:
                 found.append((PoseStep(names[shape[leg]], leg), chance))
     return found

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.candidate import usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import STEP, Model
@@ -20,7 +21,6 @@ from werrimbi_odom.inference.fitting.start_headings import (
     turned_to_the_first_legs,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
-from werrimbi_odom.inference.rules import DELAYS_TRIED, MOST_STAMP_NOISE, TYPICAL_STAMP_NOISE
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.reference_view import View
@@ -66,13 +66,13 @@ def in_place_of_jitter(runs: Concatenated, point: Point, score: Score) -> Point 
     The noise of the stamps is then typical, and the delay the best of some.
     """
     jitter = math.sqrt(float(point.variances.stamp.max()))
-    if not (runs.has_stamp_noise and jitter > MOST_STAMP_NOISE and _is_a_delay(score)):
+    if not (runs.has_stamp_noise and jitter > rules.MOST_STAMP_NOISE and _is_a_delay(score)):
         return None
     (item,) = score.candidate.effect.parameters.values()
-    usual = np.full_like(point.variances.stamp, TYPICAL_STAMP_NOISE**2)
+    usual = np.full_like(point.variances.stamp, rules.TYPICAL_STAMP_NOISE**2)
     point = replace(point, variances=replace(point.variances, stamp=usual))
     starts = []
-    either = np.concatenate([-DELAYS_TRIED, DELAYS_TRIED])
+    either = np.concatenate([-rules.DELAYS_TRIED, rules.DELAYS_TRIED])
     for delay in jitter * either / (STEP * item.scale):
         model = with_candidate(point.model, replace(score, coefficients=np.array([delay])))
         start = replace(point, model=model)

@@ -14,21 +14,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.linear import SILENT, covariance_of
-from werrimbi_odom.inference.rules import (
-    LASTING_FEWEST,
-    LASTING_HEARD,
-    LASTING_LEGS,
-    LASTING_MOST,
-    LASTING_PARTS,
-    SURE,
-)
 from werrimbi_odom.model.pose import Floats
 
 
-def parts_of(run: NDArray[np.intp], most: int = LASTING_MOST) -> NDArray[np.intp]:
+def parts_of(run: NDArray[np.intp], most: int = rules.LASTING_MOST) -> NDArray[np.intp]:
     """Index of the part (cluster) of each leg, numbered over all runs, (m,).
 
     Parameters
@@ -38,7 +31,9 @@ def parts_of(run: NDArray[np.intp], most: int = LASTING_MOST) -> NDArray[np.intp
     most : int
         Most parts of one run.
     """
-    each = min(max(math.ceil(LASTING_PARTS / np.unique(run).size), LASTING_FEWEST), most)
+    each = min(
+        max(math.ceil(rules.LASTING_PARTS / np.unique(run).size), rules.LASTING_FEWEST), most
+    )
     first = np.searchsorted(run, run, side="left")
     count = np.bincount(run)[run]
     part = (np.arange(run.size) - first) * each // count
@@ -60,18 +55,18 @@ def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] 
     """
     known = np.abs(white.reshape(-1, 3)).max(axis=1) > SILENT
     run = runs.run_of_leg[known]
-    most = run.size // (LASTING_LEGS * len(runs.runs))
+    most = run.size // (rules.LASTING_LEGS * len(runs.runs))
     if most == 0:
         return None
     parts = np.full(known.size, -1)
-    most = most if most < LASTING_FEWEST else LASTING_MOST
+    most = most if most < rules.LASTING_FEWEST else rules.LASTING_MOST
     parts[known] = np.unique(parts_of(run, most), return_inverse=True)[1]
-    return np.repeat(parts, 3) if parts.max() + 1 >= LASTING_FEWEST else None
+    return np.repeat(parts, 3) if parts.max() + 1 >= rules.LASTING_FEWEST else None
 
 
 def few_parts(runs: Concatenated, parts: NDArray[np.intp]) -> bool:
     """Whether runs are too short for parts that could show how much they disagree."""
-    return int(parts.max()) + 1 < LASTING_FEWEST * len(runs.runs)
+    return int(parts.max()) + 1 < rules.LASTING_FEWEST * len(runs.runs)
 
 
 def least_informative_share(parts: NDArray[np.intp]) -> float:
@@ -79,7 +74,7 @@ def least_informative_share(parts: NDArray[np.intp]) -> float:
 
     It is in proportion to what a part holds on average.
     """
-    return LASTING_HEARD * math.sqrt(LASTING_PARTS / (parts.max() + 1))
+    return rules.LASTING_HEARD * math.sqrt(rules.LASTING_PARTS / (parts.max() + 1))
 
 
 def effective_freedom(runs: Concatenated, white: Floats, own: Floats) -> float:
@@ -139,7 +134,7 @@ def widening(white: Floats, flat: Floats, moves: Floats, runs: Concatenated) -> 
         if freedom < 1:
             continue
         disagreement = float(np.sum(squares[known, column] / shares[known, column]))
-        if chi2_survival(disagreement, freedom) < SURE:
+        if chi2_survival(disagreement, freedom) < rules.SURE:
             count = len(squares) / (len(squares) - 1)
             wide[column] = math.sqrt(
                 max(count * float(np.sum(squares[:, column])) / usual[column], 1.0)

@@ -20,15 +20,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, Ways, in_rounds
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, turn_into
-from werrimbi_odom.inference.rules import LAID_DRIFT, LAID_SCALE, LAID_YAW, LOST_XY, LOST_YAW
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 ANEW = 1e2
 """Variance [m², rad²] of an unknown quantity: the error after a jump, the pose after a gap."""
 
-_LOST = np.square([LOST_XY, LOST_XY, LOST_YAW])
+_LOST = np.square([rules.LOST_XY, rules.LOST_XY, rules.LOST_YAW])
 
 
 class GyroHeading(NamedTuple):
@@ -75,7 +75,7 @@ class GaussMarkovError(NamedTuple):
         """Initial variance of all states other than the pose, (g, 3 or 5)."""
         if self.laid is None:
             return self.variance
-        known = np.square([LAID_YAW, LAID_SCALE, LAID_DRIFT])
+        known = np.square([rules.LAID_YAW, rules.LAID_SCALE, rules.LAID_DRIFT])
         return np.column_stack([self.variance[:, :2], np.tile(known, (len(self.variance), 1))])
 
 

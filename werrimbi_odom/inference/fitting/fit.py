@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -33,16 +34,6 @@ from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, wit
 from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, stacked, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
-from werrimbi_odom.inference.rules import (
-    JUMP_OF_A_LEG,
-    LEAST_WHEEL_NOISE,
-    MOTION_CAPTURE_XY,
-    MOTION_CAPTURE_YAW,
-    NOISE_NUMBERS,
-    TYPICAL_GYRO_WALK,
-    TYPICAL_STAMP_NOISE,
-    TYPICAL_WALK,
-)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -92,15 +83,15 @@ def start_point(
     """Start of a fit: the robot as given, no leg excluded, start headings from the first legs."""
     laid = laid_out(runs)
     guess = (
-        max(robot.left_wheel_noise, LEAST_WHEEL_NOISE),
-        max(robot.right_wheel_noise, LEAST_WHEEL_NOISE),
-        options.sigma_xy or MOTION_CAPTURE_XY,
-        options.sigma_yaw or MOTION_CAPTURE_YAW,
-        TYPICAL_STAMP_NOISE,
-        *TYPICAL_WALK,
+        max(robot.left_wheel_noise, rules.LEAST_WHEEL_NOISE),
+        max(robot.right_wheel_noise, rules.LEAST_WHEEL_NOISE),
+        options.sigma_xy or rules.MOTION_CAPTURE_XY,
+        options.sigma_yaw or rules.MOTION_CAPTURE_YAW,
+        rules.TYPICAL_STAMP_NOISE,
+        *rules.TYPICAL_WALK,
     )
     if laid.headings_alone and options.sigma_yaw is None:
-        guess = (*guess[:3], TYPICAL_GYRO_WALK, *guess[4:])
+        guess = (*guess[:3], rules.TYPICAL_GYRO_WALK, *guess[4:])
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
         Model(robot, own),
@@ -139,14 +130,14 @@ def fit_model(
     if find_jumps:
         noise = point.variances
         point = _robustly(laid, point, numbers)
-        if laid.data < NOISE_NUMBERS:
+        if laid.data < rules.NOISE_NUMBERS:
             point = replace(point, variances=noise)
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
         point = turned_to_all_sides(laid, point)
     ways: Directions | None = None
     for _ in range(rounds):
-        if laid.data >= NOISE_NUMBERS:
+        if laid.data >= rules.NOISE_NUMBERS:
             variances = map_variances(
                 Costs(laid, point), point.variances, point.options.sigmas_known
             )
@@ -214,7 +205,7 @@ def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
     for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
         own = deviation[first:last]
         usual = max(float(np.median(own)) / _MEDIAN_CHI2_3, 1.0)
-        found.append(own > JUMP_OF_A_LEG * usual)
+        found.append(own > rules.JUMP_OF_A_LEG * usual)
     return tuple(found)
 
 

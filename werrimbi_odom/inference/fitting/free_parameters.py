@@ -12,7 +12,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.rules import CALIBRATION_BOUNDS, CALIBRATION_KNOWN
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.effect import Effect, Parameter
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -60,7 +60,8 @@ class FreeParameter:
 
 
 CALIBRATION = tuple(
-    FreeParameter(name, "", 1e-4, CALIBRATION_BOUNDS, CALIBRATION_KNOWN) for name in MULTIPLIERS
+    FreeParameter(name, "", 1e-4, rules.CALIBRATION_BOUNDS, rules.CALIBRATION_KNOWN)
+    for name in MULTIPLIERS
 )
 
 HEADING_AT_START = FreeParameter(START_YAW, "rad", 1e-4, (-1e9, 1e9), float("inf"), per_run=True)

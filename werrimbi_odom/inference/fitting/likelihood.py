@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.correlated_filter import (
     GaussMarkovError,
@@ -35,7 +36,6 @@ from werrimbi_odom.inference.fitting.map_walk import map_walk
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
-from werrimbi_odom.inference.rules import EVENT_STEP
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -315,7 +315,7 @@ def wheel_covariance(
         left[:, None, None, None] * prediction.per_left
         + right[:, None, None, None] * prediction.per_right
     )
-    noise[:, runs.stepped] += EVENT_STEP * np.eye(3)
+    noise[:, runs.stepped] += rules.EVENT_STEP * np.eye(3)
     return noise
 
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.prediction import Prediction
-from werrimbi_odom.inference.rules import MAP_WALK, QUARTER_TURN
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Floats
@@ -28,8 +28,8 @@ def map_walk(runs: Concatenated, prediction: Prediction, xy: Floats, yaw: Floats
         Variances of a pose on the map [m², rad²].
     """
     none = np.zeros(runs.count)
-    worth = prediction.length + np.abs(prediction.turn) / QUARTER_TURN
-    renewed = MAP_WALK**2 * worth
+    worth = prediction.length + np.abs(prediction.turn) / rules.QUARTER_TURN
+    renewed = rules.MAP_WALK**2 * worth
     leg = BodyMotion(prediction.along, none, prediction.turn)
     swing = piece_covariance(leg, PathNoise(none, renewed, none), none).matrix()
     flat = renewed[:, None, None] * np.diag([1.0, 1.0, 0.0])

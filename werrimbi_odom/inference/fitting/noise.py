@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
 from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
@@ -22,20 +23,6 @@ from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.linear import inverse_root
-from werrimbi_odom.inference.rules import (
-    GYRO_WALK_SPREAD,
-    MATCH_SPREAD,
-    NOISE_TOLD,
-    STAMP_NOISE_SPREAD,
-    STRANGE_NOISE,
-    TYPICAL_GYRO_WALK,
-    TYPICAL_MATCH,
-    TYPICAL_STAMP_NOISE,
-    TYPICAL_WALK,
-    TYPICAL_WHEEL_NOISE,
-    WALK_SPREAD,
-    WHEEL_NOISE_SPREAD,
-)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -50,7 +37,7 @@ WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
 _ALL = (*NOISES, STAMP_NOISE, *WALK)
 
 _LOWEST = np.log(1e-14)
-_HIGHEST = np.log([STRANGE_NOISE**2] * 2 + [10.0] * 6)
+_HIGHEST = np.log([rules.STRANGE_NOISE**2] * 2 + [10.0] * 6)
 """Bounds of the log variances; the wheels' one is physical."""
 
 
@@ -79,7 +66,7 @@ class NoiseEstimate:
 
 def beyond_wheel_noise(noise: NoiseEstimate) -> bool:
     """Whether a wheel's noise is at its upper bound, so that it is no wheel noise."""
-    return noise.determined and bool(np.isclose(noise.value, STRANGE_NOISE))
+    return noise.determined and bool(np.isclose(noise.value, rules.STRANGE_NOISE))
 
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
@@ -136,16 +123,26 @@ def prior_cost(costs: Costs, variances: Variances) -> Floats:
 def _prior(costs: Costs) -> tuple[Floats, Floats]:
     """Log means of the prior standard deviations, and their spread; infinite where unknown."""
     runs = laid_out(costs.runs)
-    middle = np.array([TYPICAL_WHEEL_NOISE, TYPICAL_WHEEL_NOISE, 1.0, 1.0, TYPICAL_STAMP_NOISE])
-    spread = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, np.inf, np.inf, STAMP_NOISE_SPREAD])
-    middle = np.concatenate([middle, TYPICAL_WALK])
+    middle = np.array(
+        [rules.TYPICAL_WHEEL_NOISE, rules.TYPICAL_WHEEL_NOISE, 1.0, 1.0, rules.TYPICAL_STAMP_NOISE]
+    )
+    spread = np.array(
+        [
+            rules.WHEEL_NOISE_SPREAD,
+            rules.WHEEL_NOISE_SPREAD,
+            np.inf,
+            np.inf,
+            rules.STAMP_NOISE_SPREAD,
+        ]
+    )
+    middle = np.concatenate([middle, rules.TYPICAL_WALK])
     spread = np.concatenate([spread, np.full(3, np.inf)])
     if costs.point.options.reference_kind == "local_map":
-        middle[2:4], spread[2:4] = TYPICAL_MATCH, MATCH_SPREAD
-        spread[5:] = WALK_SPREAD
+        middle[2:4], spread[2:4] = rules.TYPICAL_MATCH, rules.MATCH_SPREAD
+        spread[5:] = rules.WALK_SPREAD
     if costs.point.options.reference_kind == "incremental" and runs.headings_alone:
         seconds = float(runs.duration.sum() / runs.intervals.sum())
-        middle[3], spread[3] = TYPICAL_GYRO_WALK * np.sqrt(seconds), GYRO_WALK_SPREAD
+        middle[3], spread[3] = rules.TYPICAL_GYRO_WALK * np.sqrt(seconds), rules.GYRO_WALK_SPREAD
     return np.log(middle), spread
 
 
@@ -222,7 +219,7 @@ def noise_estimates(
         _ALL, [name for name, known in zip(NOISES[2:], held, strict=True) if known]
     )
     return {
-        name: NoiseEstimate(float(sigma), float(part), bool(part < NOISE_TOLD))
+        name: NoiseEstimate(float(sigma), float(part), bool(part < rules.NOISE_TOLD))
         for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
         if tell
     }

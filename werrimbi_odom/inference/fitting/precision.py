@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import NORMAL_95, student_quantile
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
@@ -23,7 +24,6 @@ from werrimbi_odom.inference.fitting.whitened_innovations import (
     with_columns_per_run,
 )
 from werrimbi_odom.inference.linear import covariance_of
-from werrimbi_odom.inference.rules import LEAST_KNOWN
 from werrimbi_odom.model.pose import Floats
 
 
@@ -80,7 +80,7 @@ class Precision:
         middle = self._variances_of(names, centre)
         found, scatter = middle, np.zeros(len(names))
         for name, noise in noises.items():
-            step = math.sqrt(3.0) * min(noise.share, LEAST_KNOWN)
+            step = math.sqrt(3.0) * min(noise.share, rules.LEAST_KNOWN)
             if step > 0.0:
                 values = [noise.value * math.exp(sign * step) for sign in (1.0, -1.0)]
                 more, less = (

@@ -15,23 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.windows import Windows
-from werrimbi_odom.inference.rules import (
-    AGREE_BETTER,
-    AGREE_ENOUGH,
-    AGREE_FEWEST,
-    AGREE_LAG_STEP,
-    AGREE_LAGS,
-    AGREE_LATEST,
-    AGREE_OWN,
-    AGREE_SHARE,
-    AGREE_SHARE_OF_FILE,
-    AGREE_TURN,
-    AGREE_WAY,
-    AGREE_WITHIN,
-    MOSTLY,
-    NO_DRIVING_TURNS,
-)
 from werrimbi_odom.model.pose import Floats
 
 _TRIES = 200  # minimal samples of two windows; 50 are of driven windows alone if half are driven
@@ -77,18 +62,18 @@ def turns_agree(windows: Windows, base: float) -> Agreement | None:
         it: a held robot turns less than predicted, and rarely by just that law.
     """
     rest = windows.at_rest()
-    rest = rest[np.abs(rest) < NO_DRIVING_TURNS * windows.steps * windows.step]
-    if rest.size >= AGREE_FEWEST:
+    rest = rest[np.abs(rest) < rules.NO_DRIVING_TURNS * windows.steps * windows.step]
+    if rest.size >= rules.AGREE_FEWEST:
         windows = replace(windows, measured=windows.measured - float(np.median(rest)))
     best: tuple[float, float, Floats] | None = None
     for lag in _lags(windows.step):
         every = windows.later(lag).rolling()
-        if every.time.size < AGREE_FEWEST:
+        if every.time.size < rules.AGREE_FEWEST:
             continue
         law, kept, asked = _turn_law(every, base)
-        if best is None or kept > AGREE_BETTER * best[0]:
+        if best is None or kept > rules.AGREE_BETTER * best[0]:
             best = kept, lag, law
-        if kept > AGREE_LAGS * asked:
+        if kept > rules.AGREE_LAGS * asked:
             break
     if best is None:
         return None
@@ -101,8 +86,8 @@ def turns_agree(windows: Windows, base: float) -> Agreement | None:
     lag = max((lag, lag - windows.step, lag + windows.step), key=kept_at)
     late = windows.later(lag)
     shown, gross = _turn(late, law[:, None])
-    near = bool(np.abs(law * base - (-1.0, 1.0)).max() < AGREE_WITHIN)
-    return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), near, AGREE_TURN)
+    near = bool(np.abs(law * base - (-1.0, 1.0)).max() < rules.AGREE_WITHIN)
+    return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), near, rules.AGREE_TURN)
 
 
 def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreement | None:
@@ -129,7 +114,7 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
 
     def kept_at(lag: float, wiring: Floats) -> tuple[float, float, Floats, Floats] | None:
         every = windows.later(lag).rolling()
-        if every.time.size < AGREE_FEWEST:
+        if every.time.size < rules.AGREE_FEWEST:
             return None
         law = _way_law(every, wiring, base)
         kept, asked = _kept(every, *_way(every, wiring, base, law[:, None]))
@@ -138,9 +123,9 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
     for lag in lags:
         for wiring in wirings:
             found = kept_at(lag, wiring)
-            if found is not None and (best is None or found[0] > AGREE_BETTER * best[0]):
+            if found is not None and (best is None or found[0] > rules.AGREE_BETTER * best[0]):
                 best = found
-        if best is not None and best[0] > AGREE_LAGS:
+        if best is not None and best[0] > rules.AGREE_LAGS:
             break
     if best is None:
         return None
@@ -150,8 +135,8 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
     _, lag, law, wiring = best
     late = windows.later(lag)
     shown, gross = _way(late, wiring, base, law[:, None])
-    by_file = abs(float(np.sqrt(max(law[0], 0.0))) - 1.0) < AGREE_WITHIN
-    return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), by_file, AGREE_WAY)
+    by_file = abs(float(np.sqrt(max(law[0], 0.0))) - 1.0) < rules.AGREE_WITHIN
+    return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), by_file, rules.AGREE_WAY)
 
 
 def _of_size(windows: Windows, sizes: Floats) -> Windows:
@@ -165,8 +150,8 @@ def _of_size(windows: Windows, sizes: Floats) -> Windows:
 
 def _lags(step: float) -> list[float]:
     """Lags to try: zero, then growing in both directions, at least two steps apart."""
-    apart = max(2.0 * step, AGREE_LAG_STEP)
-    some = [number * apart for number in range(1, int(AGREE_LATEST / apart) + 1)]
+    apart = max(2.0 * step, rules.AGREE_LAG_STEP)
+    some = [number * apart for number in range(1, int(rules.AGREE_LATEST / apart) + 1)]
     return [0.0, *(sign * lag for lag in some for sign in (1.0, -1.0))]
 
 
@@ -201,7 +186,7 @@ def _turn_law(windows: Windows, base: float) -> tuple[Floats, float, float]:
     own, best = (_refined(windows, law, terms) for law in (np.array([-1.0, 1.0]) / base, best))
     kept, asked = _kept(windows, *_turn(windows, np.stack([own, best], axis=1)))
     # A law that nearly all of the drive fits is the robot's, whatever wiring the file has.
-    needed = AGREE_LAGS if kept[1] > AGREE_LAGS * asked[1] else AGREE_OWN
+    needed = rules.AGREE_LAGS if kept[1] > rules.AGREE_LAGS * asked[1] else rules.AGREE_OWN
     return own if kept[0] > needed * kept[1] else best, float(kept.max()), float(asked.max())
 
 
@@ -209,10 +194,10 @@ def _refined(windows: Windows, law: Floats, terms: Floats) -> Floats:
     """Least-squares refit of a turn law to its inliers."""
     for _ in range(_REFINED):
         shown, gross = _turn(windows, law[:, None])
-        keeps = (np.abs(windows.measured - shown[:, 0]) <= AGREE_WITHIN * gross[:, 0]) & (
+        keeps = (np.abs(windows.measured - shown[:, 0]) <= rules.AGREE_WITHIN * gross[:, 0]) & (
             gross[:, 0] > 0.0
         )
-        if keeps.sum() < AGREE_FEWEST:
+        if keeps.sum() < rules.AGREE_FEWEST:
             break
         scale = 1.0 / gross[keeps, 0]  # weights fast and slow windows alike
         law = np.linalg.lstsq(
@@ -248,9 +233,9 @@ def _way_law(windows: Windows, wiring: Floats, base: float) -> Floats:
     seen = windows.measured / windows.chord
     terms, squares = _way_terms(windows, wiring, base), seen**2
     way, turn = np.sqrt(terms[:, 0]), np.sqrt(terms[:, 2])
-    swings = way < MOSTLY * windows.rolled
+    swings = way < rules.MOSTLY * windows.rolled
     scale = _usual_size(seen[~swings], way[~swings])
-    arm = _usual_size(seen[swings], turn[swings]) if swings.sum() >= AGREE_FEWEST else 0.0
+    arm = _usual_size(seen[swings], turn[swings]) if swings.sum() >= rules.AGREE_FEWEST else 0.0
     sideways = np.linspace(-1.0, 1.0, 9) * arm
     # With a lateral lever arm, a robot in arcs moves now farther and now less far than its wheels.
     # The commonest ratio is then no scale, so the file's scale and the least-squares fit are tried
@@ -267,8 +252,8 @@ def _way_law(windows: Windows, wiring: Floats, base: float) -> Floats:
     law = laws[:, int(np.argmax(kept))]
     for _ in range(_REFINED):
         shown, gross = (part[:, 0] for part in _way(windows, wiring, base, law[:, None]))
-        keeps = (np.abs(windows.measured - shown) <= AGREE_WITHIN * gross) & (gross > 0.0)
-        if keeps.sum() < AGREE_FEWEST:
+        keeps = (np.abs(windows.measured - shown) <= rules.AGREE_WITHIN * gross) & (gross > 0.0)
+        if keeps.sum() < rules.AGREE_FEWEST:
             break
         weight = 1.0 / gross[keeps] ** 2
         weighed = terms[keeps] * weight[:, None], squares[keeps] * weight
@@ -285,11 +270,11 @@ def _way_law(windows: Windows, wiring: Floats, base: float) -> Floats:
 
 def _usual_size(measured: Floats, shown: Floats) -> float:
     """The scale factor with the most inliers; 1 if there are too few windows."""
-    if measured.size < AGREE_FEWEST:
+    if measured.size < rules.AGREE_FEWEST:
         return 1.0
     sizes = _sizes(measured, shown)
     off = np.abs(measured[:, None] - shown[:, None] * sizes)
-    keeps = off <= AGREE_WITHIN * np.abs(shown[:, None] * sizes)
+    keeps = off <= rules.AGREE_WITHIN * np.abs(shown[:, None] * sizes)
     return float(sizes[int(np.argmax(keeps.sum(axis=0)))])
 
 
@@ -300,7 +285,7 @@ def _kept(windows: Windows, shown: Floats, gross: Floats) -> tuple[Floats, Float
     turning, for example, agrees with any base.
     """
     share = np.abs(shown) / np.maximum(gross, _TINY)
-    keeps = np.abs(windows.measured[:, None] - shown) <= AGREE_WITHIN * gross
+    keeps = np.abs(windows.measured[:, None] - shown) <= rules.AGREE_WITHIN * gross
     said = share + 0.02
     return np.where(keeps, said, 0.0).sum(axis=0), said.sum(axis=0)
 
@@ -317,9 +302,9 @@ def _plain(found: Agreement, near: bool, least: float) -> Agreement | None:
     """
     windows = found.windows
     asked = (windows.rolled > windows.still) & np.isfinite(windows.measured)
-    asked &= np.abs(found.expected) > AGREE_WITHIN * found.gross
-    keeps = asked & (found.off <= AGREE_WITHIN * found.gross)
-    share = AGREE_SHARE_OF_FILE if near else AGREE_SHARE
-    enough = max(AGREE_FEWEST, AGREE_ENOUGH / windows.step, share * asked.sum())
+    asked &= np.abs(found.expected) > rules.AGREE_WITHIN * found.gross
+    keeps = asked & (found.off <= rules.AGREE_WITHIN * found.gross)
+    share = rules.AGREE_SHARE_OF_FILE if near else rules.AGREE_SHARE
+    enough = max(rules.AGREE_FEWEST, rules.AGREE_ENOUGH / windows.step, share * asked.sum())
     gone = float(np.abs(found.expected[keeps]).sum()) / windows.steps
     return found if keeps.sum() >= enough and gone >= least else None

@@ -12,19 +12,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
-from werrimbi_odom.inference.rules import (
-    FEW_POSES,
-    MOMENT,
-    NO_DRIVING_ENDS,
-    QUARTER_TURN,
-    TURN_WORTH_SAYING,
-    WAY_WORTH_SAYING,
-)
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -35,7 +28,7 @@ def record_of(
     robot: Robot,
     limits: EncoderLimits | None = None,
     leg: float = 1.0,
-    turn: float = QUARTER_TURN,
+    turn: float = rules.QUARTER_TURN,
 ) -> AlignedRun:
     """Put ticks and reference on one clock, and list the stretches to exclude.
 
@@ -99,7 +92,7 @@ def unmeasured(record: AlignedRun) -> tuple[tuple[float, float], ...]:
 
 def _surely_around(part: LeftOut) -> tuple[float, float]:
     """Stretch that no leg may touch, widened where its ends are only known to half a window."""
-    unsure = NO_DRIVING_ENDS if part.why in ("held", "carried") else 0.0
+    unsure = rules.NO_DRIVING_ENDS if part.why in ("held", "carried") else 0.0
     return part.begin - unsure, part.end + unsure
 
 
@@ -143,8 +136,8 @@ def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     left, right = (np.diff(counters.at(time), axis=0) * [robot.left_tick, robot.right_tick]).T
     path = float(np.abs(0.5 * (left + right)).sum())
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
-    words = [f"drove {path:.1f} m"] if path >= WAY_WORTH_SAYING else []
-    words += [f"turned {turned:.0f}°"] if turned >= TURN_WORTH_SAYING or not words else []
+    words = [f"drove {path:.1f} m"] if path >= rules.WAY_WORTH_SAYING else []
+    words += [f"turned {turned:.0f}°"] if turned >= rules.TURN_WORTH_SAYING or not words else []
     return f"the robot {' and '.join(words)}"
 
 
@@ -161,10 +154,10 @@ def usable_rows(
         Time of the first and the last tick [s].
     """
     within = known & (time >= first) & (time <= last)
-    if within.sum() < FEW_POSES:
+    if within.sum() < rules.FEW_POSES:
         # Few poses are start and end measured by tape: the robot stood still for a moment before
         # the first tick and after the last.
-        within = known & (time >= first - MOMENT) & (time <= last + MOMENT)
+        within = known & (time >= first - rules.MOMENT) & (time <= last + rules.MOMENT)
     rows = np.flatnonzero(within)
     if rows.size == 0:
         return rows

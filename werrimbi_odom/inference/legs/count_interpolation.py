@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
-from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER, FEW_COUNTS
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -99,7 +99,7 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
         If fewer than two rows are usable, or the clock was set back.
     """
     together = run.reference is not None and run.reference.stamped_together
-    least = EVEN_LEAST_TOGETHER if together else EVEN_LEAST
+    least = rules.EVEN_LEAST_TOGETHER if together else rules.EVEN_LEAST
     return run.ticks.latest((robot, limits, least), lambda: _counted(run, robot, limits, least))
 
 
@@ -257,7 +257,7 @@ def _at_edge(near: Floats, slope: Floats, other: Floats, other_slope: Floats) ->
 
 def _steps_seen(counts: Floats) -> bool:
     change = np.abs(np.diff(counts))
-    return bool(change.any()) and float(np.median(change[change > 0.0])) <= FEW_COUNTS
+    return bool(change.any()) and float(np.median(change[change > 0.0])) <= rules.FEW_COUNTS
 
 
 def _without_steps(time: Floats, counts: Floats) -> Floats:

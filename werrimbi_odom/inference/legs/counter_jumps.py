@@ -13,13 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.rules import (
-    LEAP_FEWEST,
-    LEAP_LASTS,
-    LEAP_SPEED,
-    LEAP_TIMES,
-    LEAP_USUAL,
-)
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.pose import Floats
 
 
@@ -84,19 +78,19 @@ def counter_jumps_in(time: Floats, left: Floats, right: Floats) -> tuple[Counter
     lasted = np.diff(time)
     turns = np.maximum(np.abs(left), np.abs(right))
     moving = turns > 0.0
-    if np.count_nonzero(moving) < LEAP_FEWEST:
+    if np.count_nonzero(moving) < rules.LEAP_FEWEST:
         return ()
     lasted = np.maximum(lasted, np.median(lasted))  # two stamps may be close by accident
     speed = turns / lasted
-    usual = float(np.quantile(speed[moving], LEAP_USUAL))
-    fastest = max(LEAP_TIMES * usual, LEAP_SPEED)
+    usual = float(np.quantile(speed[moving], rules.LEAP_USUAL))
+    fastest = max(rules.LEAP_TIMES * usual, rules.LEAP_SPEED)
     fast = np.flatnonzero(speed > fastest)
     if fast.size == 0:
         return ()
     groups = np.split(fast, np.flatnonzero(np.diff(fast) > 1) + 1)
     found = []
     for group in groups:
-        if group.size > LEAP_LASTS:
+        if group.size > rules.LEAP_LASTS:
             continue  # a speed that lasts this long is real
         first, last = int(group[0]), int(group[-1])
         of_left = np.abs(left[group]).max() >= np.abs(right[group]).max()

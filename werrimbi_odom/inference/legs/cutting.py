@@ -18,13 +18,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
-from werrimbi_odom.inference.rules import (
-    PARTS_OF_A_LEG,
-    QUARTER_TURN,
-    RATE_OF_FIT,
-)
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -38,7 +34,7 @@ def match(
     robot: Robot,
     leg: float = 1.0,
     limits: EncoderLimits | None = None,
-    turn: float = QUARTER_TURN,
+    turn: float = rules.QUARTER_TURN,
 ) -> MatchedRun:
     """Split the steps of a run at its reference poses and cut it into legs.
 
@@ -73,11 +69,11 @@ def match_for_fit(
 
 
 def cut_for_fit(
-    record: AlignedRun, robot: Robot, leg: float, parts: int = PARTS_OF_A_LEG
+    record: AlignedRun, robot: Robot, leg: float, parts: int = rules.PARTS_OF_A_LEG
 ) -> MatchedRun:
     """Cut one record into the short legs of a fit, so many to a leg that is judged."""
-    record = replace(record, counters=record.counters.at_most(RATE_OF_FIT))
-    return divided(record, rows_of_legs(record, robot, leg / parts, QUARTER_TURN / parts))
+    record = replace(record, counters=record.counters.at_most(rules.RATE_OF_FIT))
+    return divided(record, rows_of_legs(record, robot, leg / parts, rules.QUARTER_TURN / parts))
 
 
 def every_pose(record: AlignedRun) -> MatchedRun:

@@ -17,18 +17,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter, uniform_filter1d
 
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.inference.rules import (
-    EVEN_HALF_BASE,
-    EVEN_HOLE,
-    EVEN_LEAST,
-    EVEN_LEAST_TOGETHER,
-    EVEN_MESSAGES,
-    EVEN_MOST,
-    EVEN_SHARE,
-    EVEN_SURE,
-    EVEN_TOGETHER,
-    EVEN_WINDOW,
-)
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -38,7 +27,7 @@ def with_even_stamps(
     left: Counts,
     right: Counts,
     lost: NDArray[np.intp] | None = None,
-    least: float = EVEN_LEAST,
+    least: float = rules.EVEN_LEAST,
 ) -> Floats:
     """Estimate when a timer read the counters; return the stamps unchanged if no timer did.
 
@@ -58,14 +47,14 @@ def with_even_stamps(
     ndarray, shape (n,)
         Ascending times [s]. A delay common to all stamps remains; it is estimated as such.
     """
-    if time.size < EVEN_MESSAGES or not (np.diff(time) >= 0.0).all():
+    if time.size < rules.EVEN_MESSAGES or not (np.diff(time) >= 0.0).all():
         return time
     first = ~_told_again(time, left, right)
     row = np.cumsum(first) - 1
     stamps, number = time[first], np.arange(float(row[-1] + 1))
     if lost is not None:
         number[1:] += np.cumsum(lost)[first[1:]]
-    if stamps.size <= EVEN_WINDOW or not _by_timer(stamps, number, left[first], right[first]):
+    if stamps.size <= rules.EVEN_WINDOW or not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
     tenth = 0.1 * period * number  # keeps readings in order
@@ -80,19 +69,19 @@ def stamped_together(run: Run) -> bool:
     """
     time = run.ticks.time
     late = time - with_even_stamps(time, run.ticks.left, run.ticks.right)
-    if run.reference is None or run.reference.time.size <= EVEN_WINDOW or not late.any():
+    if run.reference is None or run.reference.time.size <= rules.EVEN_WINDOW or not late.any():
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     own = seen - _numbered(seen, np.arange(float(seen.size)))[0]
     sent = _sent(seen, time)
     after = np.clip(np.searchsorted(time, sent), 1, time.size - 1)
     apart = np.minimum(np.abs(sent - time[after - 1]), np.abs(sent - time[after]))
-    if np.median(apart) < EVEN_LEAST_TOGETHER * np.std(late):
+    if np.median(apart) < rules.EVEN_LEAST_TOGETHER * np.std(late):
         return True
     both = np.interp(seen, time, late), own
     if not all(part.any() for part in both):
         return False
-    return bool(np.corrcoef(*both)[0, 1] > EVEN_TOGETHER)
+    return bool(np.corrcoef(*both)[0, 1] > rules.EVEN_TOGETHER)
 
 
 def in_packets_of(run: Run, seen: Reference) -> Reference:
@@ -104,7 +93,7 @@ def in_packets_of(run: Run, seen: Reference) -> Reference:
     ticks = run.ticks
     if seen is not run.reference or not seen.own_axes or seen.gyro is not None:
         return seen
-    read = with_even_stamps(ticks.time, ticks.left, ticks.right, least=EVEN_LEAST_TOGETHER)
+    read = with_even_stamps(ticks.time, ticks.left, ticks.right, least=rules.EVEN_LEAST_TOGETHER)
     late = np.interp(_sent(seen.time, ticks.time), ticks.time, ticks.time - read)
     return replace(seen, time=seen.time - late) if late.any() else seen
 
@@ -128,15 +117,15 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
     axis = np.exp(-1j * (reference.yaw[:-1] + 0.5 * turn))
     forth = ((np.diff(reference.x) + 1j * np.diff(reference.y)) * axis).real
     left, right = (
-        np.concatenate([[0.0], np.cumsum(forth + side * EVEN_HALF_BASE * turn)])
+        np.concatenate([[0.0], np.cumsum(forth + side * rules.EVEN_HALF_BASE * turn)])
         for side in (-1.0, 1.0)
     )
     time = np.asarray(reference.time, dtype=np.float64)
-    if time.size < EVEN_MESSAGES:
+    if time.size < rules.EVEN_MESSAGES:
         return reference
     even = with_even_stamps(time, left, right, _lost(time, left, right))
     # A larger correction means the numbering is wrong: too many scans are missing.
-    late = float(np.std(even - time)) > EVEN_MOST * float(np.median(np.diff(time)))
+    late = float(np.std(even - time)) > rules.EVEN_MOST * float(np.median(np.diff(time)))
     return reference if even is time or late else replace(reference, time=even)
 
 
@@ -148,7 +137,7 @@ def _lost(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     beside = 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
     drives = beside > 0.5 * float(np.median(step))
     times = np.divide(step, beside, out=np.ones_like(step), where=drives)
-    holes = (times > EVEN_HOLE) & (interval > np.median(interval))
+    holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
     return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
 
 
@@ -167,12 +156,14 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
 
 def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
     """Send times of messages that a timer sends, from their numbers [s], and the timer's period."""
-    apart = number[EVEN_WINDOW:] - number[:-EVEN_WINDOW]
-    period = float(np.median((stamps[EVEN_WINDOW:] - stamps[:-EVEN_WINDOW]) / apart))
+    apart = number[rules.EVEN_WINDOW :] - number[: -rules.EVEN_WINDOW]
+    period = float(np.median((stamps[rules.EVEN_WINDOW :] - stamps[: -rules.EVEN_WINDOW]) / apart))
     even = period * number
-    late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step in it
+    late = median_filter(
+        stamps - even, rules.EVEN_WINDOW, mode="reflect"
+    )  # a pause is a step in it
     off = np.clip(stamps - even - late, -period, period)
-    return even + late + uniform_filter1d(off, EVEN_WINDOW, mode="reflect"), period
+    return even + late + uniform_filter1d(off, rules.EVEN_WINDOW, mode="reflect"), period
 
 
 def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool:
@@ -193,12 +184,12 @@ def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool
         off.append((half - by_number * whole)[turns])
         told.append(((by_stamp - by_number) * whole)[turns])
     said, by_stamps = np.concatenate(off), np.concatenate(told)
-    if said.size < EVEN_MESSAGES or not by_stamps.any():
+    if said.size < rules.EVEN_MESSAGES or not by_stamps.any():
         return False
     follows = float(said @ by_stamps / (by_stamps @ by_stamps))
     rest = (said - follows * by_stamps) * by_stamps
     std = float(np.sqrt(rest @ rest) / (by_stamps @ by_stamps))
-    return abs(follows) + EVEN_SURE * std < EVEN_SHARE
+    return abs(follows) + rules.EVEN_SURE * std < rules.EVEN_SHARE
 
 
 def _before(place: Floats) -> Floats:

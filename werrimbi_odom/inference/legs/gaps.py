@@ -15,15 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import NoDriving, Reference, Why
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.measured_motion import runs_of
-from werrimbi_odom.inference.rules import (
-    GAP_FEWEST,
-    GAP_INTERVALS,
-    GAP_LEG,
-    GAP_WAYS,
-    NO_DRIVING_FEWEST,
-    NO_DRIVING_STUCK,
-)
 from werrimbi_odom.model.pose import Floats
 
 
@@ -56,8 +49,8 @@ def are_gaps(
     way, usual_way
         Travel in the intervals, and the usual travel of those with any, in legs.
     """
-    long = (duration > GAP_INTERVALS * usual_duration) & (way > GAP_WAYS * usual_way)
-    return np.asarray(long & (way >= GAP_LEG))
+    long = (duration > rules.GAP_INTERVALS * usual_duration) & (way > rules.GAP_WAYS * usual_way)
+    return np.asarray(long & (way >= rules.GAP_LEG))
 
 
 def gaps_in(time: Floats, way: Floats) -> NDArray[np.bool_]:
@@ -72,7 +65,7 @@ def gaps_in(time: Floats, way: Floats) -> NDArray[np.bool_]:
     """
     duration, gone = np.diff(time), np.diff(way)
     moving = gone > 0.0
-    if not (gone >= GAP_LEG).any() or np.count_nonzero(moving) < GAP_FEWEST:
+    if not (gone >= rules.GAP_LEG).any() or np.count_nonzero(moving) < rules.GAP_FEWEST:
         return np.zeros(duration.shape, dtype=np.bool_)
     usual = float(np.median(duration[moving])), float(np.median(gone[moving]))
     return are_gaps(duration, gone, *usual)
@@ -97,11 +90,11 @@ def as_stuck(part: NoDriving, reference: Reference) -> NoDriving:
     """
     time, poses = reference.time, np.stack([reference.x, reference.y, reference.yaw])
     rows = np.flatnonzero((time >= part.begin) & (time <= part.end))
-    if rows.size < NO_DRIVING_FEWEST or not np.isfinite(poses[0, rows]).any():
+    if rows.size < rules.NO_DRIVING_FEWEST or not np.isfinite(poses[0, rows]).any():
         return part
     repeats = np.zeros(time.size, dtype=np.bool_)
     repeats[1:] = ((poses[:, 1:] == poses[:, :-1]) | np.isnan(poses[:, 1:])).all(axis=0)
-    if np.mean(repeats[rows[1:]]) < NO_DRIVING_STUCK:
+    if np.mean(repeats[rows[1:]]) < rules.NO_DRIVING_STUCK:
         return part
     stuck = [each for each in runs_of(repeats) if each[1] >= rows[0] and each[0] <= rows[-1]]
     first, last = stuck[0][0] - 1, min(stuck[-1][1] + 1, time.size - 1)

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.motion_states import TimeSpan
-from werrimbi_odom.inference.rules import BIAS_EDGE, BIAS_REST, BIAS_SURE
 from werrimbi_odom.model.pose import wrap_all
 
 
@@ -34,9 +34,9 @@ def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
     rest = np.zeros(duration.size, dtype=np.bool_)
     for span in spans:
         if span.what == "stood":
-            inside = (time >= span.begin + BIAS_EDGE) & (time <= span.end - BIAS_EDGE)
+            inside = (time >= span.begin + rules.BIAS_EDGE) & (time <= span.end - rules.BIAS_EDGE)
             within = inside[:-1] & inside[1:]
-            if duration[within].sum() >= BIAS_REST:  # in a pause it may still come to rest
+            if duration[within].sum() >= rules.BIAS_REST:  # in a pause it may still come to rest
                 rest |= within
     seconds = float(duration[rest].sum())
     if not rest.any():
@@ -44,6 +44,6 @@ def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
     bias = float(turned[rest].sum()) / seconds
     scatter = turned[rest] - bias * duration[rest]
     unsure = float(np.sqrt(scatter @ scatter)) / seconds  # as of a random walk: the larger one
-    if abs(bias) < BIAS_SURE * unsure:
+    if abs(bias) < rules.BIAS_SURE * unsure:
         return reference
     return replace(reference, yaw=reference.yaw - bias * (reference.time - reference.time[0]))

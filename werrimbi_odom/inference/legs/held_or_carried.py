@@ -17,6 +17,7 @@ from scipy.ndimage import median_filter
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import (
@@ -30,26 +31,6 @@ from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.motion_states import LOST, driven
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
-from werrimbi_odom.inference.rules import (
-    NO_DRIVING_AT_ONCE,
-    NO_DRIVING_FEWEST,
-    NO_DRIVING_FEWEST_FIRM,
-    NO_DRIVING_FIRM,
-    NO_DRIVING_FOLLOWS,
-    NO_DRIVING_GOES,
-    NO_DRIVING_JOINED,
-    NO_DRIVING_MORE,
-    NO_DRIVING_MOST,
-    NO_DRIVING_QUICK,
-    NO_DRIVING_SET_DOWN,
-    NO_DRIVING_SILENT,
-    NO_DRIVING_SPLIT,
-    NO_DRIVING_TREMBLES,
-    NO_DRIVING_TURN,
-    NO_DRIVING_TURNS,
-    NO_DRIVING_WAY,
-    NO_DRIVING_WINDOW,
-)
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -91,13 +72,21 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     by_turns = None if turns is None else turns_agree(turns, robot.track)
     if by_turns is not None:
         span = by_turns.windows.steps * by_turns.windows.step
-        seen.append(judged_motion(by_turns, NO_DRIVING_TURNS * span, NO_DRIVING_TURN, turns=True))
+        seen.append(
+            judged_motion(
+                by_turns, rules.NO_DRIVING_TURNS * span, rules.NO_DRIVING_TURN, turns=True
+            )
+        )
     ways = windows_of(counters, reference, robot, ways=True)
     by_ways = None if ways is None else ways_agree(ways, by_turns, robot.track)
     if by_ways is not None:
         rolling = by_ways.windows.rolled > by_ways.windows.still
         typical = float(np.median(by_ways.gross[rolling]))
-        seen.append(judged_motion(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY, turns=False))
+        seen.append(
+            judged_motion(
+                by_ways, rules.NO_DRIVING_GOES * typical, rules.NO_DRIVING_WAY, turns=False
+            )
+        )
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     if by_turns is not None:
@@ -122,23 +111,23 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
 
 def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
     """Stretches with turns that the wheels cannot produce, where the drive fits no law of turns."""
-    slowest = NO_DRIVING_TURNS * windows.steps * windows.step
+    slowest = rules.NO_DRIVING_TURNS * windows.steps * windows.step
     could = (np.abs(windows.left) + np.abs(windows.right)) / track
     stands = windows.rolled <= windows.still
     turned = np.abs(windows.measured)
-    sure = turned > np.maximum(slowest, np.where(stands, 0.0, NO_DRIVING_MOST * could))
+    sure = turned > np.maximum(slowest, np.where(stands, 0.0, rules.NO_DRIVING_MOST * could))
     half = 0.5 * windows.steps * windows.step
     last_of_all = float(windows.time[-1]) + half
     found: list[NoDriving] = []
     for first, last in runs_of(turned > np.maximum(slowest, could)):
         inside = slice(first, last + 1)
-        if np.count_nonzero(sure[inside]) < windows.steps + NO_DRIVING_MORE:
+        if np.count_nonzero(sure[inside]) < windows.steps + rules.NO_DRIVING_MORE:
             continue
         begin, end = float(windows.time[first]) - half, float(windows.time[last]) + half
         by_hand = CARRIED if stands[inside].mean() > 0.5 else BY_HAND
-        if by_hand == BY_HAND and last_of_all - end <= NO_DRIVING_SILENT:
+        if by_hand == BY_HAND and last_of_all - end <= rules.NO_DRIVING_SILENT:
             end = last_of_all  # a lifted robot is not put down to drive for just a moment
-        if found and begin - found[-1].end <= NO_DRIVING_JOINED:
+        if found and begin - found[-1].end <= rules.NO_DRIVING_JOINED:
             begin = found.pop().begin
         found.append(NoDriving(begin, end, "carried", by_hand))
     return found
@@ -153,7 +142,7 @@ def _stretches(seen: MeasuredMotion) -> list[tuple[float, float]]:
     # A hand slows a robot unevenly: smaller deviations in between belong to the stretch.
     for begin, end in runs_of(surely | seen.edge):
         rows = begin + np.flatnonzero(surely[begin : end + 1])
-        if rows.size < max(NO_DRIVING_FEWEST_FIRM, windows.steps + 1):
+        if rows.size < max(rules.NO_DRIVING_FEWEST_FIRM, windows.steps + 1):
             continue
         first, last = int(rows[0]), int(rows[-1])
         inside = slice(first, last + 1)
@@ -164,11 +153,13 @@ def _stretches(seen: MeasuredMotion) -> list[tuple[float, float]]:
         # longer.
         leaps = moved_more and (
             last + 1 - first < 2 * windows.steps
-            or float(off[inside].max()) > NO_DRIVING_AT_ONCE * doubted
+            or float(off[inside].max()) > rules.NO_DRIVING_AT_ONCE * doubted
         )
-        short = rows.size < max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE)
+        short = rows.size < max(rules.NO_DRIVING_FEWEST, windows.steps + rules.NO_DRIVING_MORE)
         if windows.without_leaps:  # then a short displacement or stop is real
-            surely_so = doubted >= (NO_DRIVING_QUICK if moved_more else NO_DRIVING_FIRM) * could
+            surely_so = (
+                doubted >= (rules.NO_DRIVING_QUICK if moved_more else rules.NO_DRIVING_FIRM) * could
+            )
             leaps, short = leaps and not surely_so, short and not surely_so
         if leaps or short or doubted < seen.enough:
             continue
@@ -182,7 +173,7 @@ def _reaching(stretch: tuple[float, float], seen: Sequence[MeasuredMotion]) -> t
     A robot turned by hand while its wheels begin to turn can match them for a moment by chance.
     """
     off = np.sort(np.concatenate([each.time[each.edge] for each in seen]))
-    apart = np.diff(off) > NO_DRIVING_WINDOW
+    apart = np.diff(off) > rules.NO_DRIVING_WINDOW
     group = np.concatenate([[0], np.cumsum(apart)])
     begin, end = stretch
     own = group[(off >= begin) & (off <= end)]
@@ -212,7 +203,7 @@ def _joined(
             each.speaks[(each.time > before + half) & (each.time < begin - half)].any()
             for each in seen
         )
-        if apart <= NO_DRIVING_JOINED or (apart <= NO_DRIVING_SILENT and not speaks):
+        if apart <= rules.NO_DRIVING_JOINED or (apart <= rules.NO_DRIVING_SILENT and not speaks):
             joined[-1] = joined[-1][0], max(before, end)
         else:
             joined.append((begin, end))
@@ -233,16 +224,18 @@ def _by_kind(begin: float, end: float, seen: Sequence[MeasuredMotion]) -> list[N
     measured = np.abs(of_the_worst([each.agreement.windows.measured for each in seen]))
     expected = np.abs(of_the_worst([each.agreement.expected for each in seen]))
     moved = (measured > expected).astype(np.float64)
-    window = 2 * round(0.5 * NO_DRIVING_SPLIT / _GRID) + 1
+    window = 2 * round(0.5 * rules.NO_DRIVING_SPLIT / _GRID) + 1
     moved = median_filter(moved, window, mode="nearest")
-    if end - begin < NO_DRIVING_SPLIT:  # too short to split: one kind, by the weighted majority
+    if (
+        end - begin < rules.NO_DRIVING_SPLIT
+    ):  # too short to split: one kind, by the weighted majority
         weight = shares.max(axis=0)
         moved[:] = float(np.average(measured > expected, weights=weight) > 0.5)
     # Short parts take the kind of the longest: a hand comes or goes a moment sooner or later.
     runs = [*runs_of(moved > 0.5), *runs_of(moved < 0.5)]
     longest = max(runs, key=lambda run: run[1] - run[0])
     for first, last in runs:
-        if (last + 1 - first) * _GRID < NO_DRIVING_SPLIT:
+        if (last + 1 - first) * _GRID < rules.NO_DRIVING_SPLIT:
             moved[first : last + 1] = moved[longest[0]]
     edges = [0, *(np.flatnonzero(np.diff(moved)) + 1).tolist(), grid.size]
     rolled = seen[0].at(seen[0].agreement.windows.rolled, grid)
@@ -275,7 +268,9 @@ def _follows(part: NoDriving, turns: Agreement) -> bool:
     expected, measured = turns.expected[inside], turns.windows.measured[inside]
     turned = float(np.abs(expected).sum()) / turns.windows.steps
     left = float(np.sum((measured - expected) ** 2))
-    return turned > NO_DRIVING_TURN and left < NO_DRIVING_FOLLOWS * float(expected @ expected)
+    return turned > rules.NO_DRIVING_TURN and left < rules.NO_DRIVING_FOLLOWS * float(
+        expected @ expected
+    )
 
 
 def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) -> list[NoDriving]:
@@ -284,9 +279,9 @@ def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) ->
 
     def further(at: float, side: float, least: float) -> float:
         here = np.array([np.interp(at, counters.time, wheel) for wheel in travel])
-        rolled = np.abs(travel - here[:, None]).max(axis=0) > NO_DRIVING_TREMBLES
+        rolled = np.abs(travel - here[:, None]).max(axis=0) > rules.NO_DRIVING_TREMBLES
         ahead = side * (counters.time[rolled] - at)
-        return at + side * float(min([NO_DRIVING_SET_DOWN, least, *ahead[ahead > 0.0]]))
+        return at + side * float(min([rules.NO_DRIVING_SET_DOWN, least, *ahead[ahead > 0.0]]))
 
     found = list(parts)
     for number, part in enumerate(parts):

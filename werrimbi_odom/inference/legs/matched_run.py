@@ -18,12 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, touched
-from werrimbi_odom.inference.rules import (
-    EDGE,
-    EDGE_LEGS,
-)
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats
 
@@ -120,8 +117,8 @@ def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
     for run in runs:
         first, last = run.counters.time[0], run.counters.time[-1]
         begin, end = run.measured.time[:-1], run.measured.time[1:]
-        outside = (begin < first + EDGE) | (end > last - EDGE)
-        found.append(outside if run.legs > EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
+        outside = (begin < first + rules.EDGE) | (end > last - rules.EDGE)
+        found.append(outside if run.legs > rules.EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
     return tuple(found)
 
 

@@ -10,18 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement
-from werrimbi_odom.inference.rules import (
-    NO_DRIVING_EDGE,
-    NO_DRIVING_GENTLE,
-    NO_DRIVING_LATE,
-    NO_DRIVING_NOISE,
-    NO_DRIVING_OFF,
-    NO_DRIVING_ROUGH,
-    NO_DRIVING_STOPPED,
-    NO_DRIVING_STOPPED_FOR,
-)
 from werrimbi_odom.model.pose import Floats
 
 
@@ -62,19 +53,21 @@ def judged_motion(
     """
     found = _standing(found)
     windows, expected, gross = found.windows, found.expected, found.gross
-    reach = 2 * max(1, round(NO_DRIVING_LATE / windows.step)) + 1
+    reach = 2 * max(1, round(rules.NO_DRIVING_LATE / windows.step)) + 1
     low, high = minimum_filter1d(expected, reach), maximum_filter1d(expected, reach)
     off = np.maximum(np.maximum(low - windows.measured, windows.measured - high), 0.0)
     rolls = windows.rolled > windows.still
-    keeps = rolls & (gross > 0.0) & (found.off <= NO_DRIVING_EDGE * gross)
+    keeps = rolls & (gross > 0.0) & (found.off <= rules.NO_DRIVING_EDGE * gross)
     noise = float(np.median(found.off[keeps]))
-    rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
+    rough = rules.NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
     # How roughly wheels follow their law says nothing of a robot whose wheels stand. (And what is
     # measured at rest may all be of one carry.)
-    gentle = keeps & (gross <= np.quantile(gross[keeps], NO_DRIVING_GENTLE))
+    gentle = keeps & (gross <= np.quantile(gross[keeps], rules.NO_DRIVING_GENTLE))
     scatter = np.where(rolls, noise, min(noise, float(np.median(found.off[gentle]))))
-    least = np.maximum(NO_DRIVING_NOISE * scatter, slowest)
-    beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
+    least = np.maximum(rules.NO_DRIVING_NOISE * scatter, slowest)
+    beyond = off / np.maximum(
+        max(rules.NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least
+    )
     if turns:  # a gentle path is already most of what both wheels could do
         beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
     # Noise must not lengthen a stretch. At rest, position noise acts in two coordinates, in motion
@@ -82,8 +75,8 @@ def judged_motion(
     at_rest = 1.0 if turns else np.sqrt(2.0 * np.log(2.0)) * MEDIAN_TO_SIGMA
     halved = np.abs(windows.measured) < 0.5 * np.abs(expected)
     unsure = least * np.where(halved, 0.5, np.where(np.abs(expected) > least, 1.0, at_rest))
-    edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, unsure)
-    moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
+    edge = found.off > np.maximum(rules.NO_DRIVING_EDGE * gross, unsure)
+    moves = np.abs(expected) > np.maximum(rules.NO_DRIVING_EDGE * gross, least)
     return MeasuredMotion(found, beyond, edge, moves & keeps, enough)
 
 
@@ -114,10 +107,10 @@ def _stopped(found: Agreement, low: Floats, high: Floats, least: Floats) -> NDAr
     """
     windows = found.windows
     expected = np.where(low * high > 0.0, np.minimum(np.abs(low), np.abs(high)), 0.0)
-    still = np.abs(windows.measured) < NO_DRIVING_STOPPED * expected
+    still = np.abs(windows.measured) < rules.NO_DRIVING_STOPPED * expected
     rows = np.zeros(still.size, dtype=np.bool_)
     for first, last in runs_of(still & (expected > least)):
-        if (last + 1 - first) * windows.step >= NO_DRIVING_STOPPED_FOR:
+        if (last + 1 - first) * windows.step >= rules.NO_DRIVING_STOPPED_FOR:
             rows[first : last + 1] = True
     return rows
 

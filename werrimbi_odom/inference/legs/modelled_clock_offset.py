@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.inference.rules import DELAY_SHORTEST
+from werrimbi_odom.inference import rules
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.robot import Robot
 
@@ -15,4 +15,4 @@ def clock_offset(robot: Robot) -> float:
     Legs of a reference that is only late, by its transport, are cut by its stamps; fits move them.
     """
     delay = view_of(robot.effects).delay
-    return delay if abs(delay) >= DELAY_SHORTEST else 0.0
+    return delay if abs(delay) >= rules.DELAY_SHORTEST else 0.0

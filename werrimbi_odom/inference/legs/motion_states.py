@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import NoDriving
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.windows import standing_below
-from werrimbi_odom.inference.rules import REST_LASTS
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.robot import Robot
 
@@ -63,7 +63,7 @@ def driven(
     moving = rolled > standing_below(rolled)
     state = np.where(moving, "drove", "stood").astype(object)
     for begin, end in itertools.pairwise(_changes(state)):
-        if state[begin] == "stood" and (end - begin) * _GRID < REST_LASTS:
+        if state[begin] == "stood" and (end - begin) * _GRID < rules.REST_LASTS:
             state[begin:end] = "drove"
     middle = 0.5 * (grid[1:] + grid[:-1])
     for part in no_driving:

@@ -11,20 +11,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, median_filter
 
 from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.count_interpolation import Counters
-from werrimbi_odom.inference.rules import (
-    JUMP_NEIGHBOURS,
-    JUMP_SCATTER,
-    NO_DRIVING_LEAP,
-    NO_DRIVING_LEAP_WITHIN,
-    NO_DRIVING_POSES,
-    NO_DRIVING_SILENCE,
-    NO_DRIVING_SPANS,
-    NO_DRIVING_WINDOW,
-    STANDS,
-    TREMBLES,
-)
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -99,7 +88,7 @@ def standing_below(rolled: Floats) -> float:
         return 0.0
     gone = np.cumsum(ordered)
     half_of_all = float(ordered[int(np.searchsorted(gone, 0.5 * gone[-1]))])
-    return STANDS * float(np.median(ordered[ordered >= TREMBLES * half_of_all]))
+    return rules.STANDS * float(np.median(ordered[ordered >= rules.TREMBLES * half_of_all]))
 
 
 def windows_of(
@@ -108,15 +97,15 @@ def windows_of(
     """Turns or displacements in time windows; None where the record is too sparse."""
     known = reference.has_position if ways else reference.has_yaw
     time = reference.time[known]
-    if time.size < NO_DRIVING_POSES:
+    if time.size < rules.NO_DRIVING_POSES:
         return None
     new = np.concatenate([[True], time[1:] > np.maximum.accumulate(time)[:-1]])
     time = time[new]
     first, last = max(time[0], counters.time[0]), min(time[-1], counters.time[-1])
     usual = [float(np.median(np.diff(each))) for each in (time, counters.time)]
     step = max(_GRID, *usual)
-    steps = max(2, round(NO_DRIVING_WINDOW / step))
-    if 0.5 * step > NO_DRIVING_WINDOW or last - first < NO_DRIVING_SPANS * steps * step:
+    steps = max(2, round(rules.NO_DRIVING_WINDOW / step))
+    if 0.5 * step > rules.NO_DRIVING_WINDOW or last - first < rules.NO_DRIVING_SPANS * steps * step:
         return None
     grid = np.arange(first, last, step)
     left = np.interp(grid, counters.time, counters.left) * robot.left_tick
@@ -128,7 +117,7 @@ def windows_of(
         steps_seen = np.diff(reference.x[known][new]) + 1j * np.diff(reference.y[known][new])
     else:
         steps_seen = wrap_all(np.diff(reference.yaw[known][new])) + 0j
-    often = usual[0] < NO_DRIVING_LEAP_WITHIN
+    often = usual[0] < rules.NO_DRIVING_LEAP_WITHIN
     if often:
         steps_seen = _without_leaps(steps_seen, np.abs(np.diff(np.interp(time, grid, by_wheels))))
     gone = np.concatenate([[0j], np.cumsum(steps_seen)])
@@ -137,7 +126,7 @@ def windows_of(
     begin, end = grid[:-steps], grid[steps:]
     for stamps, each in zip((time, counters.time), usual, strict=True):
         for gap in np.flatnonzero(
-            np.diff(stamps) > max(NO_DRIVING_SILENCE * each, 2.0 * step)
+            np.diff(stamps) > max(rules.NO_DRIVING_SILENCE * each, 2.0 * step)
         ).tolist():
             measured[(begin < stamps[gap + 1]) & (end > stamps[gap])] = np.nan
     return Windows(
@@ -159,12 +148,12 @@ def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[n
     A jump is a single step that exceeds the noise, its neighbours and the wheels' motion. Moving a
     robot by hand takes longer than one to three steps.
     """
-    reach = 2 * JUMP_NEIGHBOURS + 1
+    reach = 2 * rules.JUMP_NEIGHBOURS + 1
     usual = median_filter(seen.real, reach) + 1j * median_filter(seen.imag, reach)
     left = np.abs(seen - usual)
     moved = maximum_filter1d(np.maximum(np.abs(usual), by_wheels), reach)
-    scatter = JUMP_SCATTER * MEDIAN_TO_SIGMA * float(np.median(left))
-    return np.where(left > np.maximum(scatter, NO_DRIVING_LEAP * moved), usual, seen)
+    scatter = rules.JUMP_SCATTER * MEDIAN_TO_SIGMA * float(np.median(left))
+    return np.where(left > np.maximum(scatter, rules.NO_DRIVING_LEAP * moved), usual, seen)
 
 
 def _over(values: Floats, steps: int) -> Floats:

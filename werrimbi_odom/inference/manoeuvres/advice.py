@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.recordings import Recordings
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
 from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre, next_manoeuvre, strongest
-from werrimbi_odom.inference.rules import LEGS_A_TURN, SURE
 from werrimbi_odom.progress import Show, silent
 
 WHEELS_ANGLE = frozenset({"left_angle", "right_angle"})
@@ -39,7 +39,7 @@ def shorter_leg(diagnosis: Diagnosis, leg: float) -> float | None:
         robot.left_tick * robot.left_ticks_per_revolution,
         robot.right_tick * robot.right_ticks_per_revolution,
     )
-    shorter = float(f"{min(turns) / LEGS_A_TURN:.2g}")
+    shorter = float(f"{min(turns) / rules.LEGS_A_TURN:.2g}")
     return shorter if shorter < 0.5 * leg else None
 
 
@@ -139,7 +139,7 @@ def significant(diagnosis: Diagnosis) -> list[Dependence]:
 
 def beyond_chance(cells: Iterable[Dependence]) -> Iterator[Dependence]:
     """Significant cells of the evidence map."""
-    return (cell for cell in cells if cell.p_value < SURE)
+    return (cell for cell in cells if cell.p_value < rules.SURE)
 
 
 def one_each(cells: Iterable[Dependence]) -> list[Dependence]:

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import base_name, name_of_base
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.effect_support import able, askable
@@ -35,7 +36,6 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
 )
 from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined
-from werrimbi_odom.inference.rules import HIDDEN_FROM, POWER, SURE
 from werrimbi_odom.model.effect import Effect
 
 
@@ -61,7 +61,7 @@ class DetectionLimit:
     @property
     def hidden(self) -> bool:
         """Whether an effect of typical size would have stayed hidden."""
-        return not self.minimum_detectable < HIDDEN_FROM * self.typical
+        return not self.minimum_detectable < rules.HIDDEN_FROM * self.typical
 
 
 def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[DetectionLimit, ...]:
@@ -116,7 +116,7 @@ def _best(
     candidate: Candidate, look: Sensitivities, tried: int, held: Sequence[str]
 ) -> DetectionLimit:
     """The limit of an effect's most sensitive parameter."""
-    limits = _limits(candidate, look, tried, POWER, held)
+    limits = _limits(candidate, look, tried, rules.POWER, held)
     return min(limits, key=lambda limit: limit.minimum_detectable / limit.typical)
 
 
@@ -138,7 +138,7 @@ def _limits(
     free = frame.residual(marks)
     heard, before = (np.sum(columns**2, axis=0) for columns in (free, marks))
     heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
-    wanted = noncentrality(max(int(np.sum(heard > 0.0)), 1), SURE / max(tried, 1), power)
+    wanted = noncentrality(max(int(np.sum(heard > 0.0)), 1), rules.SURE / max(tried, 1), power)
     information = heard.reshape(-1, width).sum(axis=0)
     if effect.quadrature is not None:  # the least observable phase
         names, information = [effect.quadrature[0]], information.min(keepdims=True)

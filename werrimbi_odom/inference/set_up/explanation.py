@@ -16,7 +16,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.rules import ASKEW, ASKEW_BY, BOTH_REVERSED, TWIN_WITHIN
+from werrimbi_odom.inference import rules
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +51,8 @@ class Wired:
     def mistakes(self) -> float:
         """Cost of the mistakes: -log10 of their prior frequency (`rules.set_up`)."""
         both = self.left_reversed and self.right_reversed
-        reversals = BOTH_REVERSED if both else float(self.left_reversed + self.right_reversed)
-        askew = float(abs(self.yaw) > ASKEW) + ASKEW_BY * abs(self.yaw)
+        reversals = rules.BOTH_REVERSED if both else float(self.left_reversed + self.right_reversed)
+        askew = float(abs(self.yaw) > rules.ASKEW) + rules.ASKEW_BY * abs(self.yaw)
         return float(self.swapped + self.mirrored) + reversals + askew
 
     def names(self) -> tuple[str, ...]:
@@ -68,7 +68,7 @@ class Wired:
             yield "left_wheel_reversed"
         if self.right_reversed:
             yield "right_wheel_reversed"
-        if abs(self.yaw) > ASKEW:
+        if abs(self.yaw) > rules.ASKEW:
             yield "reference_yaw_offset"
 
 
@@ -126,7 +126,7 @@ def twins_of(name: str, ways: list[Wired]) -> tuple[str, ...]:
     first = ways[0]
     found: list[str] = []
     for other in ways[1:]:
-        if other.mistakes - first.mistakes < TWIN_WITHIN and name not in other.names():
+        if other.mistakes - first.mistakes < rules.TWIN_WITHIN and name not in other.names():
             kept = set(first.names())
             found += [each for each in other.names() if each not in kept and each not in found]
     return tuple(found)

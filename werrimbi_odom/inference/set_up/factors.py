@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.rules import COUNTS_NEAR, MOST_OF_A_SKID, NEAR, ORDINARY, UNIT_NEAR
+from werrimbi_odom.inference import rules
 
 FACTORS: dict[str, float] = {
     "2": 2.0,
@@ -74,12 +74,12 @@ less (`MILLIMETRES_FROM`)."""
 def simple_factor(value: float) -> str | None:
     """Name of the simple factor nearest to a positive value in log scale; None if none is near."""
     nearest = min(FACTORS, key=lambda name: abs(math.log(value / FACTORS[name])))
-    return nearest if abs(math.log(value / FACTORS[nearest])) <= math.log(NEAR) else None
+    return nearest if abs(math.log(value / FACTORS[nearest])) <= math.log(rules.NEAR) else None
 
 
 def unit_of_positions(radius: float, base: float) -> str | None:
     """Unit of the reference's positions that explains a common factor on radii and base."""
-    near = math.log(UNIT_NEAR)
+    near = math.log(rules.UNIT_NEAR)
     for unit, size in LENGTHS.items():
         if max(abs(math.log(radius / size)), abs(math.log(base / size))) <= near:
             return unit
@@ -96,7 +96,7 @@ def counts_words(counts: float, radius: float) -> str:
     units |= {"metres": turn * radius, "centimetres": 1e2 * turn * radius}
     units |= {"millimetres": 1e3 * turn * radius}
     unit = min(units, key=lambda name: abs(math.log(counts / units[name])))
-    near = abs(math.log(counts / units[unit])) <= math.log(COUNTS_NEAR)
+    near = abs(math.log(counts / units[unit])) <= math.log(rules.COUNTS_NEAR)
     exact = f"{units[unit]:.6g} ({unit})" if near else f"{counts:.4g}"
     return (
         f"a turn of the wheel has {counts:.4g} counts by these drives: if that is right, write "
@@ -106,7 +106,7 @@ def counts_words(counts: float, radius: float) -> str:
 
 def is_ordinary(value: float) -> bool:
     """Whether a positive factor is so near to 1 that calibration handles it."""
-    return abs(math.log(value)) <= math.log(ORDINARY)
+    return abs(math.log(value)) <= math.log(rules.ORDINARY)
 
 
 def spoken(value: float) -> str:
@@ -121,7 +121,7 @@ def radius_words(value: float, factor: str | None) -> str:
 
 def skids(base: float) -> bool:
     """Whether skidding wheels can explain such an effective base, relative to the true one."""
-    return ORDINARY < base < MOST_OF_A_SKID
+    return rules.ORDINARY < base < rules.MOST_OF_A_SKID
 
 
 def base_words(value: float, factor: str | None) -> str:

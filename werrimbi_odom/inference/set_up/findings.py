@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.rules import ASKEW, LONGEST_ARM, NEAR, WIDE
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.set_up.explanation import Setting, Wired, twins_of
 from werrimbi_odom.inference.set_up.factors import (
     base_words,
@@ -79,7 +79,7 @@ def findings_of(
     for proposal in _proposals(setting, ways, yaw_alone):
         assert proposal.without is not None
         gain = misfit(proposal.without) / best
-        if gain > WIDE:
+        if gain > rules.WIDE:
             found.append(replace(proposal, gain=gain))
     return found
 
@@ -88,7 +88,7 @@ def _proposals(setting: Setting, ways: list[Wired], yaw_alone: bool) -> Iterator
     yield from _wiring(setting, ways)
     yield from _sizes(setting, yaw_alone)
     yaw = setting.wired.yaw
-    if abs(yaw) > ASKEW:
+    if abs(yaw) > rules.ASKEW:
         without = replace(setting, wired=replace(setting.wired, yaw=0.0))
         words = (
             f"the reference's forward axis is turned by {math.degrees(yaw):.0f}° against the "
@@ -146,7 +146,7 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
     odd_radius, odd_base = not is_ordinary(common), not is_ordinary(base)
     wider = replace(setting, base=1.0)
     of_base = simple_factor(base)
-    if odd_radius and odd_base and abs(math.log(common / base)) < math.log(NEAR):
+    if odd_radius and odd_base and abs(math.log(common / base)) < math.log(rules.NEAR):
         words = metre_words(common, factor)
         without = replace(smaller, base=1.0)
         yield SetUpFinding("wheel_radius_scale", values, factor, words, (), 1.0, without)
@@ -189,7 +189,7 @@ def _odd_side(left: float, right: float) -> tuple[str, float]:
 def arm_finding(setting: Setting, misfit: Misfit, base: float) -> list[SetUpFinding]:
     """A lever arm longer than the base: not an inexact mount, but another place than entered."""
     arm = setting.arm
-    if not base < abs(arm) or max(abs(arm.real), abs(arm.imag)) > LONGEST_ARM:
+    if not base < abs(arm) or max(abs(arm.real), abs(arm.imag)) > rules.LONGEST_ARM:
         return []
     without = replace(setting, arm=0j)
     gain = misfit(without) / misfit(setting)
@@ -198,6 +198,6 @@ def arm_finding(setting: Setting, misfit: Misfit, base: float) -> list[SetUpFind
         f"{arm.imag:.2f} m to its left: its marker, laser or aerial is mounted there"
     )
     values = {"x": arm.real, "y": arm.imag}
-    if gain < WIDE:
+    if gain < rules.WIDE:
         return []
     return [SetUpFinding("reference_lever_arm", values, None, words, (), gain, without)]

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.legs.aligned_run import usable_rows
 from werrimbi_odom.inference.legs.count_interpolation import between_messages, summed
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
-from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import features
@@ -160,7 +160,7 @@ def measured_by(records: Sequence[SetUpRecord]) -> Measure | None:
     place = sum(int(np.isfinite(each.place).sum()) for each in records)
     yaw = sum(int(np.isfinite(each.yaw).sum()) for each in records)
     both = sum(int((np.isfinite(each.place) & np.isfinite(each.yaw)).sum()) for each in records)
-    if both >= POSE_ROWS_OF_SET_UP * max(place, yaw) and both > 1:
+    if both >= rules.POSE_ROWS_OF_SET_UP * max(place, yaw) and both > 1:
         return "pose"
     if place > 1 and place >= yaw:
         return "position"
@@ -173,7 +173,7 @@ def effective_track(robot: Robot) -> float:
 
 
 def cut(
-    records: Sequence[SetUpRecord], robot: Robot, measured: Measure, *, fewest: int = CUTS
+    records: Sequence[SetUpRecord], robot: Robot, measured: Measure, *, fewest: int = rules.CUTS
 ) -> Cuts:
     """Cut all runs at rows of the reference, every half turn of the faster wheel.
 
@@ -192,7 +192,9 @@ def cut(
     usable = [_usable(each, measured) for each in records]
     total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)
     half_turn = math.pi * robot.wheel_radius
-    length = min(max(half_turn, total / MOST_CUTS), total / fewest) if total > 0.0 else half_turn
+    length = (
+        min(max(half_turn, total / rules.MOST_CUTS), total / fewest) if total > 0.0 else half_turn
+    )
     view = mount_of(robot)
     parts, offset, stretch = [], 0, 0
     for each in usable:

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
-from werrimbi_odom.inference.rules import ARM_TOLD
 from werrimbi_odom.inference.set_up.records import Complexes, Cuts
 from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -90,7 +90,7 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
     alone = robust(gone[:, None], cuts.move)
     if alone is None:
         return None
-    if both is not None and both[1][0] < ARM_TOLD * abs(both[0][0]):
+    if both is not None and both[1][0] < rules.ARM_TOLD * abs(both[0][0]):
         value, std, scatter = both
         return Moving(complex(value[0]), complex(value[1]), float(std[0]), scatter)
     # On circles only, base and lever arm are confounded.

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, NoiseInterval, pivot_scatter
-from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
 from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.number_format import picked, scaled_with_std
 
@@ -32,9 +32,9 @@ def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: 
         "Written is the first column, of greatest likelihood. The last is the paper's way, "
         "ellipses laid over the data's: it scatters more, for it trusts all three plots alike.",
     ]
-    if fit.runs < ADVISED_RUNS:
+    if fit.runs < rules.ADVISED_RUNS:
         sentences.append(
-            f"{ADVISED_RUNS} runs would tell each k to about 13 %; here are {fit.runs}."
+            f"{rules.ADVISED_RUNS} runs would tell each k to about 13 %; here are {fit.runs}."
         )
     verdict = paragraphs([_verdict(fit)])
     return [*verdict, Table(title, heads, rows), *paragraphs(sentences, apart=True)]
@@ -80,13 +80,13 @@ def _mean(fit: NoiseFit) -> str:
         f"Mean of the runs (systematic, kept apart): x {x:.1f} ± {std_x:.1f} mm, "
         f"y {y:.1f} ± {std_y:.1f} mm, yaw {yaw:.1f} ± {std_yaw:.1f} mrad"
     )
-    if fit.mean_p < SURE_WHEN_ASKED:
+    if fit.mean_p < rules.SURE_WHEN_ASKED:
         return f"{said}. That is more than scatter: calibrate base and radii first (umbmark)."
     return f"{said}; no more than scatter."
 
 
 def _verdict(fit: NoiseFit) -> str:
-    if fit.misfit_p < SURE_WHEN_ASKED:
+    if fit.misfit_p < rules.SURE_WHEN_ASKED:
         return "Careful: what is assumed does not explain the scatter; do not trust these k."
     left, right = (scaled_with_std(each.value, each.std) for each in (fit.left, fit.right))
     if fit.split_known:
@@ -96,7 +96,7 @@ def _verdict(fit: NoiseFit) -> str:
 
 def _misfit(fit: NoiseFit) -> str:
     """Agreement of the model's covariance with that of the runs, and a remedy."""
-    if fit.misfit_p >= SURE_WHEN_ASKED:
+    if fit.misfit_p >= rules.SURE_WHEN_ASKED:
         return f"Of runs by this model, {100.0 * fit.misfit_p:.2g} % match it worse than these do."
     ratio = np.sqrt(np.diag(fit.data) / np.diag(fit.model))
     names = [f"{name} {value:.1f}" for name, value in zip(("x", "y", "yaw"), ratio, strict=True)]

@@ -8,6 +8,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.squares import (
     OTHER_VEHICLES,
     Squares,
@@ -16,7 +17,6 @@ from werrimbi_odom.inference.calibration.squares import (
 )
 from werrimbi_odom.inference.calibration.umbmark import Umbmark, ValueAndStd
 from werrimbi_odom.inference.distributions import NORMAL_95
-from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
@@ -113,17 +113,17 @@ def _factors(result: Umbmark, old: Robot) -> Table:
 
 def _doubts(squares: Squares, result: Umbmark) -> list[str]:
     lines = []
-    if result.disagreement_p < SURE_WHEN_ASKED:
+    if result.disagreement_p < rules.SURE_WHEN_ASKED:
         of_alpha, of_beta = result.disagreement
         lines.append(
             f"Careful: x and y disagree (by {_mrad(of_alpha)} about alpha and {_mrad(of_beta)} "
             f"about beta; chance {result.disagreement_p:.1g}). Something besides base and radii "
             "moved the robot: a slip, play in a gear, a start askew."
         )
-    if min(len(squares.cw), len(squares.ccw)) < ADVISED_SQUARES:
+    if min(len(squares.cw), len(squares.ccw)) < rules.ADVISED_SQUARES:
         lines.append(
-            f"{ADVISED_SQUARES} squares in each sense are usual; with fewer the ± above grows "
-            "quickly."
+            f"{rules.ADVISED_SQUARES} squares in each sense are usual; with fewer the ± above "
+            "grows quickly."
         )
     return lines
 

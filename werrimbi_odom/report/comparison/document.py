@@ -6,10 +6,10 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.dependence import ByVariable
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
-from werrimbi_odom.inference.rules import SURE_OF_LEGS
 from werrimbi_odom.report.comparison.figures import NAMES, legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.words import words_of
@@ -104,7 +104,7 @@ def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
 
 
 def _depends(item: ByVariable) -> bool:
-    return any(p_value < SURE_OF_LEGS for p_value in item.p_values.values())
+    return any(p_value < rules.SURE_OF_LEGS for p_value in item.p_values.values())
 
 
 def _motions(main: OfLength, leg: str) -> Table:
@@ -160,7 +160,7 @@ def _short(name: str) -> str:
 def _variable(item: ByVariable) -> Table:
     name, _, unit = item.name.partition(" [")
     unit = unit.rstrip("]")
-    with_it = [channel for channel, p in item.p_values.items() if p < SURE_OF_LEGS]
+    with_it = [channel for channel, p in item.p_values.items() if p < rules.SURE_OF_LEGS]
     angles = item.name.startswith("heading")
     rows = []
     for part in item.bins:

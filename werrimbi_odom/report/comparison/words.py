@@ -6,12 +6,12 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.recording_info import leg_of_positions
-from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import capital, counted, listed, two_digits
@@ -77,7 +77,7 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
         other = "measure the robot more often on its way" if rare else "try a shorter --leg"
         return (
             f"Too little to judge: {counted(count, 'leg')} of {leg_words(length, asked)} m, "
-            f"{FEWEST_LEGS} are the least. Drive more, or {other}."
+            f"{rules.FEWEST_LEGS} are the least. Drive more, or {other}."
         )
     if verdict.good:
         shortest, longest = comparison.lengths[0].leg, comparison.lengths[-1].leg
@@ -121,7 +121,7 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
     )
     for kind in KINDS:
         figures = comparison.main.by_motion[kind]
-        if figures.figures.count < FEWEST_LEGS:
+        if figures.figures.count < rules.FEWEST_LEGS:
             if kind in verdict.few_and_bad:
                 number = counted(figures.figures.count, "leg")
                 times = math.sqrt(figures.figures.nees)
@@ -158,8 +158,8 @@ def _errors(figures: LegFigures) -> str:
 
 def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
     lines = []
-    count = comparison.main.all.figures.count // WORST_OF
-    if verdict.few > FEW_HOLD and count > 1 and not verdict.good:
+    count = comparison.main.all.figures.count // rules.WORST_OF
+    if verdict.few > rules.FEW_HOLD and count > 1 and not verdict.good:
         lines.append(
             f"- A few legs are far worse than all others: the worst {count} hold "
             f"{100.0 * verdict.few:.0f} % of the squared errors. Look what happened there."

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
-from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.report import style
 from werrimbi_odom.report.diagnosis.dependence import VARIABLES, error_of, label_of, unit_of
 from werrimbi_odom.report.over_variable import labelled, over
@@ -75,7 +75,7 @@ def evidence_map_figure(cells: Sequence[Dependence], *, opens: str = "") -> Figu
         ygap=2,
     )
     # Marks have an outline on a light disc, so that they are legible on any colour.
-    marked = [cell for row in grid for cell in row if cell and cell.p_value < VERY_SURE]
+    marked = [cell for row in grid for cell in row if cell and cell.p_value < rules.VERY_SURE]
     stars = [_worth(cell) == top for cell in marked]
     style.plot(
         figure,

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.effects.lookup import find
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
     Value,
@@ -20,7 +21,6 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import ORDINARY, SIGNIFICANT
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
@@ -106,7 +106,7 @@ def _unseen(value: Value) -> bool:
     if away == 0.0 and not value.is_shape and not value.per_run:
         return True
     told = not value.per_run and not value.is_shape and value.std > 0.0
-    return told and away < SIGNIFICANT * value.std
+    return told and away < rules.SIGNIFICANT * value.std
 
 
 def hang_together(values: Iterable[Value]) -> str:
@@ -231,8 +231,8 @@ def by_sizes_alone(told: Told) -> list[str]:
         (value, getattr(diagnosis.given, name), std)
         for name, (value, std) in best_sizes(diagnosis).items()
     ]
-    usual = all(1.0 / ORDINARY < value / given < ORDINARY for value, given, _ in sizes)
-    seen = any(abs(value - given) > SIGNIFICANT * (std or 0.0) for value, given, std in sizes)
+    usual = all(1.0 / rules.ORDINARY < value / given < rules.ORDINARY for value, given, _ in sizes)
+    seen = any(abs(value - given) > rules.SIGNIFICANT * (std or 0.0) for value, given, std in sizes)
     if not (words and sides.fell and usual and seen):
         return []
     before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))

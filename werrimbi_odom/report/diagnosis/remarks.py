@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
@@ -15,7 +16,6 @@ from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
-from werrimbi_odom.inference.rules import UNLIKE, WRONG_OF_A_LEG
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.number_format import (
@@ -248,7 +248,7 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
 def like_noise(diagnosis: Diagnosis) -> str:
     """That held-out errors look like noise, or that they are larger than those of the fitted."""
     held, fitted = diagnosis.holdout, diagnosis.train
-    if held.before > UNLIKE * fitted.before:
+    if held.before > rules.UNLIKE * fitted.before:
         error = error_words(fitted.before, fitted.unit)
         return f"; on what was fitted they are {error}, so they are not noise alone"
     return ", and they look like noise"
@@ -258,7 +258,7 @@ def drowned(told: Told) -> list[str]:
     """Of a *none* whose errors are a large part of the way: of little worth."""
     sides = told.diagnosis.holdout
     leg = max(told.leg, sides.length)
-    if sides.unit != "m" or not sides.after > WRONG_OF_A_LEG * leg:
+    if sides.unit != "m" or not sides.after > rules.WRONG_OF_A_LEG * leg:
         return []
     return [
         f"But: that is {100.0 * sides.after / leg:.0f} % of the way. If the reference errs so, it "

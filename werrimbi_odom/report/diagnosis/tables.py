@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
-from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.number_format import error_words, in_unit, p_words
@@ -69,7 +69,7 @@ def _map(diagnosis: Diagnosis) -> Sequence[Part]:
     """Explained chi-squared of each error channel by each variable."""
     title = "What the errors go with, before anything is put in"
     cells = list(diagnosis.depends_on)
-    sure = list(dict.fromkeys(short_words(cell) for cell in cells if cell.p_value < SURE))
+    sure = list(dict.fromkeys(short_words(cell) for cell in cells if cell.p_value < rules.SURE))
     if not sure:
         return paragraphs([f"{title}: nothing."], apart=True)
     rows = [
@@ -84,7 +84,7 @@ def _map(diagnosis: Diagnosis) -> Sequence[Part]:
 def _strength(cells: Iterable[Dependence], channel: str, name: str) -> str:
     best = max(
         (cell.gain - cell.degrees for cell in cells
-         if cell.channel == channel and short_words(cell) == name and cell.p_value < SURE),
+         if cell.channel == channel and short_words(cell) == name and cell.p_value < rules.SURE),
         default=0.0,
     )  # fmt: skip
     return f"{best:.0f}" if best > 0.0 else "."

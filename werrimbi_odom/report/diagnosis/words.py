@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
     mistakes,
@@ -16,7 +17,6 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 )
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
-from werrimbi_odom.inference.rules import POWER
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis import phrases, remarks
@@ -214,7 +214,7 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     if not move.minutes:
         return
     enough = "are enough"
-    if move.chance is not None and move.chance < POWER:
+    if move.chance is not None and move.chance < rules.POWER:
         enough = f"tell them apart in {100.0 * move.chance:.0f} % of cases"
     yield f"About {move.minutes:.0f} min of it {enough}."
     yield f"Then give that drive to `{diagnose}` together with these."

@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from functools import partial
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.manoeuvres.advice import Told
-from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
@@ -189,7 +189,7 @@ def _by_chance(item: Ranked, diagnosis: Diagnosis) -> str:
     wild = at_bounds_words(diagnosis).get(item.effect)
     if wild is not None:
         return f"only with {wild}, the limit of what physics allows"
-    if item.p_value is not None and item.p_value > SURE:
+    if item.p_value is not None and item.p_value > rules.SURE:
         return "not seen in these drives"
     return chance_words(item.p_value)
 
@@ -225,7 +225,7 @@ def _map(tab: Tab, diagnosis: Diagnosis) -> None:
     text("h3", "Evidence: which error goes with what", tabindex="-1", data_key="map")
     best: dict[tuple[str, str], Dependence] = {}
     for cell in diagnosis.depends_on:
-        if cell.p_value < SURE:
+        if cell.p_value < rules.SURE:
             best.setdefault((cell.name, cell.channel), cell)
     labels = {name: short_words(cell) for (name, _), cell in best.items()}
     names = list(labels)[:MOST_ROWS]
