@@ -42,7 +42,7 @@ from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect
 from werrimbi_odom.model.robot import Robot
 
-SECONDS, RATE = 90, 20
+SECONDS, RATE = 60, 20
 
 
 @body_effect(
@@ -70,7 +70,7 @@ def _measured(seed: int) -> Mapping[str, np.ndarray]:
     random = np.random.default_rng([seed, 5])
     times = np.arange(SECONDS * RATE + 1) / RATE
     load, warmth = (
-        np.interp(times, 6.0 * np.arange(16), random.uniform(*ends, 16))
+        np.interp(times, 6.0 * np.arange(11), random.uniform(*ends, 11))
         for ends in ((0.0, 8.0), (15.0, 40.0))
     )
     return {"load_kg": load, "motor_c": warmth}

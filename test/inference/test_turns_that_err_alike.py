@@ -77,6 +77,6 @@ def test_three_arcs_are_too_few_to_name_an_effect(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.evidence)])
 def test_what_the_arcs_of_many_drives_have_in_common_is_named(seed: int) -> None:
-    found = diagnosed(seed, 12, more=0.07)
+    found = diagnosed(seed, 8, more=0.07)
     assert {"turn_dependent_track", "load_transfer"} & {*found.found, *found.rivals}
     assert "reference_delay" in found.found

@@ -39,7 +39,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> wo.RobotFile:
 
 @pytest.fixture(scope="module")
 def found(robot: wo.RobotFile) -> Result[Told]:
-    return wo.diagnose(robot, on_a_circle(60, 1))
+    return wo.diagnose(robot, on_a_circle(40, 1))
 
 
 def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(found: Result[Told]) -> None:
@@ -58,7 +58,7 @@ def test_the_printed_command_keeps_those_legs_and_what_is_left_is_noise(
     assert "Legs of 1 m leave it open" in words
     assert "add right_tread_bump" in words
     assert "--leg 0.1" in words
-    drive, better = on_a_circle(60, 1), tmp_path / "better.yaml"
+    drive, better = on_a_circle(40, 1), tmp_path / "better.yaml"
     wo.add("right_tread_bump", robot, drive, leg=0.1).write_robot(better)
     assert wo.diagnose(wo.read_robot(better), drive).to_dict()["verdict"] == "none"
 
