@@ -115,8 +115,8 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     runs = len(errors)
     if runs < rules.LEAST_RUNS:
         raise InputError(
-            f"too few runs: {runs} given, at least {rules.LEAST_RUNS} needed; {rules.ADVISED_RUNS} tell "
-            "k to about 13 %, the paper drove 60"
+            f"too few runs: {runs} given, at least {rules.LEAST_RUNS} needed; "
+            f"{rules.ADVISED_RUNS} tell k to about 13 %, the paper drove 60"
         )
     data = np.asarray(np.cov(errors.T))
     if not (np.diag(data) > 0.0).all():

@@ -170,8 +170,8 @@ def _refuse_few(laid: Concatenated, set_up: SetUp, judge: Judge) -> None:
     raise InputError(
         f"{', '.join(str(run.path) for run in judge.fitted_on)}: too little to diagnose: from pose "
         f"to pose the drives have {laid.begin.size} legs to fit, and {rules.LEGS_OF_A_PART} are "
-        "the least. Measure the robot more often on its way, or drive more; `werrimbi compare` shows "
-        "the errors of these"
+        "the least. Measure the robot more often on its way, or drive more; `werrimbi compare` "
+        "shows the errors of these"
     )
 
 
