@@ -106,7 +106,7 @@ def test_a_held_out_error_that_rises_by_chance_refuses_no_effect_that_the_others
     sides = found.holdout.sides
     assert sides.after > sides.before
     assert found.objection is None
-    assert "higher, which is chance" in " ".join(as_text(words_of(found)).split())
+    assert "higher, not told from chance" in " ".join(as_text(words_of(found)).split())
 
 
 def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show() -> None:

@@ -39,7 +39,7 @@ def _headline(added: Added) -> str:
     sides = added.holdout.sides
     leg = leg_words(sides.length, added.holdout.after.leg)
     share = 100.0 * (1.0 - sides.after / sides.before) if sides.before > 0.0 else math.nan
-    way = "lower" if share > 0 else "higher" if sides.rose else "higher, which is chance"
+    way = "lower" if share > 0 else "higher" if sides.rose else "higher, not told from chance"
     change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {way}"
     names = listed([effect.name for effect in added.effects])
     if math.isfinite(sides.before) and math.isfinite(sides.after):

@@ -169,7 +169,7 @@ def _fall(told: Told, sides: Sides) -> list[str]:
                 f"But: {both}, and chance does not raise it so. These drives are not like those "
                 "it was found in: look what is different."
             ]
-        return [f"What it costs: little so far; {both}, a difference that chance makes."]
+        return [f"What it costs is not seen yet: {both}, which these legs do not tell from chance."]
     told_before, told_after = (error_words(each, sides.unit) for each in (before, after))
     if told_before == told_after:
         return [
