@@ -5,17 +5,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Ticks
 from werrimbi_odom.inference.diagnosis import diagnosis, misfit
 from werrimbi_odom.inference.diagnosis.effect_support import Support
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_held_law
+from werrimbi_odom.simulation import TrueRobot, free, hide, record, write_robot_file, write_run
 
 RUNS: Any = SimpleNamespace(data=2600)
 PLAY = SimpleNamespace(name="right_backlash")
+STARTS = [
+    find(name)
+    for name in ("coulomb_slip", "longitudinal_slip", "reference_delay", "wheel_radius_scale")
+]
 
 
 def dependence(gain: float, of: str = "direction") -> Any:
@@ -64,3 +75,23 @@ def test_the_rest_of_a_law_is_no_sign_of_an_effect_that_the_parts_do_not_show(
     assert diagnosis._chosen(this, RUNS) == (None, rest)
     monkeypatch.setattr(diagnosis, "misfit_of_held_law", lambda *_: None)
     assert diagnosis._chosen(this, RUNS) == (delay, None)
+
+
+def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path: Path) -> None:
+    """Ten messages a second know an acceleration half a message late: creep was named beside it."""
+    pytest.importorskip("mujoco", reason="drives need the physics engine (pip install mujoco)")
+    true = TrueRobot(left_wheel_noise=4e-4, right_wheel_noise=5.8e-4)
+    file = read_robot_file(write_robot_file(true, tmp_path / "robot.yaml"))
+    slip = hide("coulomb_slip", 0.08, seed=3).peculiarity
+    drives = []
+    for number in range(8):
+        speed = 0.25 + 0.05 * (number % 3)
+        hard = free(120.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=3 * speed)
+        recording = record(true, hard, seed=100 + number, hidden=[slip])
+        run = read_run(write_run(recording, tmp_path / str(number)), file)
+        ticks = run.ticks
+        rare = Ticks(ticks.time[::5], ticks.left[::5], ticks.right[::5])
+        drives.append(replace(run, ticks=rare))
+    found = diagnosis.diagnose(drives[:6], file.robot, STARTS, holdout=drives[6:])
+    assert (found.verdict, found.found) == ("named", ("coulomb_slip",))
+    assert found.robot.effects[-1].values["coefficient"] == pytest.approx(0.08, rel=0.15)

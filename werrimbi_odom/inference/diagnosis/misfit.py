@@ -5,7 +5,7 @@
 An effect in the robot file (the library's, a user's, a draft) has a law of some form, and the true
 law may differ slightly. The remainder then depends on the effect's own variables and acts on the
 same channels. It is small against what the law explains, and a freer form of the law (a curve over
-one of its variables) removes it. Some other effect may fit a part of it, but naming that one would
+one of its variables, or a law of the acceleration a little later) removes it. Some other effect may fit a part of it, but naming that one would
 mislead the user. Where a law's memory is wrong (a wheel that coasts through its play as it brakes),
 the remainder may show in anything that the drives have in common with it. If it is little of what
 the law explains, and of the errors, it is reported, and is no missing effect either.
@@ -14,10 +14,12 @@ the law explains, and of the errors, it is reported, and is no missing effect ei
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.diagnosis.effect_support import Support, support_of
+from werrimbi_odom.inference.diagnosis.effect_support import ACCELERATIONS, Support, support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
@@ -34,7 +36,9 @@ from werrimbi_odom.inference.fitting.score_tests import (
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import AppliedEffect, Effect, Motion, Parameter
+from werrimbi_odom.model.pose import Floats
 
 
 @dataclass(frozen=True)
@@ -83,7 +87,8 @@ def misfit_of_held_law(
         if cell is None or share >= rules.LITTLE_OF_A_LAW:
             continue
         numbers = (*CALIBRATION, *before.numbers)
-        left = _gain_beside(runs, before.point, numbers, score, cell)
+        freer = (late(law),) if support.inputs & ACCELERATIONS else ()
+        left = _gain_beside(runs, before.point, numbers, score, cell, freer)
         if left < (1.0 - rules.REST_EXPLAINED) * score.gain:
             return Misfit(law.name, cell, share)
     return rest
@@ -144,13 +149,31 @@ def _gain_beside(
     numbers: Sequence[FreeParameter],
     score: Score,
     cell: Dependence,
+    freer: Sequence[Effect],
 ) -> float:
-    """Score gain of a candidate with the cell's pattern as a further nuisance."""
+    """Score gain of a candidate with the cell's pattern, and freer forms, as further nuisances."""
     prediction = predict_all(point.model, runs)
     turned, rest = residual_innovations(runs, point, numbers, prediction)
-    pattern = pattern_of(runs, point, cell)
-    freer = nuisance(turned.residual(pattern))
-    signature = next(signatures(runs, point, numbers, [score.candidate])[1])
-    free, left = freer.residual(signature.free), freer.residual(rest)
-    found = score_test(signature.flat, free, left)
+    tried = [score.candidate, *(Candidate(effect, {}) for effect in freer)]
+    asked, *forms = signatures(runs, point, numbers, tried)[1]
+    pattern = turned.residual(pattern_of(runs, point, cell))
+    own = nuisance(np.hstack([pattern, *(form.free for form in forms)]))
+    found = score_test(asked.flat, own.residual(asked.free), own.residual(rest))
     return 0.0 if found is None else found.gain
+
+
+def late(law: AppliedEffect) -> Effect:
+    """What a law says a message too early or too late, as an effect whose size is the share of one.
+
+    A law of the acceleration knows it as the difference between the mean speeds of two messages:
+    half a message late, and evened out over both.
+    """
+
+    def apply(moved: Motion, drive: Drive[Floats], messages: float) -> Motion:
+        changed = law.effect.apply(moved, drive, **law.values)
+        said = (np.asarray(after - before) for after, before in zip(changed, moved, strict=True))
+        later = (messages * np.diff(part, prepend=part[:1]) for part in said)
+        return type(moved)(*(part - change for part, change in zip(moved, later, strict=True)))
+
+    messages = Parameter("messages", 0.0, 1.0, (-10.0, 10.0), "how much later")
+    return replace(law.effect, parameters={"messages": messages}, apply=apply, quadrature=None)
