@@ -5,10 +5,11 @@
 An effect in the robot file (the library's, a user's, a draft) has a law of some form, and the true
 law may differ slightly. The remainder then depends on the effect's own variables and acts on the
 same channels. It is small against what the law explains, and a freer form of the law (a curve over
-one of its variables, or a law of the acceleration a little later) removes it. Some other effect may fit a part of it, but naming that one would
-mislead the user. Where a law's memory is wrong (a wheel that coasts through its play as it brakes),
-the remainder may show in anything that the drives have in common with it. If it is little of what
-the law explains, and of the errors, it is reported, and is no missing effect either.
+one of its variables, or a law of the acceleration a little later) removes it. Some other effect may
+fit a part of it, but naming that one would mislead the user. Where a law's memory is wrong (a wheel
+that coasts through its play as it brakes), the remainder may show in anything that the drives have
+in common with it. If it is little of what the law explains, and of the errors, it is reported, and
+is no missing effect either.
 """
 
 from __future__ import annotations
