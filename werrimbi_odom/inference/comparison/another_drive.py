@@ -56,17 +56,12 @@ def unturned(prepared: PreparedRuns, model: Model) -> tuple[float, float] | None
     if any(run.reference is not None and run.reference.has_position.any() for run in prepared.runs):
         return None
     legs = judged_legs(prepared, model, min(prepared.cuts))
+    turn, duration = legs.errors.turn + legs.errors.error[:, 2], legs.end_time - legs.start_time
     shown = 0.0
-    for number, run in enumerate(prepared.runs):
+    for number in np.unique(legs.run):
         mine = legs.run == number
-        if run.reference is None or not mine.any():
-            continue
-        known = run.reference.has_yaw
-        time, yaw = run.reference.time[known], np.unwrap(run.reference.yaw[known])
-        begin, end = legs.start_time[mine], legs.end_time[mine]
-        turn = np.interp(end, time, yaw) - np.interp(begin, time, yaw)
-        drift = np.median(turn / (end - begin))
-        shown += float(np.sum(np.abs(turn - drift * (end - begin))))
+        drift = np.median(turn[mine] / duration[mine])
+        shown += float(np.sum(np.abs(turn[mine] - drift * duration[mine])))
     turned = float(np.sum(np.abs(legs.errors.turn)))
     return (shown, turned) if shown < rules.NO_TURN * turned else None
 

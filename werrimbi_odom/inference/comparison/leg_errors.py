@@ -22,9 +22,8 @@ from werrimbi_odom.inference.fitting.likelihood import (
     quantisation_variance,
     wheel_covariance,
 )
-from werrimbi_odom.inference.fitting.map_walk import map_walk
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.model.covariance import PathNoise, piece_covariance
+from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pieces import PieceKind, kind_of
@@ -201,17 +200,14 @@ def _reference_part(
     if sigmas[2] > 0.0:  # speeds for an hour of steps are costly
         begun, ended = (sigmas[2] ** 2 * pace for pace in _paces(robot, runs))
     if kind == "incremental":
-        none = np.zeros(runs.count)
-        leg = BodyMotion(prediction.along, none, prediction.turn)
-        swing = piece_covariance(leg, PathNoise(none, runs.intervals * yaw, none), none).matrix()
-        flat = (runs.intervals * xy)[:, None, None] * np.diag([1.0, 1.0, 0.0])
-        return np.asarray(swing + flat + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
+        walk = walked(prediction, runs.intervals, xy, yaw)
+        return np.asarray(walk + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
     lever = np.zeros((runs.count, 3, 3)) + np.eye(3)
     lever[:, 0, 2], lever[:, 1, 2] = -prediction.relative[:, 1], prediction.relative[:, 0]
     own = np.stack([xy, xy, yaw], axis=-1) + reading
     first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
-    walked = map_walk(runs, prediction, xy, yaw) if runs.own_axes else 0.0
-    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + walked)
+    of_map = map_walk(prediction, xy, yaw) if runs.own_axes else 0.0
+    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + of_map)
 
 
 def _paces(robot: Robot, runs: Concatenated) -> tuple[Floats, Floats]:

@@ -32,13 +32,11 @@ from werrimbi_odom.inference.fitting.filtering import (
     filtered,
 )
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
-from werrimbi_odom.inference.fitting.map_walk import map_walk
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
+from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
-from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
-from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -200,7 +198,7 @@ def innovations(
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
     if kind == "absolute" and runs.own_axes:
-        noise += map_walk(runs, prediction, variances.xy[:, None], variances.yaw[:, None])
+        noise += map_walk(prediction, variances.xy[:, None], variances.yaw[:, None])
     legs = FilterInput(
         prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch
     )
@@ -228,15 +226,9 @@ def _of_increments(
     """Innovations for an incremental reference: noise of intervals, so of legs, is independent."""
     value = errors_between(*measured, prediction)
     known = np.isfinite(value) & ~skip[:, None]
-    none = np.zeros(runs.count)
-    leg = BodyMotion(prediction.along, none, prediction.turn)
-    swing = piece_covariance(leg, PathNoise(none, runs.intervals, none), none).matrix()
     covariance = (
         wheel_covariance(prediction, runs, variances.left, variances.right)
-        + variances.yaw[:, None, None, None] * swing
-        + variances.xy[:, None, None, None]
-        * runs.intervals[:, None, None]
-        * np.diag([1.0, 1.0, 0.0])
+        + walked(prediction, runs.intervals, variances.xy[:, None], variances.yaw[:, None])
         + 2.0 * np.diag(quantisation_variance(robot))
     )
     covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))

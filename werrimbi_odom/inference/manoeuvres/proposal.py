@@ -46,6 +46,8 @@ from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measur
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Twin, twin_of
 from werrimbi_odom.model.pose import Floats
 
+__all__ = ["Discrimination", "ProposedManoeuvre", "discriminations", "next_manoeuvre", "strongest"]
+
 
 def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:
     """The declared equivalence of two effects, if it holds for this kind of reference."""
@@ -75,9 +77,6 @@ def for_twins(rivals: Sequence[Effect], positions: bool) -> ProposedManoeuvre | 
         "; ".join(checks),
         0.0,
     )
-
-
-__all__ = ["Discrimination", "ProposedManoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 
 Pair = tuple[str, str]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Random walk of the local map with which scans are matched.
+"""Random walks of a reference over legs: of increments, and of the map that scans are matched with.
 
 Each scan that shows something new joins the map at its estimated pose, with the error of its match,
 and an old one leaves it. So the map goes with the mean of its scans' errors, and what is measured
@@ -12,25 +12,30 @@ from __future__ import annotations
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Floats
 
 
-def map_walk(runs: Concatenated, prediction: Prediction, xy: Floats, yaw: Floats) -> Floats:
-    """Covariance of each leg by the walk of the map, shape (..., m, 3, 3).
+def walked(prediction: Prediction, growth: Floats, xy: Floats, yaw: Floats) -> Floats:
+    """Covariance of each leg by a walk, evenly along its path, shape (..., m, 3, 3).
 
     Parameters
     ----------
+    growth : ndarray, shape (m,)
+        Variances gained over each leg, in units of `xy` and `yaw`.
     xy, yaw : ndarray, shape (..., m) or (..., 1)
-        Variances of a pose on the map [m², rad²].
+        Variances of position and heading [m², rad²].
     """
-    none = np.zeros(runs.count)
-    worth = prediction.length + np.abs(prediction.turn) / rules.QUARTER_TURN
-    renewed = rules.MAP_WALK**2 * worth
+    none = np.zeros_like(growth)
     leg = BodyMotion(prediction.along, none, prediction.turn)
-    swing = piece_covariance(leg, PathNoise(none, renewed, none), none).matrix()
-    flat = renewed[:, None, None] * np.diag([1.0, 1.0, 0.0])
+    swing = piece_covariance(leg, PathNoise(none, growth, none), none).matrix()
+    flat = growth[:, None, None] * np.diag([1.0, 1.0, 0.0])
     return np.asarray(xy[..., None, None] * flat + yaw[..., None, None] * swing)
+
+
+def map_walk(prediction: Prediction, xy: Floats, yaw: Floats) -> Floats:
+    """The same of the map of scans, by the variances of a pose on it."""
+    worth = prediction.length + np.abs(prediction.turn) / rules.QUARTER_TURN
+    return walked(prediction, rules.MAP_WALK**2 * worth, xy, yaw)
