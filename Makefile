@@ -8,6 +8,8 @@ READY := $(VENV)/.ready
 
 # An environment of ROS wheels exports these to its children; ours must find its own.
 unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
+# Images of containers often set it; each of a thousand processes would then compile every module anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help setup demo test lint bench evidence peers recordings docs pictures lock clean
 
