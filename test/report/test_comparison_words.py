@@ -25,7 +25,7 @@ from werrimbi_odom.inference.comparison.consistency import (
     consistency,
     honest_bounds,
     of_all,
-    told,
+    tested_lengths,
 )
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
@@ -77,7 +77,7 @@ def verdict(random: np.random.Generator, lengths: tuple[AtLength, ...]) -> Verdi
         factor=factor,
         judged_at=judged_at,
         off=off,
-        lengths=told(lengths),
+        lengths=tested_lengths(lengths),
     )
 
 

@@ -242,7 +242,7 @@ def _marks(
                 [places[index][0] for index in own],
                 [places[index][1] for index in own],
                 words,
-                told="%{hovertext}",
+                hover="%{hovertext}",
                 hovertext=[_said(happened, happened.events[index], track) for index in own],
                 marker={"color": colour, "symbol": symbol, "size": 12, "line": edge},
             )

@@ -68,7 +68,7 @@ def _rivals(
         free = (*numbers, *parameters_of_candidate(score.candidate))
         other = fitted(runs, start, (score.candidate.name,), free, given)
         if (
-            other.told
+            other.determined
             and not other.at_bound
             and other.total < fit.total + rules.RIVAL * fit.scatter
         ):

@@ -42,7 +42,7 @@ class Value:
     """Whether the drives determine it; otherwise its fitted value means nothing."""
 
     @property
-    def told(self) -> bool:
+    def reported(self) -> bool:
         """Whether there is one value for all drives to report."""
         return self.determined and not self.per_run
 

@@ -106,7 +106,7 @@ class Fitted:
         )
 
     @property
-    def told(self) -> bool:
+    def determined(self) -> bool:
         """Whether the runs determine the newest effect's parameters; otherwise it is no finding."""
         if not self.names or self.names[-1] in CALIBRATED:
             return True

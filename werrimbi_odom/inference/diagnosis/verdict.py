@@ -144,7 +144,7 @@ class Diagnosis:
         return max(falls, default=0.0) > rules.LAW_SHARE * most
 
 
-def told(
+def diagnosis_of(
     begun: Begun,
     given: Robot,
     rounds: tuple[Round, ...],

@@ -42,7 +42,7 @@ CARRIED = "the robot moved and its wheels did not: carried, or pushed"
 BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
 
 
-def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
+def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
     """Attach to a run its stretches without driving, found once and kept by its parts.
 
     Scan stamps are corrected first (`even_stamps`); a gyro's bias is removed last (`gyro_bias`).

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.inference.changes.between_drives import Moved
+from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -32,7 +32,7 @@ def json_of(
     diagnosis: Diagnosis,
     manoeuvre: ProposedManoeuvre | None,
     sights: Sequence[DetectionLimit] = (),
-    changes: Sequence[Moved] = (),
+    changes: Sequence[ParameterChange] = (),
 ) -> dict[str, Any]:
     """Complete result."""
     misfit = diagnosis.misfit
