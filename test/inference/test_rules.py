@@ -74,7 +74,13 @@ ELSEWHERE = {
         "_BLURRED": "a rank",
         "_SAME": "rounding",
     },
-    "fitting/caches.py": {"THREADS": "time that it takes", "_KEPT": "of memory"},
+    "fitting/caches.py": {
+        "THREADS": "time that it takes",
+        "_KEPT": "of memory",
+        "MODELS": "size of a cache",
+        "DELAYS": "size of a cache",
+        "DRIVES": "size of a cache",
+    },
     "fitting/candidate_starts.py": {"_SHARES": "where a fit starts"},
     "fitting/start_headings.py": {"ALL_ROUND": "where a fit starts", "_FIRST_NODES": "the same"},
     "fitting/filtering.py": {
@@ -94,11 +100,6 @@ ELSEWHERE = {
     },
     "fitting/angle_score.py": {"FINE": "a grid", "_ROUNDS": "rounds of a fit"},
     "fitting/leg_noise.py": {"_BLOCK": "size of a block"},
-    "fitting/concatenated_runs.py": {
-        "MODELS": "size of a cache",
-        "DELAYS": "size of a cache",
-        "DRIVES": "size of a cache",
-    },
     "legs/agreement.py": {
         "_TRIES": "laws that are tried",
         "_REFINED": "rounds of a fit",

@@ -97,7 +97,7 @@ def diagnose(
         found, judge = _searched(runs, holdout, robot, effects, options, shown)
         if found.of_another_drive:
             return found, Events()
-        found.runs.forget_steps()
+        found.runs.cache.forget_steps()
         return found, events_beside(found.runs, found.final.point, judge)
 
     found, happened = refit_without_events(search, runs, holdout)

@@ -70,7 +70,9 @@ def unexpected(
 ) -> Innovations:
     """Innovations of all runs; the latest are cached."""
     seen = prediction or predict_all(point.model, runs)
-    return runs.latest((point, seen), lambda: Costs(runs, point).innovations(point.variances, seen))
+    return runs.cache.latest(
+        (point, seen), lambda: Costs(runs, point).innovations(point.variances, seen)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,9 +112,8 @@ def jacobian_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParamete
     """
     moving = [number for number in numbers if number.name != YAW_DRIFT]
     sides = [(number, side) for number in moving for side in (number.scale, -number.scale)]
-    poses = runs.each_of_model(
-        model, [(key, partial(_legs_of_moved, runs, model, *key)) for key in sides]
-    )
+    works = [(key, partial(_legs_of_moved, runs, model, *key)) for key in sides]
+    poses = runs.cache.each_of_model(model, works, runs.step_count)
     both = zip(moving, poses[::2], poses[1::2], strict=True)
     columns = {number: (one - other) / _width(model, number) for number, one, other in both}
     drift = np.outer(runs.duration, [0.0, 0.0, 1.0])
