@@ -93,9 +93,9 @@ def kept(runs: list[Run]) -> list[Run]:
     return list(set_aside(runs)[0])
 
 
-def wavy(seed: int, curves: int = 40) -> Run:
-    """Curves of one and a half seconds each, some sharper than others."""
-    rates = np.random.default_rng(seed).normal(0.0, 0.6, curves).repeat(30)
+def wavy(seed: int) -> Run:
+    """Forty curves of one and a half seconds each, some sharper than others."""
+    rates = np.random.default_rng(seed).normal(0.0, 0.6, 40).repeat(30)
     return by_gyro(np.full(rates.size, 0.3), rates, 1.0, 0.0, seed)
 
 

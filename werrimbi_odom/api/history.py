@@ -99,10 +99,10 @@ def history_of(
     runs: Drives,
     how: DriveOptions,
     *,
-    like: RobotFile | None = None,
-    cache: str | Path | None = None,
-    spread: Spread | None = None,
-    show: Show = silent,
+    like: RobotFile | None,
+    cache: str | Path | None,
+    spread: Spread | None,
+    show: Show,
 ) -> Result[History]:
     """`history` for the command line."""
     given = [runs] if isinstance(runs, Run | str | Path) else list(runs)

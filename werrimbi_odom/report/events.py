@@ -52,7 +52,7 @@ def events_words(happened: Events, track: float) -> list[str]:
     return lines
 
 
-def event_words(event: Event, track: float, *, either: bool = False) -> str:
+def event_words(event: Event, track: float, *, either: bool) -> str:
     """Description of one event, as the end of a sentence.
 
     Parameters

@@ -54,7 +54,7 @@ class Evidence:
         return np.asarray(size[self.run, None] * (self.shared @ step.group.directions))
 
 
-def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float = 1.0) -> Evidence:
+def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float) -> Evidence:
     """Innovations at a point, and their derivatives in all parameters.
 
     Parameters

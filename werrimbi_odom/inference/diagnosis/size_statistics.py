@@ -56,7 +56,7 @@ def freedom_of_sizes(runs: Concatenated, design: Design, robot: Robot) -> dict[s
 
 
 def calibration_rises(
-    design: Design, robot: Robot, given: Robot, held: Sequence[str] = ()
+    design: Design, robot: Robot, given: Robot, held: Sequence[str]
 ) -> list[Rise]:
     """For each subset of the calibration effects, the rise of the cost when the others are reset.
 

@@ -99,7 +99,7 @@ def steps_of(added: Added) -> list[ErrorOfModel]:
     ]
 
 
-def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("nan")) -> Figure:
+def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float) -> Figure:
     """Bars of the errors in each step, and a line at the error by noise alone.
 
     Parameters

@@ -136,7 +136,7 @@ def _told(cell: Dependence) -> str:
 _POINTS = 160
 
 
-def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> Figure:
+def dependence_figure(cell: Dependence, run_names: Sequence[str]) -> Figure:
     """The error of a cell over its variable, as fitted for the evidence map."""
     if cell.form == "place":
         return _floor(cell)
