@@ -235,11 +235,6 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
     )
 
 
-def laid_out(runs: Sequence[MatchedRun] | Concatenated) -> Concatenated:
-    """Lay runs end to end, if they are not yet."""
-    return runs if isinstance(runs, Concatenated) else concatenated(runs)
-
-
 def _messages(runs: Sequence[MatchedRun]) -> list[NDArray[np.intp]]:
     """The message that each step is a part of, numbered from 0 on in each run."""
     middles = [(run, 0.5 * (run.time[1:] + run.time[:-1])) for run in runs]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -23,7 +23,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
-from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
 
 
@@ -79,19 +78,19 @@ def unexpected(
 class Costs:
     """Minus two log-likelihood as a function of the variances, for a fixed model."""
 
-    runs: Sequence[MatchedRun] | Concatenated
+    runs: Concatenated
     point: Point
 
     def prediction(self) -> Prediction:
         """Prediction of all runs."""
-        return predict_all(self.point.model, laid_out(self.runs))
+        return predict_all(self.point.model, self.runs)
 
     def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
         """Innovations for each set of variances."""
         model = self.point.model
         return innovations(
             model.robot,
-            laid_out(self.runs),
+            self.runs,
             prediction,
             sets,
             self.point.options.reference_kind,
