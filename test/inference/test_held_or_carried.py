@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import pytest
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_by, run_of
 from test.inference.test_gaps import parts
 from test.model.drives import ROBOT
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -32,7 +32,6 @@ from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
 from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run
 
-DATA = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
 NEAR = 0.5
 
 
@@ -490,10 +489,10 @@ def test_a_clock_of_the_day_is_told_from_the_start_of_the_drive() -> None:
     assert told == pytest.approx(begin - float(run.ticks.time[0]) + day, abs=NEAR)
 
 
-@pytest.mark.skipif(not DATA.exists(), reason="no recorded robots here")
+@with_recordings
 def test_nobody_held_the_recorded_robots() -> None:
     count = 0
-    for file in sorted(DATA.glob("robots/*/robot.yaml")):
+    for file in sorted(ROBOTS.glob("*/robot.yaml")):
         source = read_robot_file(file)
         for folder in sorted(each for each in file.parent.iterdir() if each.is_dir()):
             run = with_no_driving(read_run(folder, source), source.robot, source.limits)
