@@ -42,7 +42,8 @@ from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Verdict, diagnosis_of
+from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
+from werrimbi_odom.inference.diagnosis.verdict import diagnosis_of
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
