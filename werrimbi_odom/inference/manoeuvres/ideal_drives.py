@@ -98,7 +98,7 @@ def ideal_run(
         The manoeuvre.
     robot : Robot
         The model.
-    pace : Pace
+    pace : DrivingLimits
         Speeds of the robot.
     ticks, poses : float
         Time between two messages, and between two poses of the reference [s].

@@ -42,7 +42,7 @@ def imagined(
         The manoeuvre.
     runs, point
         Recorded drives, and the model and noise fitted to them.
-    pace : Pace
+    pace : DrivingLimits
         Speeds of the robot.
     better : bool
         With a reference that measures positions and headings as well as motion capture does.
