@@ -24,7 +24,7 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.number_format import chance_words, error_words, listed, quantity
+from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed, quantity
 from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
@@ -82,6 +82,21 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     if name == "reference_delay" and values["delay"].value < 0.0:
         late += " Negative: it is the encoders' stamps that are late against the reference's."
     return [f"How large: {'; '.join(parts)}.{hang_together(every.values())}{late}"]
+
+
+def set_up_lines(diagnosis: Diagnosis) -> list[str]:
+    """Set-up mistakes, which come first because all else depends on them; then skid steering."""
+    findings = diagnosis.set_up.findings
+    wrong = diagnosis.set_up.wrong
+    lines = ["Something is set up wrongly:"] if wrong else []
+    for finding in wrong:
+        words = set_up_words(diagnosis, finding)
+        lines.append(f"- {capital(words)}: {finding.effect}.")
+    skids = [finding for finding in findings if finding not in wrong]
+    return [
+        *lines,
+        *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
+    ]
 
 
 def set_up_words(diagnosis: Diagnosis, finding: SetUpFinding) -> str:

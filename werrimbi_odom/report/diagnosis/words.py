@@ -15,15 +15,15 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     one_wheel,
     reference_wanders,
 )
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis import phrases, remarks
-from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.unknown import mounted_anew, unknown_words
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed
+from werrimbi_odom.report.number_format import error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
 
@@ -49,7 +49,7 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
         *remarks.otherwise(diagnosis),
     ]
     suspect = either_side(diagnosis.ahead_or_behind) + remarks.wandering(diagnosis)
-    if not _mounted_anew(advised):
+    if not mounted_anew(advised):
         suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(advised), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
@@ -148,7 +148,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
 def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     diagnosis = advised.diagnosis
     name = diagnosis.effect or ""
-    lines = _set_up(diagnosis)
+    lines = phrases.set_up_lines(diagnosis)
     things = _things(diagnosis)
     if not lines:
         lines.append(f"One thing is missing: {things[0]}." if len(things) == 1 else
@@ -176,7 +176,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     diagnosis = advised.diagnosis
     rivals = diagnosis.rivals
     first = diagnosis.effect_named(rivals[0])
-    lines = _set_up(diagnosis)
+    lines = phrases.set_up_lines(diagnosis)
     which = listed(rivals, "or")
     lines.append(
         f"These drives cannot tell which it is, {which}."
@@ -219,6 +219,10 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     return [*lines, *_remainder(advised)]
 
 
+def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
+    return unknown_words(advised, steps.draft)
+
+
 def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     """Duration and power of a drive that separates rivals, and what to do with it."""
     if not move.minutes:
@@ -230,66 +234,6 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     yield f"Then give that drive to `{diagnose}` together with these."
 
 
-def _mounted_anew(advised: AdvisedDiagnosis) -> bool:
-    """Whether places differ, and turns do not, because the reference was mounted otherwise."""
-    places = any(remark.what == "places" for remark in advised.diagnosis.remarks)
-    return places and any(change.group == "mount" for change in advised.changes)
-
-
-def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
-    diagnosis = advised.diagnosis
-    if diagnosis.of_another_drive and _mounted_anew(advised):
-        return [
-            "No mount of the reference fits all of these drives, so together they tell nothing: "
-            "where an axis of its own begins anew with each recording (an IMU's heading beside "
-            "the positions of another sensor), diagnose each drive by itself.",
-            "Next: ask again with fewer drives, as above.",
-        ]
-    if diagnosis.of_another_drive:
-        if any(remark.what == "no_turn" for remark in diagnosis.remarks):
-            return [
-                "Nothing can be told of the robot from these drives.",
-                "Next: turn the robot by hand once about, from a line on the floor back onto it: "
-                "the reference's heading must turn by 360° with it.",
-            ]
-        unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
-        mend = " Give the reference of the same drive." if unrelated else ""
-        return [
-            "Nothing can be told of the robot from these drives.",
-            "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
-            f"--report draws both paths.{mend}",
-        ]
-    lines = _set_up(diagnosis)
-    cells = significant(diagnosis)
-    lines += phrases.by_sizes_alone(advised)
-    lines.append("Something is missing that no effect of the library explains.")
-    if cells:
-        lines.append(
-            f"What is known of it: {dependence_words(cells[0])} ({chance_words(cells[0].p_value)})."
-        )
-        others = [cell for cell in cells[1:] if cell.variable.name != cells[0].variable.name]
-        if others:
-            lines.append(
-                f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
-                "the one may go with the other because of how it was driven."
-            )
-    lines += remarks.floor_not_asked(diagnosis)
-    lines += remarks.nearest(diagnosis, bool(cells))
-    lines += remarks.at_bounds_told(diagnosis)
-    if cells:
-        lines.append("Next: write it as an effect of your own, from what these drives show:")
-        lines.append(f"    {steps.draft}")
-    else:
-        lines.append(
-            "It goes with nothing that was looked at, so there is no law to write. Next: see where "
-            "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
-            "part of a second, a reference that loses its place, or one of another drive look so."
-        )
-    if (move := advised.manoeuvre) is not None:
-        lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
-    return lines
-
-
 def _things(diagnosis: Diagnosis) -> list[str]:
     """Names of what was found; effects of one wrong wheel are combined."""
     side = one_wheel(diagnosis)
@@ -299,21 +243,6 @@ def _things(diagnosis: Diagnosis) -> list[str]:
     radii = [name for name in diagnosis.found if name in of_a_wheel]
     told = {radii[0]: f"the size of the {side} wheel ({' with '.join(radii)})", radii[1]: ""}
     return [words for name in diagnosis.found if (words := told.get(name, name))]
-
-
-def _set_up(diagnosis: Diagnosis) -> list[str]:
-    """Set-up mistakes, which come first because all else depends on them; then skid steering."""
-    findings = diagnosis.set_up.findings
-    wrong = diagnosis.set_up.wrong
-    lines = ["Something is set up wrongly:"] if wrong else []
-    for finding in wrong:
-        words = phrases.set_up_words(diagnosis, finding)
-        lines.append(f"- {capital(words)}: {finding.effect}.")
-    skids = [finding for finding in findings if finding not in wrong]
-    return [
-        *lines,
-        *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
-    ]
 
 
 def _remainder(advised: AdvisedDiagnosis) -> list[str]:
