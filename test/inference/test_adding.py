@@ -15,7 +15,8 @@ from test.inference.driven import run_by, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose

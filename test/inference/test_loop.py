@@ -19,7 +19,8 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect

@@ -13,7 +13,7 @@ import pytest
 from browser import Visit
 
 from test.axe import COUNT, RUN, axe_script
-from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis

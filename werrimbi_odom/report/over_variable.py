@@ -18,7 +18,7 @@ from werrimbi_odom.inference.comparison.over_variable import (
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response_curve import BeforeAfter
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.comparison.figures import CHANNELS, measured_channels

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     is_determined,
 )
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
 

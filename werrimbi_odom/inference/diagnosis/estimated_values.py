@@ -20,8 +20,8 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,7 +43,7 @@ from werrimbi_odom.inference.diagnosis.rivals import (
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.robot import Robot
 
 

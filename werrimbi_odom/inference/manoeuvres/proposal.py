@@ -24,7 +24,8 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.candidate import Candidate
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
@@ -39,14 +40,12 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import (
     ProposedManoeuvre,
     for_the_unknown,
-    strongest,
 )
-from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, Ideal, pace_of
+from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measured_in
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Twin, twin_of
 from werrimbi_odom.model.pose import Floats
-
-__all__ = ["Discrimination", "ProposedManoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 
 def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:

@@ -46,9 +46,6 @@ from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, 
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
-__all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
-
-
 DELAY, RADIUS = "reference_delay", "wheel_radius_scale"
 IN_UNIT = (
     "the reference's positions are in {unit}, and x_m and y_m mean metres: convert these columns "

@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
-from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.events import alike_json, events_json

@@ -11,8 +11,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response_curve import before_after
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
-from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence import label_of
 from werrimbi_odom.report.diagnosis.evidence_figures import (

@@ -14,12 +14,8 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
-from werrimbi_odom.inference.manoeuvres.ideal_drives import (
-    MANOEUVRES,
-    DrivingLimits,
-    Ideal,
-    ideal_run,
-)
+from werrimbi_odom.inference.manoeuvres.ideal_drives import DrivingLimits, ideal_run
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot

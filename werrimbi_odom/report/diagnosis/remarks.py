@@ -14,7 +14,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
