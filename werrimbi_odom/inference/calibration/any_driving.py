@@ -99,7 +99,7 @@ def calibrate(
     fit = fit_model(laid, begin, numbers)
     held = options.sigmas_known
     local = [number for number in numbers if number.name != START_YAW]
-    precision = Precision.of(laid, fit.point, local, fit.ways.matrix)
+    precision = Precision.of(laid, fit.point, local, fit.directions.matrix)
     noises = noise_estimates(
         Costs(laid, fit.point), fit.point.variances, held, precision.information
     )

@@ -52,7 +52,7 @@ class ModelFit:
     """Covariance of the values of `free`; singular where they exceed the identifiable `numbers`."""
     not_identifiable: tuple[FreeParameter, ...]
     """Shared parameters that are not identifiable; left unchanged."""
-    ways: Directions
+    directions: Directions
     """Identifiable directions, in the columns of the design."""
     at_bound: tuple[FreeParameter, ...]
     """Fitted parameters that ended at a physical bound."""
@@ -62,12 +62,12 @@ class ModelFit:
     @property
     def held(self) -> tuple[str, ...]:
         """Directions that are not identifiable (of `CALIBRATED`, or parameters): kept as given."""
-        return self.ways.held
+        return self.directions.held
 
     @property
     def numbers(self) -> int:
         """Number of shared parameters that the data determine (rank)."""
-        return len(self.ways.shared)
+        return len(self.directions.shared)
 
     @property
     def robot(self) -> Robot:
@@ -133,7 +133,7 @@ def fit_model(
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
         point = turned_to_all_sides(runs, point)
-    ways: Directions | None = None
+    directions: Directions | None = None
     for _ in range(rounds):
         if runs.data >= rules.NOISE_NUMBERS:
             variances = map_variances(
@@ -141,16 +141,16 @@ def fit_model(
             )
             point = replace(point, variances=variances)
         design = stacked(runs, point, numbers)
-        ways = determined(design, point.model.robot, ways.held if ways else ())
-        model = with_held_as_given(point.model, given, ways.held, shared_of(numbers))
-        point, moved = gauss_newton(runs, replace(point, model=model), numbers, ways)
+        directions = determined(design, point.model.robot, directions.held if directions else ())
+        model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
+        point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
         if not moved:
             break
-    if ways is None:
+    if directions is None:
         design = stacked(runs, point, numbers)
-        ways = determined(design, point.model.robot)
-    covariance = ways.covariance(design.flat()[1])
-    moves = ways.matrix[:, ways.shared].any(axis=1)
+        directions = determined(design, point.model.robot)
+    covariance = directions.covariance(design.flat()[1])
+    moves = directions.matrix[:, directions.shared].any(axis=1)
     where = np.flatnonzero(moves)
     free = [design.columns[index][0] for index in where]
     costs = Costs(runs, point)
@@ -159,7 +159,7 @@ def fit_model(
         tuple(free),
         covariance[np.ix_(where, where)],
         tuple(number for number in shared_of(numbers) if number not in free),
-        ways,
+        directions,
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
         float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
