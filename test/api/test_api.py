@@ -200,7 +200,7 @@ def test_a_draft_is_that_of_the_command(
 def test_shells_have_no_verbs_of_their_own() -> None:
     """What works a verb out is called by the API alone; import-linter keeps the rest."""
     verbs = {
-        "compare", "judged", "diagnose", "told_of", "add_effects", "best_draft",
+        "compare", "judged", "diagnose", "advised_diagnosis", "add_effects", "best_draft",
         "calibrate", "umbmark", "fit_noise", "detection_limits", "next_manoeuvre",
     }  # fmt: skip
     called = set()

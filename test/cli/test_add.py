@@ -105,10 +105,3 @@ def test_several_effects_are_added_at_once(
     assert f"without left_backlash: werrimbi add {both} ..." in refused
     assert main(words(folder, "lateral_slip,lateral_slip", tmp_path / "other.yaml")) == 2
     assert "names lateral_slip twice" in capsys.readouterr().err
-
-
-def test_what_cannot_be_written_is_found_before_the_work(
-    creeping: Path, werrimbi: Werrimbi
-) -> None:
-    told = werrimbi(*words(creeping, "lateral_slip", Path("/proc/new.yaml")), code=2).err
-    assert "--out /proc/new.yaml cannot be written" in told

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from test.cli.commands import RECORDING, ROBOT, written_by
-from test.command_line import Complaint, Werrimbi
+from test.cli.commands import RECORDING, written_by
+from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -124,13 +124,3 @@ def test_where_calibration_is_not_what_is_missing_it_gives_no_error_bars(
     assert isinstance(parameters, dict)
     assert all(item["std"] is None for item in parameters.values())
     assert "Something else is missing" in capsys.readouterr().out
-
-
-def test_a_run_without_a_reference_is_one_clear_line(tmp_path: Path, complaint: Complaint) -> None:
-    run = tmp_path / "run"
-    run.mkdir()
-    (run / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
-    out = tmp_path / "new.yaml"
-    told = complaint("calibrate", "fit", "--robot", ROBOT, run, "--out", out)
-    assert "reference" in told
-    assert not out.exists()

@@ -126,10 +126,6 @@ def test_mistakes_are_told_in_one_line(tmp_path: Path, complaint: Complaint) -> 
     assert "greater than zero" in told
     assert "given twice" in complaint("compare", *robot, RECORDING, f"{RECORDING}/.")
     assert "there is no such run" in complaint("compare", *robot, tmp_path / "nowhere")
-    told = complaint("compare", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
-    assert "would overwrite" in told
-    told = complaint("compare", *robot, RECORDING, "--json", tmp_path)
-    assert "is a folder" in told
 
 
 def test_a_folder_of_runs_names_them(tmp_path: Path, complaint: Complaint) -> None:
@@ -139,13 +135,6 @@ def test_a_folder_of_runs_names_them(tmp_path: Path, complaint: Complaint) -> No
             (tmp_path / "runs" / name / file).write_text((RECORDING / file).read_text())
     told = complaint("compare", "--robot", ROBOT, tmp_path / "runs")
     assert "is no run but a folder of 2 (first, second)" in told
-
-
-def test_a_run_without_a_reference_is_named(tmp_path: Path, complaint: Complaint) -> None:
-    (tmp_path / "blind").mkdir()
-    (tmp_path / "blind" / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
-    told = complaint("compare", "--robot", ROBOT, tmp_path / "blind")
-    assert "there is no reference to compare with" in told
 
 
 def test_in_a_process_of_its_own_without_a_terminal() -> None:
@@ -171,8 +160,6 @@ def test_who_stops_reading_has_the_files_all_the_same(tmp_path: Path) -> None:
     ("option", "name", "said"),
     [
         ("--report", "page.txt", "ends in .html, .pdf or .png"),
-        ("--report", "nowhere/page.html", "there is no folder"),
-        ("--json", "nowhere/figures.json", "there is no folder"),
         ("--report", "page.pdf", "a report that ends in .html needs none"),
     ],
 )

@@ -53,24 +53,6 @@ def test_bad_input_is_one_line_and_writes_nothing(
     assert sorted(path.name for path in place.iterdir()) == before
 
 
-@pytest.mark.parametrize(
-    ("out", "said"),
-    [
-        ("run/ticks.csv", "--out {0}/run/ticks.csv would overwrite {0}/run, which is read"),
-        ("robot.yaml", "--out {0}/robot.yaml would overwrite {0}/robot.yaml, which is read"),
-        ("run", "--out {}/run is a folder; give a file name in it"),
-        ("nowhere/odom.csv", "--out {0}/nowhere/odom.csv: there is no folder {0}/nowhere"),
-    ],
-)
-def test_places_that_are_not_for_writing(
-    place: Path, complaint: Complaint, out: str, said: str
-) -> None:
-    kept = {path: path.read_bytes() for path in place.rglob("*") if path.is_file()}
-    told = complaint(*command(place, "--out", place / out))
-    assert told == f"werrimbi odom: {said.format(place)}\n"
-    assert {path: path.read_bytes() for path in place.rglob("*") if path.is_file()} == kept
-
-
 def test_both_files_or_neither(place: Path, complaint: Complaint) -> None:
     (place / "odom.csv").write_text("old")
     complaint(*command(place, "--json", place / "nowhere" / "figures.json"))

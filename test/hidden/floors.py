@@ -20,12 +20,8 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitte
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.score_tests import (
-    CALIBRATED,
-    candidates,
-    parameters_of_candidate,
-    scores,
-)
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_of_candidate, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder_online import EncoderLimits

@@ -16,7 +16,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib import import_module
-from importlib.util import find_spec
 from inspect import getsource
 from itertools import pairwise
 from pkgutil import walk_packages
@@ -36,17 +35,11 @@ from werrimbi_odom.files.run import ReferenceKind
 WHERE = "werrimbi_odom.inference.rules"
 """Where the deciding numbers stand."""
 
-SCATTERED = tuple(
-    f"werrimbi_odom.inference.{name}"
-    for name in ("diagnosis.diagnosis", "diagnosis.selection", "diagnosis.verdict")
-)
-"""Where they stand in code without that module."""
-
 JUDGING = tuple(f"werrimbi_odom.inference.{name}." for name in ("diagnosis", "fitting", "legs"))
 """Where a diagnosis of drives that are set up rightly reads them; others change none of it."""
 
 _READ = re.compile(r"\brules\.([A-Z_\d]+)\b")
-"""How they read a number; code from before imported it."""
+"""How they read a number."""
 
 FACTORS = (0.7, 1.4)
 
@@ -55,11 +48,9 @@ GROUPS = ("effect", "clean", "pair", "outsider", "rivals", "other", "poorer")
 
 def constants() -> dict[str, float]:
     """The deciding numbers by their names."""
-    places = [WHERE] if find_spec(WHERE) is not None else SCATTERED
     return {
         name: value
-        for place in places
-        for name, value in vars(import_module(place)).items()
+        for name, value in vars(import_module(WHERE)).items()
         if name.isupper() and isinstance(value, (int, float)) and not isinstance(value, bool)
     }
 
@@ -71,7 +62,7 @@ def judging() -> dict[str, float]:
         name
         for key, module in sys.modules.items()
         if key.startswith(JUDGING)
-        for name in (*vars(module), *_READ.findall(getsource(module)))
+        for name in _READ.findall(getsource(module))
     }
     return {name: value for name, value in constants().items() if name in held}
 

@@ -80,7 +80,6 @@ PLACE = Parameter("m", 0.2, 0.5, (-3.0, 3.0), "its middle", tries=(-0.6, -0.2, 0
 
 
 @wheel_effect(
-    pose=True,
     loss=Parameter("", 0.0, 0.1, (-0.9, 0.9), "share of the travel that is lost"),
     x=PLACE,
     y=PLACE,

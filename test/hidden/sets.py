@@ -239,7 +239,7 @@ def runs_of(folder: Path, part: str) -> list[Path]:
     return sorted(each for each in (folder / part).glob("*") if each.is_dir())
 
 
-def make_all(wanted: Sequence[HiddenSet], workers: int | None = None) -> Iterator[HiddenSet]:
+def make_all(wanted: Sequence[HiddenSet], workers: int) -> Iterator[HiddenSet]:
     """Make what is not there yet, each set as soon as it is ready.
 
     Sets that others are made from come first. A robot that the engine cannot hold is left out.
@@ -250,7 +250,7 @@ def make_all(wanted: Sequence[HiddenSet], workers: int | None = None) -> Iterato
     done = {each.name for each in first}
     second = [each for each in missing if each.name not in done]
     for part in (first, second):
-        yield from _pooled(part, workers or os.cpu_count() or 1)
+        yield from _pooled(part, workers)
 
 
 def _pooled(wanted: Iterable[HiddenSet], workers: int) -> Iterator[HiddenSet]:

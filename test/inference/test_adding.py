@@ -15,12 +15,13 @@ from test.inference.driven import run_by, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.as_json import json_of
@@ -122,7 +123,7 @@ def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show(
     named = diagnose(fitted, PLAIN, [find("lateral_slip")], holdout=held)
     assert named.holdout.rose
     assert "chance does not raise it so" in " ".join(
-        as_text(diagnosis_words(Told(named, None, ()), NextSteps())).split()
+        as_text(diagnosis_words(AdvisedDiagnosis(named, None, ()), NextSteps())).split()
     )
 
 

@@ -14,7 +14,7 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.as_json import json_of as added_json
 from werrimbi_odom.report.adding.words import words_of as added_words
@@ -61,7 +61,7 @@ def test_circles_tell_the_distance_and_not_the_side() -> None:
     assert found.found == ("reference_lever_arm",)
     assert abs(ahead(found)) == pytest.approx(abs(BEHIND), rel=0.1)
     assert found.ahead_or_behind
-    words = " ".join(as_text(words_of(Told(found, None, ()), NextSteps())).split())
+    words = " ".join(as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())).split())
     assert "may as well lie as far on the other side of the axle" in words
     assert json_of(found, None)["ahead_or_behind"] is True
 

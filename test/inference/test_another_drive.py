@@ -19,7 +19,7 @@ from werrimbi_odom.api.drives import collection_of, read_robot
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.manoeuvres.advice import Told, told_of
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, advised_diagnosis
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
 TRUE = WhiteNoiseRobot()
@@ -54,15 +54,15 @@ def positions(reference: Reference) -> Reference:
 FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
 
-def diagnosed(*runs: Run, holdout: tuple[Run, ...] = ()) -> Told:
+def diagnosed(*runs: Run, holdout: tuple[Run, ...] = ()) -> AdvisedDiagnosis:
     """By the robot above; the file stands for the one that was read."""
-    return told_of(
+    return advised_diagnosis(
         Recordings(read_robot(FILE), collection_of(), runs, holdout, DriveOptions(), ROBOT)
     )
 
 
-def spoken(told: Told) -> str:
-    return "\n".join(each.text for each in words_of(told, NextSteps()))
+def spoken(advised: AdvisedDiagnosis) -> str:
+    return "\n".join(each.text for each in words_of(advised, NextSteps()))
 
 
 MEASURED = pytest.mark.parametrize(

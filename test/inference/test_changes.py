@@ -17,7 +17,7 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.changes.between_drives import (
-    Moved,
+    ParameterChange,
     changes_between,
     is_within,
 )
@@ -76,7 +76,7 @@ def test_no_wheel_had_a_radius_below_zero(before: float, possible: bool) -> None
     name = CALIBRATION[RIGHT].name
     bounds = {name: CALIBRATION[RIGHT].bounds_about(1.0)}
     drives = ("first", "second", "second")
-    moved = Moved(name, "sizes", "step", *drives, before, 1.0, 0.01, 0.01, "", 1e-9)
+    moved = ParameterChange(name, "sizes", "step", *drives, before, 1.0, 0.01, 0.01, "", 1e-9)
     assert is_within(moved, bounds) == possible
     back = replace(moved, before=1.0, after=before)
     assert is_within(back, bounds) == possible
@@ -142,7 +142,7 @@ def session(change: float, count: int = 6, seconds: float = 40.0) -> list[Run]:
     return runs
 
 
-def told_of(runs: list[Run]) -> tuple[Moved, ...]:
+def told_of(runs: list[Run]) -> tuple[ParameterChange, ...]:
     return changes_between(diagnose(runs, BUILT.entered(), LIBRARY), LIBRARY)
 
 

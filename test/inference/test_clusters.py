@@ -25,7 +25,7 @@ from werrimbi_odom.inference.fitting.clusters import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 Spoil = Callable[[np.ndarray, np.random.Generator], np.ndarray]

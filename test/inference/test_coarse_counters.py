@@ -11,7 +11,7 @@ import pytest
 
 import werrimbi_odom as wo
 from werrimbi_odom.api.result import Result
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.simulation import (
     TrueRobot,
     free,
@@ -25,7 +25,7 @@ from werrimbi_odom.simulation.hidden import Peculiarity
 LATE = 0.04
 
 
-def diagnosed(folder: Path, counts: int, hidden: Sequence[Peculiarity]) -> Result[Told]:
+def diagnosed(folder: Path, counts: int, hidden: Sequence[Peculiarity]) -> Result[AdvisedDiagnosis]:
     """Of six drives of a minute with so many counts in a turn."""
     each = float(counts)
     true = TrueRobot(

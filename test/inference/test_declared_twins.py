@@ -19,7 +19,7 @@ from werrimbi_odom.effects import LIBRARY, find, load_file
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.rivals import possible_twins
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.proposal import for_twins, next_manoeuvre
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
@@ -94,12 +94,12 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     assert proposed is not None
     assert (proposed.name, proposed.do) == ("plumb_line", "hang a plumb line from the mast's top")
 
-    told = Told(found, proposed, ())
+    advised = AdvisedDiagnosis(found, proposed, ())
     assert "are one and the same, on any drive" in " ".join(
-        as_text(words_of(told, NextSteps())).split()
+        as_text(words_of(advised, NextSteps())).split()
     )
     page = tmp_path / "page.html"
-    save_report(document_of(told), page)
+    save_report(document_of(advised), page)
     shown = page.read_text(encoding="utf-8")
     assert "the mast leans, and the robot seems to crab</text>" in shown
     assert "hang a plumb line" in shown

@@ -22,11 +22,12 @@ from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount, step_jacobians
 from werrimbi_odom.inference.diagnosis.variables import variables_of
 from werrimbi_odom.inference.fitting import caches, concatenated_runs
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict, predict_all, predicted_legs
-from werrimbi_odom.inference.fitting.score_tests import Candidate, candidates, scores
+from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.fitting.whitened_innovations import jacobian_of
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Events
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
@@ -42,7 +42,7 @@ def diagnosed(runs: list[Run], robot: Robot) -> Diagnosis:
 
 
 def words(found: Diagnosis) -> str:
-    return " ".join(as_text(words_of(Told(found, None, ()), NextSteps())).split())
+    return " ".join(as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())).split())
 
 
 def test_a_wrong_value_is_told_and_mended_by_the_printed_command(runs: list[Run]) -> None:
@@ -73,7 +73,7 @@ def test_errors_that_are_told_are_those_of_the_file(runs: list[Run]) -> None:
     found = diagnosed(runs, holding(0.0402, 0.0201))
     told = replace(found, holdout=replace(found.holdout, before=0.0123))
     assert "Its errors on the drives held out (legs of 1 m) are 12.3 mm" in " ".join(
-        as_text(words_of(Told(told, None, (), held_out=True), NextSteps())).split()
+        as_text(words_of(AdvisedDiagnosis(told, None, (), held_out=True), NextSteps())).split()
     )
 
 

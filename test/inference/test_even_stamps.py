@@ -13,7 +13,7 @@ import pytest
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.even_stamps import with_even_scan_stamps, with_even_stamps
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.robot import Robot
 
 PERIOD = 0.2
@@ -156,7 +156,7 @@ def test_wheels_are_put_right_unless_one_packet_brings_the_reference(together: b
     read = 0.05 * np.arange(800)
     stamps = np.sort(read + random.normal(0.0, 4e-3, read.size))
     seen = by_scans(read, stamps if together else read, matched=False)
-    run = looked_at(Run("run", Path("run"), Ticks(stamps, *driven(read)), seen), ROBOT)
+    run = with_no_driving(Run("run", Path("run"), Ticks(stamps, *driven(read)), seen), ROBOT)
     found = counters_of(run, ROBOT, None).time
     if together:
         np.testing.assert_array_equal(found, stamps)
@@ -175,7 +175,7 @@ def test_scans_in_one_packet_with_the_wheels_are_as_late_as_these() -> None:
     seen = replace(seen, x=seen.x + noise[0], y=seen.y + noise[1], yaw=seen.yaw + noise[2])
     seen = seen.chosen(matched)
     assert with_even_scan_stamps(seen) is seen
-    run = looked_at(Run("run", Path("run"), Ticks(stamps, *driven(read)), seen), ROBOT)
+    run = with_no_driving(Run("run", Path("run"), Ticks(stamps, *driven(read)), seen), ROBOT)
     wheels = counters_of(run, ROBOT, None).time
     assert scatter(wheels - read) < 0.5 * scatter(stamps - read)
     assert run.reference is not None

@@ -13,7 +13,7 @@ from test.inference.test_held_or_carried import held
 from test.inference.test_late_clock import later
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 
 TURNED = (12.4, 16.0, 16.3, 13.5, 12.9, 13.5, 13.1, 13.1, 14.0, 15.5)
 """A Roomba's turn by its one turning wheel in each second [degrees]; its gyro saw 17.4 in all."""
@@ -35,12 +35,12 @@ def test_an_uneven_counter_in_an_even_turn_is_no_hold() -> None:
 
     So the robot was "carried from -3.0 s to 2.0 s", and held for three seconds after.
     """
-    assert looked_at(one_wheel_turns(), ROBOT).no_driving == ()
+    assert with_no_driving(one_wheel_turns(), ROBOT).no_driving == ()
 
 
 def test_what_is_left_out_lies_within_the_record() -> None:
     """By a reference whose stamps are half a second early, the hold seems to begin before it."""
     run, *_ = held(run_of(ROBOT, 1, 40), 0.0, 6.0)
-    found = looked_at(later(run, -0.5), ROBOT).no_driving
+    found = with_no_driving(later(run, -0.5), ROBOT).no_driving
     assert found
     assert all(part.begin >= run.ticks.time[0] for part in found)

@@ -21,10 +21,10 @@ from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.common_cause import alike
-from werrimbi_odom.inference.events.events import Events, looked_at
+from werrimbi_odom.inference.events.events import Events, at_every_pose
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
@@ -147,8 +147,10 @@ def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: 
     assert found.holdout.after == pytest.approx(after, rel=1e-12)
     quiet = found.quiet[1]
     assert quiet.after < quiet.before < found.holdout.before
-    assert without_events(Told(found, None, ()))
-    assert not without_events(Told(replace(found, happened=Events()), None, ())), "of no event told"
+    assert without_events(AdvisedDiagnosis(found, None, ()))
+    assert not without_events(AdvisedDiagnosis(replace(found, happened=Events()), None, ())), (
+        "of no event told"
+    )
     said = json_of(found, None)
     assert said["without_events"]["holdout"]["after"] == quiet.after
     base, *radii = said["calibration"].values()
@@ -220,7 +222,7 @@ def test_events_of_the_engine_are_found_and_no_verdict_is_made_of_them(tmp_path:
 def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(sound: Drives) -> None:
     """A step's score is the product of what it shows with the innovations, leg by leg."""
     found = _diagnosed(sound)
-    runs = looked_at(found.runs.runs)
+    runs = at_every_pose(found.runs.runs)
     point = found.final.point
     told = innovations(
         point.model.robot, runs, predict_all(point.model, runs), point.variances, "absolute"
@@ -241,7 +243,7 @@ def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(sound: Drive
 
 def test_what_comes_at_one_place_is_no_accident(sound: Drives) -> None:
     found = _diagnosed(sound)
-    runs = looked_at(found.runs.runs)
+    runs = at_every_pose(found.runs.runs)
     sides = [(runs, predict_all(found.final.point.model, runs))]
     x = runs.finish[:, 0]
     chance = np.random.default_rng(1)

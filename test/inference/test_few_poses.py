@@ -20,14 +20,15 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.p_values import chance
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.as_json import json_of as json_of_added
@@ -138,7 +139,7 @@ def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     assert later.verdict == "none"
     others = later.rivals_of_held[first.rivals[0]]
     assert set(first.rivals[1:]) <= set(others)
-    words = " ".join(as_text(words_of(Told(later, None, ()), NextSteps())).split())
+    words = " ".join(as_text(words_of(AdvisedDiagnosis(later, None, ()), NextSteps())).split())
     held = f"that it is {first.rivals[0]}, which the robot file holds, these drives do not show"
     assert held in words
     assert all(name in words for name in others)
@@ -157,7 +158,7 @@ def test_what_is_found_beside_another_thing_has_its_rivals_too(
     assert {*first.rivals, "castor_kick"} == {beside, *found.rivals_of_others[beside]}
     said = json_of(found, None)
     assert said["rivals_of_others"] == {beside: list(found.rivals_of_others[beside])}
-    words = " ".join(as_text(words_of(Told(found, None, ()), NextSteps())).split())
+    words = " ".join(as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())).split())
     assert "These drives cannot tell it from" in words
 
 
@@ -181,7 +182,9 @@ def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
         seen = replace(run.reference, x=x, y=y, yaw=random.uniform(-3.0, 3.0, 2))
         runs.append(replace(run, reference=seen))
     found = diagnose(runs[:8], PLAIN, LIBRARY, holdout=runs[8:])
-    said = as_text(words_of(Told(found, None, ()), NextSteps())) + as_text(tables_of(found))
+    said = as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())) + as_text(
+        tables_of(found)
+    )
     assert "nan" not in said.lower()
     assert not re.search(r"± \d(\.\d+)?e\+", said)
     for item in json_of(found, None)["found"]:

@@ -15,6 +15,7 @@ from werrimbi_odom.inference.calibration.recorded_square import (
     squares_of,
 )
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
@@ -40,7 +41,8 @@ def both(seed: int) -> tuple[np.ndarray, np.ndarray]:
         )
         records.append(recorded_square(record, NOMINAL, SIDE))
     old = corrected(NOMINAL, umbmark(squares_of(records, SIDE), NOMINAL).factors)
-    matched = [match(run, NOMINAL, 0.25, turn=0.25 * rules.QUARTER_TURN) for run in runs]
+    turn = 0.25 * rules.QUARTER_TURN
+    matched = concatenated([match(run, NOMINAL, 0.25, turn=turn) for run in runs])
     new = fit_model(matched, start_point(matched, NOMINAL)).robot
     return tuple(  # type: ignore[return-value]
         np.array(

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_for_fit
 from werrimbi_odom.inference.legs.gaps import STUCK, gaps_in
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 
@@ -233,7 +233,9 @@ def test_a_repeated_pose_is_told_of_the_reference(rate: float, noise: float) -> 
     last = poses[:, inside][:, :1]
     poses[:, inside] = last + noise * random.standard_normal((3, inside.sum()))
     x, y, yaw = poses
-    found = looked_at(replace(run, reference=replace(seen, time=time, x=x, y=y, yaw=yaw)), ROBOT)
+    found = with_no_driving(
+        replace(run, reference=replace(seen, time=time, x=x, y=y, yaw=yaw)), ROBOT
+    )
     assert found.no_driving is not None
     (part,) = found.no_driving
     assert part.begin == pytest.approx(BEGIN, abs=0.3)

@@ -17,7 +17,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -67,7 +67,7 @@ def test_who_turns_a_robot_by_hand_is_no_bias() -> None:
     time = run.reference.time
     by_hand = 1.2 * np.clip((time - time[-1] + 2.5) / 1.5, 0.0, 1.0)
     turned = replace(run, reference=replace(run.reference, yaw=run.reference.yaw + by_hand))
-    seen = looked_at(turned, ROBOT).reference
+    seen = with_no_driving(turned, ROBOT).reference
     assert seen is not None
     assert np.abs(seen.yaw - turned.reference.yaw).max() < 0.02
 
@@ -77,7 +77,7 @@ def test_headings_that_scatter_about_the_truth_have_none() -> None:
     assert run.reference is not None
     noise = np.random.default_rng(5).normal(0.0, 0.01, run.reference.yaw.size)
     absolute = replace(run, reference=replace(run.reference, yaw=run.reference.yaw + noise))
-    seen = looked_at(absolute, ROBOT).reference
+    seen = with_no_driving(absolute, ROBOT).reference
     assert seen is not None
     assert absolute.reference is not None
     np.testing.assert_array_equal(seen.yaw, absolute.reference.yaw)
@@ -92,6 +92,6 @@ def test_coming_to_rest_in_short_pauses_is_no_bias() -> None:
     moving = np.concatenate([[0.0], turning])[: run.reference.time.size] != 0.0
     coasting = np.cumsum(np.where(moving, 0.0, 0.004))
     coasts = replace(run, reference=replace(run.reference, yaw=run.reference.yaw + coasting))
-    seen = looked_at(coasts, ROBOT).reference
+    seen = with_no_driving(coasts, ROBOT).reference
     assert seen is not None
     np.testing.assert_array_equal(seen.yaw, coasts.reference.yaw)

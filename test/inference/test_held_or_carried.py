@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import pytest
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_by, run_of
 from test.inference.test_gaps import parts
 from test.model.drives import ROBOT
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -24,7 +24,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.agreement import Agreement
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.legs.held_or_carried import _stretches, looked_at
+from werrimbi_odom.inference.legs.held_or_carried import _stretches, with_no_driving
 from werrimbi_odom.inference.legs.measured_motion import judged_motion
 from werrimbi_odom.inference.legs.motion_states import LOST, driven
 from werrimbi_odom.inference.legs.windows import Windows
@@ -32,7 +32,6 @@ from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
 from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run
 
-DATA = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
 NEAR = 0.5
 
 
@@ -101,7 +100,7 @@ def carried(run: Run, begin: float, lasts: float, seed: int = 0) -> Run:
 
 def span(run: Run) -> tuple[float, float, set[str]]:
     """From the first to the last that is found, and what."""
-    found = looked_at(run, ROBOT).no_driving
+    found = with_no_driving(run, ROBOT).no_driving
     assert found
     return found[0].begin, found[-1].end, {part.why for part in found}
 
@@ -124,7 +123,7 @@ def test_nobody_holds_a_robot_whose_heading_follows_its_wheels(seed: int, share:
     slides = (time[1:] >= 30.0) & (time[1:] <= 36.0)
     way = way[0] + np.cumsum(np.append(0.0, np.diff(way) * np.where(slides, share, 1.0)))
     short = replace(run.reference, x=way.real, y=way.imag)
-    found = looked_at(replace(run, reference=short), ROBOT).no_driving
+    found = with_no_driving(replace(run, reference=short), ROBOT).no_driving
     assert found == ()
 
 
@@ -236,7 +235,7 @@ def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:
     found = 0
     for seed in range(6):
         run, *_ = held(run_of(ROBOT, seed), 30.0, 36.0)
-        stretches = looked_at(parts(run, "yaw"), ROBOT).no_driving
+        stretches = with_no_driving(parts(run, "yaw"), ROBOT).no_driving
         assert stretches is not None
         assert all(29.5 < part.begin < part.end < 36.5 for part in stretches)
         found += bool(stretches)
@@ -251,7 +250,7 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
     yaw = np.clip(time - 16.0, 0.0, 2.0) + np.random.default_rng(0).normal(0.0, 1e-3, time.size)
     nothing = np.full(time.size, np.nan)
     ticks, seen = Ticks(time, counts, counts), Reference(time, nothing, nothing, yaw)
-    found = span(looked_at(Run("straight", Path("straight"), ticks, seen), ROBOT))
+    found = span(with_no_driving(Run("straight", Path("straight"), ticks, seen), ROBOT))
     assert found[:2] == pytest.approx((16.0, 18.0), abs=NEAR)
     assert found[2] == {"carried"}
 
@@ -295,7 +294,7 @@ def test_a_robot_that_a_hand_turns_faster_than_its_wheels_could_is_found_by_a_gy
     nothing = np.full(time.size, np.nan)
     ticks = Ticks(time, np.cumsum(forth - spins), np.cumsum(forth + spins))
     seen = Reference(time, nothing, nothing, yaw)
-    found = span(looked_at(Run("lifted", Path("lifted"), ticks, seen), ROBOT))
+    found = span(with_no_driving(Run("lifted", Path("lifted"), ticks, seen), ROBOT))
     assert found[0] == pytest.approx(30.0, abs=NEAR)
     assert found[1] > 35.5
     assert found[2] == {"carried"}
@@ -311,7 +310,7 @@ def test_a_robot_that_is_lifted_ever_faster_until_it_is_lost() -> None:
     yaw = (right - left) * ROBOT.left_tick / ROBOT.track
     reference = Reference(time[seen], (gone + noise[0])[seen], noise[1][seen], yaw[seen])
     run = Run("lost", Path("lost"), Ticks(time, left, right), reference)
-    begin, end, why = span(looked_at(run, ROBOT))
+    begin, end, why = span(with_no_driving(run, ROBOT))
     assert begin == pytest.approx(30.0, abs=NEAR)
     assert end > 32.0
     assert why == {"carried"}
@@ -388,7 +387,7 @@ def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
     noise = np.random.default_rng(0).normal(0.0, [[1e-3], [1e-3], [2e-3]], (3, time.size))
     seen = Reference(time, place.real + noise[0], place.imag + noise[1], turn + noise[2])
     run = Run("slow", Path("slow"), Ticks(time, *counts), seen)
-    assert looked_at(run, ROBOT).no_driving == ()
+    assert with_no_driving(run, ROBOT).no_driving == ()
 
 
 def test_arcs_seen_from_beside_the_axle_are_driving(tmp_path: Path) -> None:
@@ -396,7 +395,7 @@ def test_arcs_seen_from_beside_the_axle_are_driving(tmp_path: Path) -> None:
     mount = hide("reference_lever_arm", seed=3).peculiarity  # 61 mm ahead, 132 mm to the right
     drive = record(TrueRobot(), drives(7)["train/eights_and_spins"], seed=42, hidden=[mount])
     run = read_run_folder(write_run(drive, tmp_path / "eights"))
-    assert looked_at(run, ROBOT).no_driving == ()
+    assert with_no_driving(run, ROBOT).no_driving == ()
 
 
 def at_10_hz(run: Run) -> Run:
@@ -412,7 +411,7 @@ def at_10_hz(run: Run) -> Run:
 
 def test_of_positions_alone_the_longest_drive_is_kept() -> None:
     """How a robot stands after it was carried, positions do not say."""
-    run = looked_at(parts(carried(run_of(ROBOT, 1), 60.0, 3.0), "positions"), ROBOT)
+    run = with_no_driving(parts(carried(run_of(ROBOT, 1), 60.0, 3.0), "positions"), ROBOT)
     assert run.no_driving is not None
     assert [part.why for part in run.no_driving] == ["carried", "carried"]
     assert run.no_driving[0].begin == pytest.approx(60.0, abs=NEAR)
@@ -438,7 +437,7 @@ TRUTHS = {
 @pytest.mark.parametrize("which", ["poses", "positions", "yaw"])
 def test_what_is_driving_is_left_in(truth: str, which: str) -> None:
     for seed in (1, 2):
-        run = looked_at(parts(run_of(TRUTHS[truth], seed), which), ROBOT)
+        run = with_no_driving(parts(run_of(TRUTHS[truth], seed), which), ROBOT)
         assert run.no_driving == ()
 
 
@@ -454,7 +453,7 @@ def test_a_jump_of_the_reference_is_no_hand() -> None:
     assert reference is not None
     late = reference.time > 40.0
     leapt = replace(reference, x=reference.x + 0.4 * late, yaw=reference.yaw + 0.5 * late)
-    assert looked_at(replace(run, reference=leapt), ROBOT).no_driving == ()
+    assert with_no_driving(replace(run, reference=leapt), ROBOT).no_driving == ()
 
 
 def test_all_verbs_leave_it_out_and_find_what_they_find_without_it() -> None:
@@ -490,13 +489,13 @@ def test_a_clock_of_the_day_is_told_from_the_start_of_the_drive() -> None:
     assert told == pytest.approx(begin - float(run.ticks.time[0]) + day, abs=NEAR)
 
 
-@pytest.mark.skipif(not DATA.exists(), reason="no recorded robots here")
+@with_recordings
 def test_nobody_held_the_recorded_robots() -> None:
     count = 0
-    for file in sorted(DATA.glob("robots/*/robot.yaml")):
+    for file in sorted(ROBOTS.glob("*/robot.yaml")):
         source = read_robot_file(file)
         for folder in sorted(each for each in file.parent.iterdir() if each.is_dir()):
-            run = looked_at(read_run(folder, source), source.robot, source.limits)
+            run = with_no_driving(read_run(folder, source), source.robot, source.limits)
             assert run.no_driving == (), folder
             count += 1
     assert count

@@ -20,7 +20,7 @@ from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.advice import told_of
+from werrimbi_odom.inference.manoeuvres.advice import advised_diagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
@@ -130,9 +130,11 @@ def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     half = replace(ROBOT, wheel_separation=0.5 * ROBOT.wheel_separation)
     run = replace(run, reference=late, ticks=swapped)
     robot = read_robot(FILE)
-    told = told_of(Recordings(robot, collection_of(), (run,), (), DriveOptions(), half))
-    assert told.diagnosis.verdict == "unknown"
-    words = " ".join(each.text for each in words_of(told, NextSteps()))
+    advised = advised_diagnosis(
+        Recordings(robot, collection_of(), (run,), (), DriveOptions(), half)
+    )
+    assert advised.diagnosis.verdict == "unknown"
+    words = " ".join(each.text for each in words_of(advised, NextSteps()))
     assert ("werrimbi draft" in words) == ("What is known of it" in words)
 
 
@@ -152,7 +154,9 @@ def test_nor_is_it_beside_a_set_up_mistake() -> None:
         y = seen.y + ahead * np.sin(seen.yaw) + 0.03 * np.cos(5.0 * way)
         sides.append((replace(run, reference=replace(seen, x=x, y=y, yaw=seen.yaw + 1.8)),))
     robot = read_robot(FILE)
-    found = told_of(Recordings(robot, collection_of(), *sides, DriveOptions(), ROBOT)).diagnosis
+    found = advised_diagnosis(
+        Recordings(robot, collection_of(), *sides, DriveOptions(), ROBOT)
+    ).diagnosis
     assert found.found == ("reference_yaw_offset",)
     assert found.verdict == "named"
     assert found.holdout.after < 0.06

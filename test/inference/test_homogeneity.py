@@ -29,7 +29,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.remarks import not_shown
@@ -245,7 +245,7 @@ def test_axes_that_begin_anew_have_no_common_direction() -> None:
     limits = {limit.effect: limit for limit in detection_limits(found, LIBRARY)}
     assert limits["floor_slope"].minimum_detectable == np.inf
     assert limits["lateral_slip"].minimum_detectable < 1.0
-    said = " ".join(not_shown(Told(found, None, tuple(limits.values()))))
+    said = " ".join(not_shown(AdvisedDiagnosis(found, None, tuple(limits.values()))))
     assert (
         "floor_slope and anisotropic_floor with such a reference; one that measures finely, in axes"
         in said

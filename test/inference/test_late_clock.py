@@ -24,7 +24,7 @@ from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.records import record_of
@@ -43,7 +43,7 @@ def later(run: Run, delay: float) -> Run:
 def test_a_late_gyros_bias_is_told_where_the_robot_stood() -> None:
     """It still turns by its own stamps for a second after the wheels stopped."""
     run = short_drive()
-    seen = looked_at(later(run, LATE), LATE_ROBOT).reference
+    seen = with_no_driving(later(run, LATE), LATE_ROBOT).reference
     assert run.reference is not None
     assert seen is not None
     bias = (run.reference.yaw - seen.yaw)[-1] / (seen.time[-1] - seen.time[0])
@@ -93,9 +93,9 @@ def kept(runs: list[Run]) -> list[Run]:
     return list(set_aside(runs)[0])
 
 
-def wavy(seed: int, curves: int = 40) -> Run:
-    """Curves of one and a half seconds each, some sharper than others."""
-    rates = np.random.default_rng(seed).normal(0.0, 0.6, curves).repeat(30)
+def wavy(seed: int) -> Run:
+    """Forty curves of one and a half seconds each, some sharper than others."""
+    rates = np.random.default_rng(seed).normal(0.0, 0.6, 40).repeat(30)
     return by_gyro(np.full(rates.size, 0.3), rates, 1.0, 0.0, seed)
 
 

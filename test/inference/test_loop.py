@@ -19,9 +19,10 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
@@ -76,8 +77,8 @@ def test_a_wrong_wheel_and_a_late_clock_come_to_rest_at_the_truth(wheel_and_cloc
 
 
 def test_a_wrong_wheel_is_told_as_one_thing_with_one_command(wheel_and_clock: Loop) -> None:
-    told = Told(wheel_and_clock.first, None, ())
-    words = " ".join(as_text(words_of(told, NextSteps())).split())
+    advised = AdvisedDiagnosis(wheel_and_clock.first, None, ())
+    words = " ".join(as_text(words_of(advised, NextSteps())).split())
     assert "Two things are missing" in words
     assert "the size of the right wheel (" in words
     assert re.search(r"right wheel (2\.99|3\.0)\S* ± \S+ % larger \(radius 51\.", words)
@@ -166,7 +167,7 @@ def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     assert found.misfit is not None
     assert found.misfit.effect == "soft_tyres"
     assert "the law of soft_tyres does not fit fully" in " ".join(
-        as_text(words_of(Told(found, None, ()), NextSteps())).split()
+        as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())).split()
     )
 
 

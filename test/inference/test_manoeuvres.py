@@ -16,10 +16,10 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.prediction import predicted_legs
-from werrimbi_odom.inference.fitting.score_tests import Candidate
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
@@ -29,12 +29,8 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     separation,
     trace_at,
 )
-from werrimbi_odom.inference.manoeuvres.ideal_drives import (
-    MANOEUVRES,
-    DrivingLimits,
-    Ideal,
-    ideal_run,
-)
+from werrimbi_odom.inference.manoeuvres.ideal_drives import DrivingLimits, ideal_run
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.manoeuvres.proposal import Discrimination, next_manoeuvre, quickest
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot

@@ -242,7 +242,7 @@ def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
     assert any("noise (headings alone) is too small to tell" in text for text in said)
 
 
-def by_gps(noise: float, stated: bool = True) -> Run:
+def by_gps(noise: float) -> Run:
     """Six minutes of a sound robot, seen by satellites twice a second."""
     run = run_of(ROBOT, 5, 360)
     reference = run.reference
@@ -250,8 +250,7 @@ def by_gps(noise: float, stated: bool = True) -> Run:
     random = np.random.default_rng(5)
     size = reference.time.size
     x, y = (part + random.normal(0.0, noise, size) for part in (reference.x, reference.y))
-    sigma = np.full(size, noise) if stated else None
-    seen = replace(reference, x=x, y=y, yaw=np.full(size, np.nan), sigma_xy=sigma)
+    seen = replace(reference, x=x, y=y, yaw=np.full(size, np.nan), sigma_xy=np.full(size, noise))
     return replace(run, reference=seen.chosen(np.arange(size) % 2 == 0))
 
 

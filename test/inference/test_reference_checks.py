@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -13,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
@@ -24,7 +24,6 @@ from werrimbi_odom.report.phrases import remark_words, remarks_json
 from werrimbi_odom.simulation import Peculiarity, TrueRobot, free, hide, record, start_stop
 
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
-RECORDED = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
 
 
 @cache
@@ -115,9 +114,7 @@ def test_a_metre_that_is_none() -> None:
 
 
 def recorded(name: str, leg: float) -> list[str]:
-    folder = RECORDED / "robots" / name
-    if not folder.is_dir():
-        pytest.skip("no recorded robots here")
+    folder = ROBOTS / name
     robot = read_robot_file(folder / "robot.yaml")
     runs = [read_run_folder(part) for part in sorted(folder.iterdir()) if part.is_dir()]
     kind = "absolute" if name in ("optitrack_robot", "labyrinth") else "incremental"
@@ -131,6 +128,7 @@ def recorded(name: str, leg: float) -> list[str]:
     return [each.what for each in found]
 
 
+@with_recordings
 @pytest.mark.parametrize(
     ("name", "leg"),
     [("optitrack_robot", 0.5), ("khepera_laser_moved", 0.1), ("labyrinth", 0.5)],
@@ -139,5 +137,6 @@ def test_recorded_references_that_are_sound(name: str, leg: float) -> None:
     assert recorded(name, leg) == []
 
 
+@with_recordings
 def test_a_students_scan_matcher_is_short_by_place() -> None:
     assert "short" in recorded("upenn_skid_icp", 1.0)

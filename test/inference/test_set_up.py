@@ -40,7 +40,8 @@ from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match
-from werrimbi_odom.inference.set_up.search import SetUp, SetUpFinding, look_for_mistakes
+from werrimbi_odom.inference.set_up.findings import SetUpFinding
+from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run

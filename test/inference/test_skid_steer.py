@@ -14,7 +14,7 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
@@ -50,7 +50,7 @@ def diagnosed(robot: Robot, *, headings_alone: bool = False) -> Diagnosis:
 
 
 def said(diagnosis: Diagnosis) -> str:
-    return " ".join(as_text(words_of(Told(diagnosis, None, ()), NextSteps())).split())
+    return " ".join(as_text(words_of(AdvisedDiagnosis(diagnosis, None, ()), NextSteps())).split())
 
 
 def test_it_is_named_with_its_numbers_and_no_mistake_is_told() -> None:

@@ -16,7 +16,7 @@ from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
@@ -41,7 +41,7 @@ def test_a_localiser_taken_as_absolute_names_nothing_false(sound: Diagnosis) -> 
 
 
 def test_it_is_said_and_what_follows_reckons_with_it(sound: Diagnosis) -> None:
-    said = " ".join(str(each) for each in words_of(Told(sound, None, ()), NextSteps()))
+    said = " ".join(str(each) for each in words_of(AdvisedDiagnosis(sound, None, ()), NextSteps()))
     assert "--reference-kind local_map" in said
     given = Recordings(SimpleNamespace(), SimpleNamespace(), (), (), DriveOptions())  # type: ignore[arg-type]
     assert as_judged(given, sound).how.reference_kind == "local_map"

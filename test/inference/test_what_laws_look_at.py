@@ -115,9 +115,9 @@ def slipping(way: Callable[[Any], Any], **declared: Any) -> Effect:
     return wheel_effect(amount=AMOUNT, **declared)(slips)
 
 
-def assert_three_alike(effect: Effect, amount: float = 0.05) -> None:
+def assert_three_alike(effect: Effect) -> None:
     """Live, recorded, predicted; the reference is what the robot itself says, without noise."""
-    robot = replace(ROBOT, effects=(effect.using(amount=amount),))
+    robot = replace(ROBOT, effects=(effect.using(amount=0.05),))
     ticks = drive()
     path = trajectory(robot, *ticks, start=START)
     live = Odometer(robot)

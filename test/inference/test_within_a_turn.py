@@ -17,7 +17,7 @@ from test.robot_file import BARE
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.manoeuvres.advice import Told, shorter_leg
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, shorter_leg
 from werrimbi_odom.report.terminal import as_text
 
 BUMPED = replace(ROBOT, effects=(find("right_tread_bump").using(height=2.0e-3, place=0.7),))
@@ -38,11 +38,13 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> wo.RobotFile:
 
 
 @pytest.fixture(scope="module")
-def found(robot: wo.RobotFile) -> Result[Told]:
+def found(robot: wo.RobotFile) -> Result[AdvisedDiagnosis]:
     return wo.diagnose(robot, on_a_circle(40, 1))
 
 
-def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(found: Result[Told]) -> None:
+def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(
+    found: Result[AdvisedDiagnosis],
+) -> None:
     said = found.to_dict()
     assert (said["verdict"], said["effect"]) == ("named", "right_tread_bump")
     assert found.found.open_at == 1.0
@@ -52,7 +54,7 @@ def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(found: Resu
 
 
 def test_the_printed_command_keeps_those_legs_and_what_is_left_is_noise(
-    found: Result[Told], robot: wo.RobotFile, tmp_path: Path
+    found: Result[AdvisedDiagnosis], robot: wo.RobotFile, tmp_path: Path
 ) -> None:
     words = " ".join(as_text(found.document().words).split())
     assert "Legs of 1 m leave it open" in words
@@ -63,7 +65,7 @@ def test_the_printed_command_keeps_those_legs_and_what_is_left_is_noise(
     assert wo.diagnose(wo.read_robot(better), drive).to_dict()["verdict"] == "none"
 
 
-def test_legs_that_are_short_enough_already_are_left_alone(found: Result[Told]) -> None:
+def test_legs_that_are_short_enough_already_are_left_alone(found: Result[AdvisedDiagnosis]) -> None:
     open_still = replace(found.found.diagnosis, verdict="ambiguous", rivals=("right_tread_bump",))
     assert shorter_leg(open_still, 1.0) == pytest.approx(0.1)
     assert shorter_leg(open_still, 0.15) is None

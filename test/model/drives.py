@@ -55,8 +55,9 @@ def square(robot: Robot = ROBOT, rate: float = 50.0, side: float = 4.0, laps: in
     return read(robot, rate, np.tile(speed, 4 * laps), np.tile(yaw_rate, 4 * laps))
 
 
-def speeded_up(distance: float, top: float, rate: float, acceleration: float = 0.5) -> np.ndarray:
-    """Speeds that cover a distance from rest to rest."""
+def speeded_up(distance: float, top: float, rate: float) -> np.ndarray:
+    """Speeds that cover a distance from rest to rest, at 0.5 m/s²."""
+    acceleration = 0.5
     duration = distance / top + top / acceleration
     time = (np.arange(int(duration * rate)) + 0.5) / rate
     speed = np.minimum(np.minimum(time, duration - time) * acceleration, top)

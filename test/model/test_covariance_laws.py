@@ -64,7 +64,7 @@ def part(piece: Piece, share: float) -> Piece:
     return BodyMotion(*(share * m for m in piece[0])), PathNoise(*(share * n for n in piece[1]))
 
 
-def in_parts(piece: Piece, shares: list[float], yaw: float = 0.0) -> np.ndarray:
+def in_parts(piece: Piece, shares: list[float], yaw: float) -> np.ndarray:
     covariance: PoseCovariance[float] = CERTAIN
     for share in shares:
         motion, noise = part(piece, share)

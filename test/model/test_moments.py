@@ -53,11 +53,9 @@ def first_order(pieces: Pieces) -> PoseCovariance[float]:
     return covariance
 
 
-def sampled(
-    pieces: Pieces, count: int, start: np.ndarray | None = None, steps: int = 200
-) -> np.ndarray:
+def sampled(pieces: Pieces, count: int, start: np.ndarray | None = None) -> np.ndarray:
     """Errors (x, y, yaw) of `count` robots whose motion is noisy at every small step."""
-    random = np.random.default_rng(20260101)
+    random, steps = np.random.default_rng(20260101), 200
     error = (
         np.zeros((3, count))
         if start is None

@@ -74,7 +74,7 @@ def assert_same_covariances(one: np.ndarray, other: np.ndarray, rounding: float 
     assert (np.abs(one - other) <= TOLERANCE * scale).all()
 
 
-def assert_same_pieces(one: Sequence[Piece], other: Sequence[Piece], rounding: float = 0.0) -> None:
+def assert_same_pieces(one: Sequence[Piece], other: Sequence[Piece], rounding: float) -> None:
     assert [piece.kind for piece in one] == [piece.kind for piece in other]
     for times in ("time_start", "time_end"):
         assert [getattr(p, times) for p in one] == [getattr(p, times) for p in other]

@@ -14,7 +14,8 @@ import pytest
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.adding.adding import Added, add_effects
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.model.robot import Robot

@@ -13,10 +13,10 @@ import pytest
 from browser import Visit
 
 from test.axe import COUNT, RUN, axe_script
-from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.adding.document import document_of as document_of_added
 from werrimbi_odom.report.calibration.document import calibration_document, leg_figure
 from werrimbi_odom.report.comparison.document import document_of as document_of_comparison
@@ -39,7 +39,7 @@ def pages(
     folder = tmp_path_factory.mktemp("pages")
     found = {name: folder / f"{name}.html" for name in ("compare", "diagnose", "add", "fit")}
     save_report(document_of_comparison(comparison), found["compare"])
-    save_report(document_of_diagnosis(Told(diagnosis, None, ())), found["diagnose"])
+    save_report(document_of_diagnosis(AdvisedDiagnosis(diagnosis, None, ())), found["diagnose"])
     save_report(document_of_added(added), found["add"])
     errors = np.random.default_rng(1).normal(0.0, 0.01, (3000, 2))
     figure = leg_figure(errors, 0.5 * errors)

@@ -24,8 +24,8 @@ from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
     consistency,
     honest_bounds,
+    judged_lengths,
     of_all,
-    told,
 )
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
@@ -77,7 +77,7 @@ def verdict(random: np.random.Generator, lengths: tuple[AtLength, ...]) -> Verdi
         factor=factor,
         judged_at=judged_at,
         off=off,
-        lengths=told(lengths),
+        lengths=judged_lengths(lengths),
     )
 
 

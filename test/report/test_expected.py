@@ -17,7 +17,7 @@ from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
-from werrimbi_odom.inference.diagnosis.verdict import Diagnosis
+from werrimbi_odom.inference.diagnosis.result import Diagnosis
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.diagnosis import phrases
 from werrimbi_odom.report.diagnosis.expected import expected_words

@@ -22,7 +22,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.response_curve import before_after, parts_of, response
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
-from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, pace_of
+from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES
 from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.model.effect_declarations import DRAWINGS
 from werrimbi_odom.report import sketches

@@ -22,7 +22,7 @@ from test.report.test_accessible import assert_obeyed, rules
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.adding.document import document_of as document_of_added
 from werrimbi_odom.report.calibration.document import calibration_document, leg_figure
 from werrimbi_odom.report.comparison.document import document_of as document_of_comparison
@@ -57,7 +57,7 @@ def compare_page(comparison: Comparison, tmp_path_factory: pytest.TempPathFactor
 @pytest.fixture(scope="module")
 def diagnosis_page(diagnosis: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("diagnosis") / "page.html"
-    save_report(document_of_diagnosis(Told(diagnosis, None, ())), path)
+    save_report(document_of_diagnosis(AdvisedDiagnosis(diagnosis, None, ())), path)
     return path
 
 

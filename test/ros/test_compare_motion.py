@@ -123,6 +123,6 @@ def test_wheels_and_reference_that_never_agree_are_a_mistake_of_the_set_up() -> 
                 TimedPose(t, Pose(0.3 * t, 0.0, 0.0), covariance),
             )
         )
-    fine, words = motion.told()
+    fine, words = motion.status()
     assert not fine
     assert "hardly ever go together" in words

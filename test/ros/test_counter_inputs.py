@@ -22,9 +22,9 @@ TURNS = (3.0, 3.2)
 """Turns of the left and the right wheel that every test here drives."""
 
 
-def assert_driven(message: Any, turns: tuple[float, float] = TURNS) -> None:
-    """The odometry is that of wheels which made so many turns at a constant ratio."""
-    left, right = (2.0 * math.pi * 0.05 * turn for turn in turns)
+def assert_driven(message: Any) -> None:
+    """The odometry is that of wheels which made these turns at a constant ratio."""
+    left, right = (2.0 * math.pi * 0.05 * turn for turn in TURNS)
     turn = (right - left) / 0.35
     radius = 0.5 * (left + right) / turn
     assert message.pose.pose.position.x == pytest.approx(radius * math.sin(turn), abs=1e-9)

@@ -22,11 +22,9 @@ NAMES = ["left_wheel_joint", "right_wheel_joint"]
 SEVERAL = "several publish /joint_states ("
 
 
-def level_and_words(
-    node: Any, send: Callable[[], None], until: str = "", seconds: float = 40.0
-) -> tuple[bytes, str]:
+def level_and_words(node: Any, send: Callable[[], None], until: str = "") -> tuple[bytes, str]:
     """What /diagnostics says while messages are sent all the time: once it says `until`, if so."""
-    before, end = len(node.diagnostics), time.monotonic() + seconds
+    before, end = len(node.diagnostics), time.monotonic() + 40.0
     while len(node.diagnostics) < before + 2 or until not in node.diagnostics[-1].message:
         assert time.monotonic() < end, f"{until!r} never came: {node.diagnostics[-1].message}"
         send()

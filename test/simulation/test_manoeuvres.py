@@ -16,7 +16,8 @@ CLOSED = [sim.square(), sim.square(sense="cw"), sim.out_and_back(3.0),
           sim.spins(), sim.figure_eight(), sim.arcs(), sim.pivots(), sim.start_stop()]  # fmt: skip
 
 
-def commanded_path(manoeuvre: sim.Manoeuvre, step: float = 0.001) -> np.ndarray:
+def commanded_path(manoeuvre: sim.Manoeuvre) -> np.ndarray:
+    step = 0.001
     times = np.arange(0.0, manoeuvre.duration + step, step)
     speed, yaw_rate = manoeuvre.commands(times)
     yaw = np.concatenate(([0.0], np.cumsum(yaw_rate * step)))

@@ -62,7 +62,7 @@ def test_what_is_remembered_of_laws_stays_behind() -> None:
         gap=np.zeros(1, dtype=np.bool_), stepped=np.zeros(1, dtype=np.bool_),
     )  # fmt: skip
     law = collection.find("castor_kick").apply
-    assert runs.of_model(runs, (law, 0.1), lambda: 1.0) == 1.0
+    assert runs.cache.of_model(runs, (law, 0.1), lambda: 1.0) == 1.0
     arrived = unpacked(packed(runs, {}), collection, {})
     np.testing.assert_array_equal(arrived.finish, runs.finish)
-    assert arrived.of_model(arrived, (law, 0.1), lambda: 2.0) == 2.0
+    assert arrived.cache.of_model(arrived, (law, 0.1), lambda: 2.0) == 2.0

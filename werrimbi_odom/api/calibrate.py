@@ -24,7 +24,7 @@ from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit, judged_by, prepare
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.calibration.document import calibration_document, leg_figure, noise_figure
@@ -61,7 +61,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for recordings that are already read."""
     source = given.source
     given = replace(
-        given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
+        given, runs=tuple(with_no_driving(run, source.robot, source.limits) for run in given.runs)
     )
     prepared = prepare(given.runs, source.robot, given.evaluation)
     runs = for_fit(prepared, source.robot)

@@ -99,10 +99,10 @@ def history_of(
     runs: Drives,
     how: DriveOptions,
     *,
-    like: RobotFile | None = None,
-    cache: str | Path | None = None,
-    spread: Spread | None = None,
-    show: Show = silent,
+    like: RobotFile | None,
+    cache: str | Path | None,
+    spread: Spread | None,
+    show: Show,
 ) -> Result[History]:
     """`history` for the command line."""
     given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
@@ -129,7 +129,7 @@ def told_of_task(task: DriveTask) -> Looked:
         return unusable_task(task, str(error))
     if task.keep is not None:
         with suppress(InputError), replacing(task.keep) as file:  # else it is processed again
-            json.dump(_plain(found.told), file)
+            json.dump(_plain(found.estimate), file)
     return found
 
 
@@ -206,7 +206,7 @@ def _as_given(drives: Sequence[Dated], given: Sequence[Run | str | Path]) -> lis
 
 def _course(drives: Sequence[Dated], robot: RobotFile) -> Course:
     time = np.array([drive.date for drive in drives])
-    return course_of([drive.told for drive in drives], robot.robot, time)
+    return course_of([drive.estimate for drive in drives], robot.robot, time)
 
 
 def _result(found: History) -> Result[History]:

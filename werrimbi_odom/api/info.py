@@ -37,7 +37,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.motion_states import driven
 from werrimbi_odom.inference.recording_info import Held, Info
 from werrimbi_odom.report.info import document_of, info_json
@@ -227,7 +227,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
                 require_independent(recorded, robot, limits)
             if recorded.reference.kind != "incremental":  # as where drives are judged
                 recorded = without_held_poses(recorded, robot)
-        run = looked_at(recorded, robot, limits)
+        run = with_no_driving(recorded, robot, limits)
         counters = counters_of(run, robot, limits)
         found = driven(counters, robot, run.no_driving or ())
         record = record_of(run, robot, limits) if run.reference is not None else None

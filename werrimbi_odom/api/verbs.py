@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.comparison.compare import Comparison
     from werrimbi_odom.inference.comparison.prepared import PreparedRuns
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-    from werrimbi_odom.inference.manoeuvres.advice import Told
+    from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
     from werrimbi_odom.model.effect import Effect
 
 
@@ -85,7 +85,7 @@ def diagnose(
     holdout: Drives = (),
     show: Show = silent,
     **options: Unpack[Options],
-) -> Result[Told]:
+) -> Result[AdvisedDiagnosis]:
     """Find the missing physical effect; for common parameters see `compare`.
 
     Parameters
@@ -97,15 +97,15 @@ def diagnose(
     return diagnosed(given, show)
 
 
-def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
+def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis]:
     """`diagnose` for recordings that are already read."""
-    from werrimbi_odom.inference.manoeuvres.advice import told_of, with_leg
+    from werrimbi_odom.inference.manoeuvres.advice import advised_diagnosis, with_leg
     from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.document import document_of
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
-    told = told_of(given, show)
-    given = as_judged(with_leg(given, told.leg), told.diagnosis)
+    advised = advised_diagnosis(given, show)
+    given = as_judged(with_leg(given, advised.leg), advised.diagnosis)
 
     def steps() -> NextSteps:
         better = beside(given.source.path, "better")
@@ -115,11 +115,11 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
         )
 
     return Result(
-        found=told,
-        document=lambda: document_of(told, steps()),
+        found=advised,
+        document=lambda: document_of(advised, steps()),
         figures_of_json=lambda: {
-            **json_of(told.diagnosis, told.manoeuvre, told.sights, told.changes),
-            "leg_m": told.leg,
+            **json_of(advised.diagnosis, advised.manoeuvre, advised.sights, advised.changes),
+            "leg_m": advised.leg,
         },
     )
 

@@ -155,7 +155,7 @@ def chain(edges: Sequence[Edge], parent: str, child: str) -> Chain | None:
     return Chain(tuple(s for s, _ in steps), tuple(b for _, b in steps), parent, child)
 
 
-def chains_to_base(edges: Sequence[Edge], base: str = "") -> list[Chain]:
+def chains_to_base(edges: Sequence[Edge], base: str) -> list[Chain]:
     """Chains from a fixed frame to the robot's base, the longest first.
 
     Parameters

@@ -34,7 +34,7 @@ class Chosen(NamedTuple):
 
 
 def choose_reference(
-    held: Contents, wheels: Wheels, wish: str | None, force: bool = False
+    held: Contents, wheels: Wheels, wish: str | None, force: bool
 ) -> Chosen | None:
     """Choose the requested reference, or the only independent one; None if there is none.
 

@@ -78,7 +78,7 @@ def write_robot_file(
 
 
 def new_text(
-    source: RobotFile, changes: Mapping[str, Value], effects: Sequence[AppliedEffect] | None = None
+    source: RobotFile, changes: Mapping[str, Value], effects: Sequence[AppliedEffect] | None
 ) -> str:
     """Text that `write_robot_file` would write, for a preview.
 

@@ -34,10 +34,10 @@ def read_run_bag(
     path: str | Path,
     robot_file: RobotFile,
     *,
-    ticks_topic: str | None = None,
-    reference_topic: Topics = None,
-    force: bool = False,
-    progress: Progress | None = None,
+    ticks_topic: str | None,
+    reference_topic: Topics,
+    force: bool,
+    progress: Progress | None,
 ) -> Run:
     """Read a run from a bag.
 
@@ -109,7 +109,7 @@ class FoundReference(NamedTuple):
 
 
 def read_reference_bag(
-    path: Path, robot_file: RobotFile, reference_topic: Topics = None, force: bool = False
+    path: Path, robot_file: RobotFile, reference_topic: Topics, force: bool
 ) -> FoundReference:
     """Read only the reference from a bag; wheels are ignored."""
     nothing = Wheels("", "", 0, "counts")

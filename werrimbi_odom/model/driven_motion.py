@@ -121,7 +121,7 @@ def features(
     duration: Floats,
     raw: WheelTravel[Floats],
     first_counts: tuple[float, float],
-    channels: Mapping[str, Span[Floats]] | None = None,
+    channels: Mapping[str, Span[Floats]] | None,
 ) -> DriveOfRun:
     """Compute what effects may read in a run.
 

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.model.covariance import CERTAIN, PathNoise, PoseCovariance
+from werrimbi_odom.model.covariance import PathNoise, PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 
 Complex = Any  # complex, or ndarray of complex; numpy's own types differ only at run time
@@ -92,7 +92,7 @@ class PathMoments(NamedTuple):
         )
 
 
-def from_covariance(covariance: PoseCovariance[float] = CERTAIN) -> PathMoments:
+def from_covariance(covariance: PoseCovariance[float]) -> PathMoments:
     """Moments of a start pose with Gaussian errors of this covariance, odometry frame."""
     with_heading = complex(covariance.xyaw, covariance.yyaw)
     variance = covariance.yawyaw

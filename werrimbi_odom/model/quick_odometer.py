@@ -41,7 +41,7 @@ class QuickEstimate(Estimate):
     _numbers: list[float]
 
     @classmethod
-    def told(
+    def of_numbers(
         cls, numbers: list[float], distance: float, closed: Piece | None, robot: Robot
     ) -> QuickEstimate:
         """Create it from the output of `message_loop.take`."""
@@ -119,7 +119,7 @@ class QuickOdometer(Odometer):
                 numbers = self._said.tolist()
                 self.distance += abs(numbers[4])
                 closed = self._closed() if became else None
-                return QuickEstimate.told(numbers, self.distance, closed, self.robot)
+                return QuickEstimate.of_numbers(numbers, self.distance, closed, self.robot)
         self._put_down(PATIENCE)
         estimate = super().update(time, left, right, channels)
         self._waits -= 1

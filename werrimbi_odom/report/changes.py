@@ -10,7 +10,7 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
-from werrimbi_odom.inference.changes.between_drives import Moved
+from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.number_format import SMALL, chance_words, in_unit, listed, with_std
 
@@ -24,7 +24,7 @@ WHAT = {
 """Names of the changed parts."""
 
 
-def changes_words(moves: Sequence[Moved], robot: Robot) -> list[str]:
+def changes_words(moves: Sequence[ParameterChange], robot: Robot) -> list[str]:
     """A sentence for each change, in the order of the drives; `robot` gives sizes in mm."""
     found = []
     for _, each in groupby(moves, key=lambda move: (move.group, move.from_run, move.kind)):
@@ -34,7 +34,7 @@ def changes_words(moves: Sequence[Moved], robot: Robot) -> list[str]:
     return found
 
 
-def changes_json(moves: Sequence[Moved], robot: Robot) -> list[dict[str, Any]]:
+def changes_json(moves: Sequence[ParameterChange], robot: Robot) -> list[dict[str, Any]]:
     """Fields of each change, with its sentence."""
     return [{**asdict(move), "words": changes_words([move], robot)[0]} for move in moves]
 
@@ -46,7 +46,7 @@ def in_small_unit(value: float, std: float, unit: str) -> tuple[str, str]:
     return in_unit(value, std, unit)
 
 
-def _when(move: Moved) -> str:
+def _when(move: ParameterChange) -> str:
     if move.kind == "alone":
         return f"In {move.from_run} alone"
     if move.kind == "trend":
@@ -54,7 +54,7 @@ def _when(move: Moved) -> str:
     return f"Between {move.last_before} and {move.surely_from}"
 
 
-def _what(moves: Sequence[Moved], robot: Robot) -> str:
+def _what(moves: Sequence[ParameterChange], robot: Robot) -> str:
     group = moves[0].group
     if group in ("left_wheel", "right_wheel", "both_wheels"):
         share = _share(moves[0], "larger", "smaller")
@@ -71,7 +71,7 @@ def _what(moves: Sequence[Moved], robot: Robot) -> str:
     return f"{group} took another size: {numbers}"
 
 
-def _verb(move: Moved, group: str) -> str:
+def _verb(move: ParameterChange, group: str) -> str:
     if move.kind == "alone":
         return "were" if group == "both_wheels" else "was"
     if group == "mount":
@@ -79,13 +79,13 @@ def _verb(move: Moved, group: str) -> str:
     return "became"
 
 
-def _share(move: Moved, more: str, less: str) -> str:
+def _share(move: ParameterChange, more: str, less: str) -> str:
     share = move.after / move.before - 1.0
     std = math.hypot(move.before_std, move.after_std) / abs(move.before)
     return f"{with_std(100.0 * abs(share), 100.0 * std)} % {more if share > 0.0 else less}"
 
 
-def _sizes(move: Moved, nominal: float) -> str:
+def _sizes(move: ParameterChange, nominal: float) -> str:
     before, after = (1e3 * nominal * value for value in (move.before, move.after))
     return f"{before:.2f} mm before, {after:.2f} mm after"
 
@@ -97,7 +97,7 @@ _NAMES = {
 }
 
 
-def _from_to(move: Moved) -> str:
+def _from_to(move: ParameterChange) -> str:
     name = _NAMES.get(move.what, move.what.rpartition(".")[2])
     before, after = (
         " ".join(in_small_unit(value, std, move.unit)).rstrip()

@@ -89,7 +89,7 @@ class Reckoning:
 
 
 def reckoning_of(
-    run: Run, start: StartPose, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...] = ()
+    run: Run, start: StartPose, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...]
 ) -> Reckoning:
     """Results of a run that was dead reckoned from `start`.
 

@@ -52,7 +52,7 @@ def events_words(happened: Events, track: float) -> list[str]:
     return lines
 
 
-def event_words(event: Event, track: float, *, either: bool = False) -> str:
+def event_words(event: Event, track: float, *, either: bool) -> str:
     """Description of one event, as the end of a sentence.
 
     Parameters
@@ -242,7 +242,7 @@ def _marks(
                 [places[index][0] for index in own],
                 [places[index][1] for index in own],
                 words,
-                told="%{hovertext}",
+                hover="%{hovertext}",
                 hovertext=[_said(happened, happened.events[index], track) for index in own],
                 marker={"color": colour, "symbol": symbol, "size": 12, "line": edge},
             )

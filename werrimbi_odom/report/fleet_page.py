@@ -63,7 +63,7 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
         style.plot(figure, lines["x"], lines["y"], group=group, shown=False, line=line)
         hollow = {"color": style.PAPER, "symbol": mark, "size": 9, "line": line}
         told = "%{y}, as given: %{x:.2f} mm"
-        style.plot(figure, before, names, group=group, shown=False, told=told, marker=hollow)
+        style.plot(figure, before, names, group=group, shown=False, hover=told, marker=hollow)
         missing = [" ".join("; ".join(missing_words(row)).split()) for row in rows]
         style.plot(
             figure,
@@ -71,7 +71,7 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
             names,
             f"{group} ({len(rows)})",
             group=group,
-            told="%{y}: %{x:.2f} mm<br>missing: %{customdata}",
+            hover="%{y}: %{x:.2f} mm<br>missing: %{customdata}",
             customdata=list(map(style.escaped, missing)),
             marker={"color": colour, "symbol": mark, "size": 10},
         )

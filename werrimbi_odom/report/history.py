@@ -94,7 +94,7 @@ def _panel(
         drawn(number.own[told]),
         "a drive by itself",
         group="own",
-        told="%{text}<br>%{y:.4g}",
+        hover="%{text}<br>%{y:.4g}",
         text=[names[index] for index in told],
         marker={"color": style.BLUE, "size": 5},
         error_y=style.error_bars(bars, style.paled(style.BLUE, 0.4), 1, 0),
@@ -153,7 +153,7 @@ def json_of(history: History) -> dict[str, Any]:
     return {
         "drives": [
             {
-                **picked(drive, "run date_from way_m:told.way"),
+                **picked(drive, "run date_from way_m:estimate.way"),
                 "date": _date(drive),
                 "numbers": {
                     number.name: {

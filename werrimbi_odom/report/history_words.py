@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 
-from werrimbi_odom.inference.changes.between_drives import Moved
+from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.inference.changes.dated_drives import Dated, History
 from werrimbi_odom.inference.changes.history import Number
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
@@ -129,7 +129,7 @@ def against(history: History) -> list[Against]:
     return found
 
 
-def told_as(history: History, names: Sequence[str]) -> list[Moved]:
+def told_as(history: History, names: Sequence[str]) -> list[ParameterChange]:
     """The changes, with names of the drives instead of indices."""
     return [
         replace(
@@ -164,7 +164,7 @@ def _headline(history: History) -> str:
 
 def _drives(history: History) -> str:
     drives = history.drives
-    way = length(sum(drive.told.way for drive in drives))
+    way = length(sum(drive.estimate.way for drive in drives))
     kinds = list(dict.fromkeys(drive.date_from for drive in drives))
     days = ""
     if "order" not in kinds:

@@ -18,7 +18,7 @@ from werrimbi_odom.inference.comparison.over_variable import (
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response_curve import BeforeAfter
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.comparison.figures import CHANNELS, measured_channels
@@ -70,7 +70,7 @@ def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
             mean,
             group=name,
             shown=False,
-            told=f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m",
+            hover=f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m",
             marker={"symbol": symbol, "size": 8, "color": style.paled(colour, 0.6)},
             error_y=style.error_bars(2.0 * spread, style.paled(colour, 0.3), 1, 0),
         )
@@ -125,7 +125,7 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
             style.small(error[drawn]),
             "a leg",
             group="leg",
-            told=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}",
+            hover=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}",
             marker={"color": style.paled(style.GREY, 0.55), "size": 5},
             **at,
         )
@@ -136,7 +136,7 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
             mean,
             "mean, ± 2 standard errors",
             group="mean",
-            told=f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
+            hover=f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
             "<br>%{customdata} legs",
             customdata=count,
             line={"color": style.BLUE, "width": 2},
@@ -182,7 +182,7 @@ def before_after_figure(found: BeforeAfter) -> Figure:
             scale * item.centre,
             factor * item.value,
             name if found.effect else "what the error goes with",
-            told=f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>",
+            hover=f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>",
             line={"color": colour, "width": 2, "dash": dash},
             marker={"color": colour, "symbol": symbol, "size": 9},
             error_y=style.error_bars(2.0 * (factor * item.std), colour, 1.5),

@@ -80,7 +80,7 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     if drawing.reference_x is not None and drawing.reference_y is not None:
         measured, look = (drawing.reference_x, drawing.reference_y), {"color": GREY, "width": 5}
-        plot(figure, *measured, "measured", told=f"measured{_PLACE}", line=look, opacity=0.55)
+        plot(figure, *measured, "measured", hover=f"measured{_PLACE}", line=look, opacity=0.55)
     for order, index in enumerate(spread_along_path(drawing.x, drawing.y, ellipses)):
         x, y, shape = drawing.x[index], drawing.y[index], drawing.covariance[index]
         plot(
@@ -94,7 +94,7 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
             fillcolor="rgba(213, 94, 0, 0.16)",
         )
     look = {"color": BLUE, "width": 2}
-    plot(figure, drawing.x, drawing.y, "odometry", told=f"odometry{_PLACE}", line=look)
+    plot(figure, drawing.x, drawing.y, "odometry", hover=f"odometry{_PLACE}", line=look)
     marks = [
         (complex(drawing.x[0], drawing.y[0]), "start", "circle", GREEN),
         (complex(drawing.x[-1], drawing.y[-1]), "end", "square", BLUE),
@@ -123,7 +123,7 @@ def add_path(
     **more: Any,
 ) -> None:
     """Add a path (x + iy) on the floor, with `said` and the position as hover text."""
-    plot(figure, *places(path), name, told=said + _PLACE, line=line, **more)
+    plot(figure, *places(path), name, hover=said + _PLACE, line=line, **more)
 
 
 def add_mark(
@@ -131,7 +131,7 @@ def add_mark(
 ) -> None:
     """Add a mark at one point (x + iy), such as a start or an end."""
     x, y = [float(at.real)], [float(at.imag)]
-    plot(figure, x, y, name, told=name + _PLACE, marker=marker, **more)
+    plot(figure, x, y, name, hover=name + _PLACE, marker=marker, **more)
 
 
 def _last_known(x: Floats, y: Floats) -> tuple[float, float]:

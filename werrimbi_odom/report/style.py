@@ -62,7 +62,7 @@ def plot(
     y: Any,
     name: str | None = None,
     *,
-    told: str | None = "",
+    hover: str | None = "",
     group: str | None = None,
     shown: bool | None = None,
     **looks: Any,
@@ -73,15 +73,15 @@ def plot(
     ----------
     name, group, shown
         Name in the legend, its group there, and whether it is listed.
-    told : str, optional
+    hover : str, optional
         Text shown by the pointer, a template of plotly's; "" for none, None for plotly's own.
     """
     mode = "+".join(f"{look}s" for look in ("line", "marker") if look in looks)
-    hover = {"hovertemplate": told if told and "<extra>" in told else f"{told}<extra></extra>"}
-    if not told:
-        hover = {} if told is None else {"hoverinfo": "skip"}
+    shows = {"hovertemplate": hover if hover and "<extra>" in hover else f"{hover}<extra></extra>"}
+    if not hover:
+        shows = {} if hover is None else {"hoverinfo": "skip"}
     figure.add_scatter(
-        x=x, y=y, mode=mode, name=name, legendgroup=group, showlegend=shown, **hover, **looks
+        x=x, y=y, mode=mode, name=name, legendgroup=group, showlegend=shown, **shows, **looks
     )
 
 

@@ -72,7 +72,7 @@ class Motion:
             self.state = seen
         return self.state
 
-    def told(self) -> tuple[bool, str]:
+    def status(self) -> tuple[bool, str]:
         """Whether all is well, and the message."""
         if not self.ever_agrees:
             return False, (

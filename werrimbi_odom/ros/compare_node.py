@@ -219,7 +219,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._diagnose(status, self._motion_status(), *self._watching.look())
 
     def _motion_status(self) -> DiagnosticStatus:
-        fine, words = self._motion.told()
+        fine, words = self._motion.status()
         if fine != self._moved_well:
             self._moved_well = fine
             tell(self.get_logger(), words, fine=fine)

@@ -59,7 +59,7 @@ def status_of(
     covariance: PoseCovariance[float],
     piece: Piece,
     distance: float,
-    mean_shift: tuple[float, float] | None = None,
+    mean_shift: tuple[float, float] | None,
 ) -> DiagnosticStatus:
     """Create a status message from the estimate.
 

@@ -31,7 +31,7 @@ from werrimbi_odom.ros.input_health import Health
 from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
-from werrimbi_odom.ros.phase_learning import learning_of, told
+from werrimbi_odom.ros.phase_learning import learning_of, status_of_effects
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.topics import Company, full_name, publisher, subscribe, transform_sender
@@ -204,7 +204,7 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
-        effects = told(self._settings.effects, self._learning) | self._slip.told()
+        effects = status_of_effects(self._settings.effects, self._learning) | self._slip.status()
         # Another driver on the topic may be that of an arm, with other joints.
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
         self._foreign = self._health.foreign
@@ -228,7 +228,7 @@ class OdomNode(Node):  # type: ignore[misc]
                 "left_ and right_ticks_per_revolution where you know them: then quantisation "
                 "belongs to the covariance, and a count that flickers is no motion"
             )
-        for name, words in told(self._settings.effects, self._learning).items():
+        for name, words in status_of_effects(self._settings.effects, self._learning).items():
             log.info(f"{name}: {words}")
         log.info(
             f"{values['input_type']} on {' and '.join(self._topics)}, odometry on "

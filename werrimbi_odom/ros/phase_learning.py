@@ -185,7 +185,7 @@ def learning_of(wiring: counter_inputs.InputOptions, robot: Robot) -> NoLearning
     return NoLearning()
 
 
-def told(effects: tuple[AppliedEffect, ...], learning: NoLearning) -> dict[str, str]:
+def status_of_effects(effects: tuple[AppliedEffect, ...], learning: NoLearning) -> dict[str, str]:
     """Description of each effect and its values."""
     return {f"effect {applied.name}": _words(applied, learning) for applied in effects}
 

@@ -31,7 +31,7 @@ class NoSlip:
     def retune(self, robot: Robot) -> None:
         """Change the parameter values of the robot."""
 
-    def told(self) -> dict[str, str]:
+    def status(self) -> dict[str, str]:
         """Entries for /diagnostics."""
         return {}
 
@@ -62,7 +62,7 @@ class Slip(NoSlip):
         """Change the track."""
         self._guard.track = robot.track
 
-    def told(self) -> dict[str, str]:
+    def status(self) -> dict[str, str]:
         """Entries for /diagnostics."""
         if not self._heard:
             return {"slip": f"no gyro heard on {self._topic}"}

@@ -112,7 +112,7 @@ def _add_texts(
         style.small(0.5 * (legs.x + legs.end_x)[told]),
         style.small(0.5 * (legs.y + legs.end_y)[told]),
         shown=False,
-        told="%{text}",
+        hover="%{text}",
         text=[leg_told(comparison, int(index)) for index in told],
         line={"width": 0, "color": "rgba(0, 0, 0, 0)"},
     )

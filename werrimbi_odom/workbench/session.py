@@ -13,7 +13,7 @@ from pathlib import Path
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.workbench.loaded_input import Look
 
 GONE = -1
@@ -24,7 +24,7 @@ GONE = -1
 class Diagnosed:
     """A diagnosis with the next manoeuvre and detection limits, and its figures."""
 
-    told: Told
+    advised: AdvisedDiagnosis
     figures: Mapping[str, str]
     """Available plotly figures as JSON: response (before and after along the effect's variable),
     set_up, manoeuvre."""
@@ -32,7 +32,7 @@ class Diagnosed:
     @property
     def diagnosis(self) -> Diagnosis:
         """The diagnosis."""
-        return self.told.diagnosis
+        return self.advised.diagnosis
 
 
 @dataclass(frozen=True, eq=False)

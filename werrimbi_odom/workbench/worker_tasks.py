@@ -10,7 +10,7 @@ from werrimbi_odom.api.verbs import added as added_by
 from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.diagnosis.response_curve import before_after
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.progress import Show
 from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
@@ -33,8 +33,8 @@ def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:
     return Diagnosed(replace(told, held_out=bool(given.holdout)), _figures(told))
 
 
-def _figures(told: Told) -> dict[str, str]:
-    found, manoeuvre = told.diagnosis, told.manoeuvre
+def _figures(advised: AdvisedDiagnosis) -> dict[str, str]:
+    found, manoeuvre = advised.diagnosis, advised.manoeuvre
     figures = {}
     if found.set_up.findings:
         figures["set_up"] = set_up_figure(found)

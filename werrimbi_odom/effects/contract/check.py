@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from werrimbi_odom.effects.contract.demands import corners, demand, told
+from werrimbi_odom.effects.contract.demands import corners, demand, in_words
 from werrimbi_odom.effects.contract.sample_drive import Rehearsal
 from werrimbi_odom.effects.contract.wheel_and_body_laws import LAWS
 from werrimbi_odom.effects.effect_docstring import SECTIONS, page_of
@@ -113,7 +113,7 @@ def _views(effect: Effect) -> None:
             isinstance(seen, View) and bool(np.isfinite(np.array(seen, dtype=float)).all()),
             effect,
             "it is finite at the bounds",
-            f"with {told(values)} it gives {seen}",
+            f"with {in_words(values)} it gives {seen}",
         )
     for name, item in effect.parameters.items():
         moved = effect.apply(start, **{**effect.nulls, name: item.typical})

@@ -42,6 +42,6 @@ def corners(effect: Effect) -> list[dict[str, float]]:
     return found
 
 
-def told(values: Values) -> str:
+def in_words(values: Values) -> str:
     """Values as text."""
     return ", ".join(f"{name} = {value:g}" for name, value in values.items()) or "no parameters"

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from werrimbi_odom.effects.contract.demands import demand, settings, told
+from werrimbi_odom.effects.contract.demands import demand, in_words, settings
 from werrimbi_odom.effects.contract.sample_drive import RADIUS, TRACK, Rehearsal
 from werrimbi_odom.model.driven_motion import Driving, features
 from werrimbi_odom.model.effect import AppliedEffect, Effect
@@ -51,7 +51,7 @@ def drives_alike(effect: Effect, rehearsal: Rehearsal) -> None:
                 apart <= 1e-9,
                 effect,
                 "live, recorded and predicted are the same",
-                f"with {told(values)} the drive comes out differently by {apart:g} when {way}: "
+                f"with {in_words(values)} the drive comes out differently by {apart:g} when {way}: "
                 "look at the drive's quantities by their names, and nowhere else",
             )
 

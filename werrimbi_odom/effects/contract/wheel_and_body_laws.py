@@ -9,7 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.effects.contract.demands import Values, corners, demand, settings, told, typical
+from werrimbi_odom.effects.contract.demands import (
+    Values,
+    corners,
+    demand,
+    in_words,
+    settings,
+    typical,
+)
 from werrimbi_odom.effects.contract.live_recorded_predicted import drives_alike
 from werrimbi_odom.effects.contract.sample_drive import TRACK, Rehearsal, rows, seal, sealed
 from werrimbi_odom.model.effect import Effect
@@ -37,7 +44,7 @@ def _null_is_identity(effect: Effect, rehearsal: Rehearsal) -> None:
             all(np.array_equal(a, b) for a, b in zip(after, before, strict=True)),
             effect,
             "at its null values it is the exact identity",
-            f"with {told(values)} something changes by {_distance(after, before):g}",
+            f"with {in_words(values)} something changes by {_distance(after, before):g}",
         )
 
 
@@ -81,14 +88,16 @@ def _is_finite(effect: Effect, rehearsal: Rehearsal) -> None:
             all(bool(np.isfinite(part).all()) for part in after),
             effect,
             law,
-            f"with {told(values)} there are steps without a finite result",
+            f"with {in_words(values)} there are steps without a finite result",
         )
         for moment in moments:
             given = moment.travel if effect.stage == "wheels" else moment.motion
             try:
                 effect.apply(given, moment.drive, **values)
             except ArithmeticError as error:
-                words = f"with {told(values)} a single step fails ({error}); `share` divides safely"
+                words = (
+                    f"with {in_words(values)} a single step fails ({error}); `share` divides safely"
+                )
                 demand(False, effect, law, words)
 
 
@@ -112,9 +121,10 @@ def _does_not_mind_splitting(effect: Effect, rehearsal: Rehearsal) -> None:
             worst <= _ROUNDING,
             effect,
             "splitting a step changes nothing",
-            f"with {told(values)} the sum of a step's parts differs from the step by {worst:g}, "
-            "so results depend on how often the counters are read; take a step's mean speed as "
-            "speed.end, and integrals as the change of a function from .start to .end",
+            f"with {in_words(values)} the sum of a step's parts differs from the step by "
+            f"{worst:g}, so results depend on how often the counters are read; take a "
+            "step's mean speed as speed.end, and integrals as the change of a function from .start "
+            "to .end",
         )
 
 

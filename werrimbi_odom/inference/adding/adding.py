@@ -49,8 +49,8 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     NUISANCES,
     Model,
 )
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, beyond_wheel_noise, with_noise
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     is_determined,
 )
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
 
@@ -196,9 +196,7 @@ def _forgotten(applied: AppliedEffect, own: set[str]) -> AppliedEffect:
     return AppliedEffect(applied.effect, values, names)
 
 
-def weakest(
-    effect: Effect, found: Mapping[str, FittedParameter], limit: float = rules.SIGNIFICANT
-) -> str | None:
+def weakest(effect: Effect, found: Mapping[str, FittedParameter], limit: float) -> str | None:
     """The parameter that the data show least, if others remain without it; or None.
 
     `limit` is in standard deviations. Of two that the drives hardly tell apart (drift with distance

@@ -28,9 +28,9 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     FreeParameter,
     parameters_to_fit,
 )
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
-    CALIBRATED,
     Score,
     candidates,
     parameters_of_candidate,
@@ -39,7 +39,8 @@ from werrimbi_odom.inference.fitting.score_tests import (
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.matched_run import at_edges
-from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.robot import Robot
 

@@ -93,17 +93,18 @@ def calibrate(
     options : EvaluationOptions
         What is known of the reference.
     """
-    begin = start_point(runs, robot, options)
+    laid = concatenated(runs)
+    begin = start_point(laid, robot, options)
     numbers = (*CALIBRATION, *begin.model.nuisance_parameters)
-    fit = fit_model(runs, begin, numbers)
+    fit = fit_model(laid, begin, numbers)
     held = options.sigmas_known
     local = [number for number in numbers if number.name != START_YAW]
-    precision = Precision.of(concatenated(runs), fit.point, local, fit.ways.matrix)
+    precision = Precision.of(laid, fit.point, local, fit.directions.matrix)
     noises = noise_estimates(
-        Costs(runs, fit.point), fit.point.variances, held, precision.information
+        Costs(laid, fit.point), fit.point.variances, held, precision.information
     )
     turned = [number for number in numbers if number.per_run or number in fit.free]
-    found = dependences(concatenated(runs), fit.point, turned)
+    found = dependences(laid, fit.point, turned)
     misfit = tuple(item for item in found if item.p_value < rules.SURE)
     strange = _strange(fit, noises)
     names = [number.name for number in fit.free]

@@ -35,7 +35,7 @@ from werrimbi_odom.model.effect import Effect
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class ParameterChange:
     """A parameter that changes at a drive, or differs in one drive alone."""
 
     what: str
@@ -57,7 +57,7 @@ class Moved:
     p_value: float
 
 
-def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Moved, ...]:
+def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[ParameterChange, ...]:
     """Changes between the fitted drives, in the order in which they were driven.
 
     First with everything found in the model. If that leaves no change, with calibration alone: a
@@ -75,7 +75,7 @@ def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Mo
 
 def _beside(
     diagnosis: Diagnosis, fit: Fitted, dependences: Sequence[Dependence], effects: Sequence[Effect]
-) -> tuple[Moved, ...]:
+) -> tuple[ParameterChange, ...]:
     """Changes beside a model, unless one more effect or a dependence explains them.
 
     Parameters
@@ -110,7 +110,7 @@ def _beside(
     if len(steps) < len(found.steps):
         found = find_changes(drives, [step.group for step in steps], fit.penalty_of_one)
     names = [runs.runs[index].name for index in order.tolist()]
-    moved = moves_of(found, evidence.numbers, drives.names, names)
+    moved = parameter_changes_of(found, evidence.numbers, drives.names, names)
     # The levels are linear in the derivatives: beyond what is possible, these do not hold.
     bounds = {
         number.name: number.bounds_about(float(value))
@@ -119,7 +119,7 @@ def _beside(
     return moved if all(is_within(each, bounds) for each in moved) else ()
 
 
-def is_within(moved: Moved, bounds: Mapping[str, tuple[float, float]]) -> bool:
+def is_within(moved: ParameterChange, bounds: Mapping[str, tuple[float, float]]) -> bool:
     """Whether a parameter is within its physical limits on either side of a change."""
     low, high = bounds.get(moved.what, (-math.inf, math.inf))
     return low <= min(moved.before, moved.after) and max(moved.before, moved.after) <= high
@@ -204,9 +204,9 @@ def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> flo
     return max(worth, default=0.0)
 
 
-def moves_of(
+def parameter_changes_of(
     found: ChangePoints, numbers: Sequence[FreeParameter], names: Sequence[str], runs: Sequence[str]
-) -> tuple[Moved, ...]:
+) -> tuple[ParameterChange, ...]:
     """List each parameter of each change, once for a drive.
 
     Parameters
@@ -215,7 +215,7 @@ def moves_of(
         Names of the drives, in order.
     """
     units = {number.name: number.unit for number in numbers}
-    told: dict[tuple[str, int], Moved] = {}
+    told: dict[tuple[str, int], ParameterChange] = {}
     for step in found.steps:
         first = step.shape.first
         before = max(first - 1, 0)
@@ -225,7 +225,7 @@ def moves_of(
         for name in step.group.numbers:
             index = names.index(name)
             spread = np.sqrt(np.maximum(found.spread[[before, after], index, index], 0.0))
-            moved = Moved(
+            moved = ParameterChange(
                 name,
                 step.group.what,
                 step.shape.kind,

@@ -16,9 +16,10 @@ from werrimbi_odom.inference.changes.information_of_drives import (
     information_of_drives,
 )
 from werrimbi_odom.inference.changes.parameter_groups import MOUNT, numbers_of, value_at
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import STEP, FreeParameter
-from werrimbi_odom.inference.fitting.score_tests import Candidate, signatures
+from werrimbi_odom.inference.fitting.score_tests import signatures
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point
 from werrimbi_odom.model.pose import Floats
 
@@ -54,7 +55,7 @@ class Evidence:
         return np.asarray(size[self.run, None] * (self.shared @ step.group.directions))
 
 
-def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float = 1.0) -> Evidence:
+def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float) -> Evidence:
     """Innovations at a point, and their derivatives in all parameters.
 
     Parameters

@@ -30,7 +30,7 @@ class Dated:
     """A drive with its date and its information."""
 
     run: Path
-    told: DriveEstimate
+    estimate: DriveEstimate
     date: float
     """Date [s since 1970]; the number of the drive if it is unknown."""
     date_from: DateFrom

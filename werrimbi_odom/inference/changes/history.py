@@ -24,7 +24,7 @@ from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.changes.between_drives import Moved, moves_of
+from werrimbi_odom.inference.changes.between_drives import ParameterChange, parameter_changes_of
 from werrimbi_odom.inference.changes.change_evidence import evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
@@ -37,7 +37,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -98,7 +98,7 @@ class Course:
     """Course of the parameters of a robot."""
 
     numbers: tuple[Number, ...]
-    changes: tuple[Moved, ...]
+    changes: tuple[ParameterChange, ...]
     off: tuple[OffNow, ...]
     """Parameters of the robot file that differ from the last drives."""
 
@@ -112,41 +112,45 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
         When it has no usable reference or no ticks.
     """
     laid = concatenated(
-        match_for_fit([looked_at(run, robot, options.limits)], robot, options.leg, options.limits)
+        match_for_fit(
+            [with_no_driving(run, robot, options.limits)], robot, options.leg, options.limits
+        )
     )
     fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
     evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
-    told = evidence.drives(np.zeros(1))
+    drive = evidence.drives(np.zeros(1))
     way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
     begin = float(laid.runs[0].counters.time[0])
-    return DriveEstimate(told.names, told.information[0], told.weighted[0], begin, laid.data, way)
+    return DriveEstimate(
+        drive.names, drive.information[0], drive.weighted[0], begin, laid.data, way
+    )
 
 
-def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
+def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
     """Combine the drives into the course of the parameters.
 
     Parameters
     ----------
-    told : sequence of DriveEstimate
+    estimates : sequence of DriveEstimate
         Information of each drive, in order.
     robot : Robot
         The robot file.
     time : ndarray, shape (R,)
         Times of the drives, rising [s].
     """
-    numbers = _numbers(told, robot)
+    numbers = _numbers(estimates, robot)
     names = tuple(number.name for number in numbers)
     given = np.array([value_at(robot, name, _NULLS) for name in names])
-    drives = _laid(told, names, time)
+    drives = _laid(estimates, names, time)
     limits = np.array([number.undetermined for number in numbers])
     own = _alone(drives, given, limits)
     std = np.sqrt(np.einsum("rii->ri", own.spread))
     heard = std < 0.5 * limits
     scatter = np.array([scatter_of(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
     wide = drives.with_scatter(scatter)
-    penalty = max(rules.PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
+    penalty = max(rules.PENALTY_FLOOR, math.log(max(sum(each.data for each in estimates), 2)))
     groups = groups_of(names, given, given.size)
-    most = rules.MOST_CHANGES if len(told) >= rules.SCATTER_DRIVES else 1
+    most = rules.MOST_CHANGES if len(estimates) >= rules.SCATTER_DRIVES else 1
     found = find_changes(wide, groups, penalty, KINDS, most)
     lasting = beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
@@ -166,24 +170,26 @@ def course_of(told: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Cour
             )
             if np.isfinite(alone[0]).any()
         ),
-        moves_of(found, numbers, names, [str(number) for number in range(len(told))]),
+        parameter_changes_of(
+            found, numbers, names, [str(number) for number in range(len(estimates))]
+        ),
         _off(names, given, found, heard),
     )
 
 
-def _numbers(told: Sequence[DriveEstimate], robot: Robot) -> tuple[FreeParameter, ...]:
+def _numbers(estimates: Sequence[DriveEstimate], robot: Robot) -> tuple[FreeParameter, ...]:
     """Parameters that any drive knows of."""
-    known = {name for each in told for name in each.names}
+    known = {name for each in estimates for name in each.names}
     held = {applied.name for applied in robot.effects}
     mounts = [find(name) for name in MOUNT if name not in held]
     return tuple(number for number in numbers_of(robot, mounts) if number.name in known)
 
 
-def _laid(told: Sequence[DriveEstimate], names: Sequence[str], time: Floats) -> DriveNumbers:
+def _laid(estimates: Sequence[DriveEstimate], names: Sequence[str], time: Floats) -> DriveNumbers:
     """All drives on the same parameters, with no information about those a drive does not have."""
-    information = np.zeros((len(told), len(names), len(names)))
-    weighted = np.zeros((len(told), len(names)))
-    for index, each in enumerate(told):
+    information = np.zeros((len(estimates), len(names), len(names)))
+    weighted = np.zeros((len(estimates), len(names)))
+    for index, each in enumerate(estimates):
         there = [number for number, name in enumerate(names) if name in each.names]
         own = [each.names.index(names[number]) for number in there]
         information[np.ix_([index], there, there)] = each.information[np.ix_(own, own)]

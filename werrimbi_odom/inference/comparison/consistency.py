@@ -73,7 +73,7 @@ def of_all(lengths: Sequence[AtLength]) -> Consistency:
     return "unknown"
 
 
-def told(lengths: Sequence[AtLength]) -> tuple[AtLength, ...]:
+def judged_lengths(lengths: Sequence[AtLength]) -> tuple[AtLength, ...]:
     """Lengths with enough legs, ascending."""
     return tuple(
         sorted((item for item in lengths if item.says != "unknown"), key=lambda item: item.leg)
@@ -82,7 +82,7 @@ def told(lengths: Sequence[AtLength]) -> tuple[AtLength, ...]:
 
 def trend_of(lengths: Sequence[AtLength]) -> Trend:
     """Trend of NEES with leg length, for two lengths or more."""
-    values = [item.nees for item in told(lengths)]
+    values = [item.nees for item in judged_lengths(lengths)]
     steps = [after - before for before, after in pairwise(values)]
     if steps and all(step > 0.0 for step in steps):
         return "longer"

@@ -23,7 +23,7 @@ _FEWEST = 5  # least number of legs in a bin
 
 
 def binned(
-    values: Floats, error: Floats, *, periodic: bool = False
+    values: Floats, error: Floats, *, periodic: bool
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp]]:
     """Centre, mean, standard error and number of rows of bins with equal numbers of rows.
 

@@ -28,7 +28,7 @@ from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, leg_ends
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
 from werrimbi_odom.model.robot import Robot
@@ -116,7 +116,7 @@ def prepare(
     InputError
         If a run has no usable reference or no ticks.
     """
-    runs = [looked_at(run, robot, options.limits) for run in runs]
+    runs = [with_no_driving(run, robot, options.limits) for run in runs]
     members: dict[Measure, list[tuple[int, AlignedRun, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")

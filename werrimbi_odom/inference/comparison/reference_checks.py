@@ -67,7 +67,7 @@ class ReferenceRemark:
 
 
 @dataclass(frozen=True, slots=True)
-class _Looked:
+class _Stretches:
     """Stretches of all runs; arrays of shape (k,)."""
 
     run: NDArray[np.intp]
@@ -171,7 +171,7 @@ def _without(values: list[Floats], causes: list[Floats]) -> list[Floats]:
     return [each - slope * own for own, each in zip(causes, values, strict=True)]
 
 
-def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
+def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Stretches:
     """Medians of stretches, and their standard deviations from the dispersion of the cuts."""
     rows = []
     for causes in ([own.surge for own in cuts], [own.bend for own in cuts]):
@@ -188,17 +188,17 @@ def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
             sigma = np.sqrt(0.5 * np.pi / count) * scatter  # of a median
             rows.append((run, own.begin[here][0], own.end[here][-1], middle, sigma))
     table = np.array(rows, dtype=np.float64).reshape(-1, 5)
-    return _Looked(table[:, 0].astype(np.intp), *table[:, 1:].T)
+    return _Stretches(table[:, 0].astype(np.intp), *table[:, 1:].T)
 
 
-def _odd(looked: _Looked, off: Floats, least: float) -> NDArray[np.intp]:
+def _odd(looked: _Stretches, off: Floats, least: float) -> NDArray[np.intp]:
     """Stretches that are off by more than `least` and significantly."""
     sigma = np.maximum(looked.sigma, np.median(looked.sigma))
     return np.flatnonzero(np.abs(off) > np.maximum(least, rules.SUSPECT_SIGMA * sigma))
 
 
-def _told(
-    runs: list[Run], looked: _Looked, size: Floats, rows: NDArray[np.intp]
+def _as_stretches(
+    runs: list[Run], looked: _Stretches, size: Floats, rows: NDArray[np.intp]
 ) -> Iterator[Stretch]:
     for row in rows[np.argsort(-np.abs(size[rows]))]:
         run = runs[looked.run[row]]
@@ -215,7 +215,10 @@ def _lengths(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[Referen
     odd = _odd(looked, off, rules.SUSPECT_SHARE)
     if odd.size >= rules.SUSPECT_STRETCHES:
         yield ReferenceRemark(
-            "short", float(np.median(off[odd])), usual - 1.0, tuple(_told(runs, looked, off, odd))
+            "short",
+            float(np.median(off[odd])),
+            usual - 1.0,
+            tuple(_as_stretches(runs, looked, off, odd)),
         )
 
 
@@ -239,14 +242,16 @@ def _angles(
         yield ReferenceRemark("apart", drift)
     elif odd.size >= rules.SUSPECT_STRETCHES:
         size = float(np.median(np.abs(off[odd])))
-        yield ReferenceRemark("sideways_by_place", size, 0.0, tuple(_told(runs, looked, off, odd)))
+        yield ReferenceRemark(
+            "sideways_by_place", size, 0.0, tuple(_as_stretches(runs, looked, off, odd))
+        )
     mount = float(wrap_all(np.array([axis + usual]))[0])
     sure = rules.SUSPECT_SIGMA * float(np.median(looked.sigma))
     if max(rules.SUSPECT_ANGLE, sure) < abs(mount) < rules.ASKEW and drift is None:
         yield ReferenceRemark("sideways", mount)
 
 
-def _drifting(looked: _Looked, off: Floats) -> float | None:
+def _drifting(looked: _Stretches, off: Floats) -> float | None:
     """Largest drift of the angle over a drive [rad]; None if there is none."""
     found = []
     left = off.copy()

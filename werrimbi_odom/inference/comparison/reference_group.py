@@ -85,8 +85,8 @@ def group_of(
 def jumped_in(group: ReferenceGroup, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
     """Legs that a jump of the reference invalidates, shape (m,)."""
 
-    def of_each(runs: Concatenated) -> NDArray[np.bool_]:
+    def of_each() -> NDArray[np.bool_]:
         both = zip(group.jumps, runs.runs, strict=True)
         return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
 
-    return runs.known(("jumped", kind), of_each)
+    return runs.cache.known(("jumped", kind), of_each)

@@ -67,14 +67,14 @@ class NoiseFactor(NamedTuple):
     high: float
 
     @property
-    def told(self) -> bool:
+    def determined(self) -> bool:
         """Whether the interval is narrower than `NOISE_FACTOR_TOLD`."""
         return bool(
             np.isfinite(self.value) and self.high < rules.NOISE_FACTOR_TOLD * max(self.low, 1e-12)
         )
 
 
-UNTOLD = NoiseFactor(np.nan, 0.0, np.inf)
+UNDETERMINED = NoiseFactor(np.nan, 0.0, np.inf)
 
 
 def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
@@ -182,7 +182,7 @@ def noise_factors(
     groups = groups[:, told]
     noisy = np.any(wheels[told] > 0.0, axis=(1, 2))
     if noisy.size < rules.LEGS_OF_A_PART or not noisy.any():
-        return [UNTOLD] * groups.shape[0]
+        return [UNDETERMINED] * groups.shape[0]
     sizes, squares = _by_wheels(known[told], errors[told], covariance[told], wheels[told])
     cost = np.zeros((_FACTORS.size, groups.shape[0]))
     for begin in range(0, sizes.shape[0], _BLOCK):
@@ -193,7 +193,9 @@ def noise_factors(
             of_leg += square / variance
         cost += of_leg @ groups[:, block].T.astype(np.float64)
     return [
-        _likeliest(own) if which.sum() >= rules.LEGS_OF_A_PART and noisy[which].any() else UNTOLD
+        _likeliest(own)
+        if which.sum() >= rules.LEGS_OF_A_PART and noisy[which].any()
+        else UNDETERMINED
         for own, which in zip(cost.T, groups, strict=True)
     ]
 

@@ -15,8 +15,8 @@ from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
     Consistency,
     consistency,
+    judged_lengths,
     of_all,
-    told,
     trend_of,
 )
 from werrimbi_odom.inference.comparison.dependence import Cell
@@ -110,7 +110,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
     gross = _gross(comparison, systematic)
     few = _held_by_few(comparison)
     bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
-    lengths = told([item.consistency for item in comparison.lengths])
+    lengths = judged_lengths([item.consistency for item in comparison.lengths])
     runs = tuple(
         index
         for index, item in enumerate(comparison.runs)

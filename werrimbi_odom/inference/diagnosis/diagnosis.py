@@ -42,7 +42,8 @@ from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Verdict, told
+from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
+from werrimbi_odom.inference.diagnosis.verdict import diagnosis_of
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
@@ -93,11 +94,11 @@ def diagnose(
     def search(
         runs: Sequence[Run], holdout: Sequence[Run], first: bool
     ) -> tuple[Diagnosis, Events]:
-        told = show if first else silent
-        found, judge = _searched(runs, holdout, robot, effects, options, told)
+        shown = show if first else silent
+        found, judge = _searched(runs, holdout, robot, effects, options, shown)
         if found.of_another_drive:
             return found, Events()
-        found.runs.forget_steps()
+        found.runs.cache.forget_steps()
         return found, events_beside(found.runs, found.final.point, judge)
 
     found, happened = refit_without_events(search, runs, holdout)
@@ -153,7 +154,7 @@ def _searched(
     if misfit is None and beyond is None:
         certain = [cell for cell in remaining if cell.p_value < rules.VERY_SURE]
         misfit = misfit_of_found(fit, certain, laid)
-    found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
+    found = diagnosis_of(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, effects, set_up.robot)

@@ -24,12 +24,8 @@ from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
-from werrimbi_odom.inference.fitting.score_tests import (
-    CALIBRATED,
-    candidates,
-    parameters_of_candidate,
-    scores,
-)
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_of_candidate, scores
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -68,7 +64,7 @@ def _rivals(
         free = (*numbers, *parameters_of_candidate(score.candidate))
         other = fitted(runs, start, (score.candidate.name,), free, given)
         if (
-            other.told
+            other.determined
             and not other.at_bound
             and other.total < fit.total + rules.RIVAL * fit.scatter
         ):

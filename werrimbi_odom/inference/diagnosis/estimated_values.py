@@ -20,8 +20,8 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Value:
     """Whether the drives determine it; otherwise its fitted value means nothing."""
 
     @property
-    def told(self) -> bool:
+    def reported(self) -> bool:
         """Whether there is one value for all drives to report."""
         return self.determined and not self.per_run
 

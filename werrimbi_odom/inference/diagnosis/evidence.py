@@ -120,7 +120,7 @@ def dependences(
     `numbers` are the nuisance parameters: what they can explain is no evidence. Where too few data
     determine the noise, the tests are Fisher's, as those of the effects are (`p_values.chance`).
     """
-    runs.forget_steps()
+    runs.cache.forget_steps()
     frame, rest = residual_innovations(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []

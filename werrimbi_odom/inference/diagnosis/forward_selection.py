@@ -148,7 +148,7 @@ def search_round(
         if score.candidate.name in instead:
             options.append((as_given(point, given), instead[score.candidate.name]))
         starts = [(started_with(runs, begin, option), option) for begin, option in options]
-        fits = [fit for fit in (fitted_from(runs, *start) for start in starts) if fit.told]
+        fits = [fit for fit in (fitted_from(runs, *start) for start in starts) if fit.determined]
         return [min(fits, key=lambda fit: fit.total)] if fits else []
 
     tried = []
@@ -157,7 +157,7 @@ def search_round(
         looked = [] if score in chosen else [looked_for(runs, point, score)]
         for start in (*looked, in_place_of_jitter(runs, point, score)):
             fit = None if start is None else fitted_from(runs, start, score)
-            tried += [fit] if fit is not None and fit.told else []
+            tried += [fit] if fit is not None and fit.determined else []
     works: list[Callable[[Concatenated], Any]] = [partial(best_fit, score) for score in chosen]
     cells, *best = runs.side_by_side([lambda runs: dependences(runs, point, turned), *works])
     tried += [fit for fits in best for fit in fits]

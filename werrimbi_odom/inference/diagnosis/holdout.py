@@ -22,7 +22,7 @@ from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_runs
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 
@@ -131,7 +131,7 @@ def begin(
 
     def divided(cutter: Robot) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
         some, others = (
-            tuple(looked_at(run, cutter, options.limits) for run in each)
+            tuple(with_no_driving(run, cutter, options.limits) for run in each)
             for each in (runs, holdout)
         )
         return (some, others) if others else set_aside(some)

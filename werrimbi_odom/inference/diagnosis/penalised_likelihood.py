@@ -34,8 +34,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.identifiable import Directions, determined
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.pose import Floats
@@ -106,7 +105,7 @@ class Fitted:
         )
 
     @property
-    def told(self) -> bool:
+    def determined(self) -> bool:
         """Whether the runs determine the newest effect's parameters; otherwise it is no finding."""
         if not self.names or self.names[-1] in CALIBRATED:
             return True

@@ -22,8 +22,9 @@ from werrimbi_odom.inference.diagnosis.step_jacobians import Amount, step_jacobi
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter, Model
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, residual_innovations
+from werrimbi_odom.inference.fitting.score_tests import residual_innovations
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats

@@ -20,9 +20,9 @@ from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.whitened_innovations import unexpected
-from werrimbi_odom.inference.set_up.search import SetUpFinding
+from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

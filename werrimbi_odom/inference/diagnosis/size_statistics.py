@@ -15,8 +15,7 @@ from werrimbi_odom.inference.calibration_parametrisation import calibration_devi
 from werrimbi_odom.inference.fitting.clusters import effective_freedom
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
-from werrimbi_odom.inference.fitting.identifiable import SIZE, every_direction
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, SIZE, every_direction
 from werrimbi_odom.inference.fitting.whitened_innovations import Design
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.pose import Floats
@@ -56,7 +55,7 @@ def freedom_of_sizes(runs: Concatenated, design: Design, robot: Robot) -> dict[s
 
 
 def calibration_rises(
-    design: Design, robot: Robot, given: Robot, held: Sequence[str] = ()
+    design: Design, robot: Robot, given: Robot, held: Sequence[str]
 ) -> list[Rise]:
     """For each subset of the calibration effects, the rise of the cost when the others are reset.
 

@@ -73,7 +73,7 @@ def step_jacobians(
     of the robot as a whole, the second is zero.
     """
     robot = point.model.robot
-    levers = runs.of_steps(
+    levers = runs.cache.of_steps(
         point.model, "levers", lambda: _levers(runs, path, view_of(robot.effects))
     )
     bases = _bases(path, runs.drive(robot).duration)

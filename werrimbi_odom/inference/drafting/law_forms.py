@@ -46,7 +46,7 @@ class Declared:
         if self.tries:
             tries = ", ".join(f"{value:.4g}" for value in self.tries)
             lines.append(f"{INDENT * 2}tries=({tries},),")
-        body = "\n".join(lines[:1] + list(lines[1:]))
+        body = "\n".join(lines)
         return f"{INDENT}{self.name}=Parameter(\n{body}\n{INDENT}),"
 
 
@@ -199,7 +199,7 @@ def _step(seen: Seen, amount: Amount, size: float) -> Form:
             ),
             Declared(
                 "edge",
-                seen.unit if seen.unit else "",
+                seen.unit,
                 0.5 * (low + high),
                 0.5 * (low + high),
                 (low - 0.1 * (high - low), high + 0.1 * (high - low)),

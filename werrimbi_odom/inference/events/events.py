@@ -117,7 +117,7 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
     many, time = False, 0.0
     spans: dict[Path, float] = {}
     for side in sides:
-        runs = looked_at(side.runs)
+        runs = at_every_pose(side.runs)
         steps = steps_of(runs, side.point)
         found = [(own, event) for own in _groups(steps) if (event := _event(steps, own, side))]
         events += [event for _, event in found]
@@ -158,7 +158,7 @@ def without(run: Run, happened: Events) -> Run:
     return replace(run, happened=tuple(sorted([*run.happened, *new]))) if new else run
 
 
-def looked_at(runs: Sequence[MatchedRun]) -> Concatenated:
+def at_every_pose(runs: Sequence[MatchedRun]) -> Concatenated:
     """The same runs with a leg between successive poses, at the resolution of the search."""
     found = []
     for run in runs:
@@ -211,7 +211,7 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     large = np.abs(sizes) > rules.EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
     sudden = np.abs(beside) > rules.EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
     # A coordinate that is not measured has no noise: a heading inferred from positions.
-    told = sudden & (large | ~steps.told.known[first])
+    told = sudden & (large | ~steps.innovations.known[first])
     if not told.any():
         return None
     channel = int(np.argmax(np.where(told, np.abs(sizes) / stds, 0.0)))

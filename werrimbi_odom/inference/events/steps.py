@@ -67,7 +67,7 @@ class Steps:
     """Dispersion of the innovations in each run, (runs,)."""
     axes: Floats
     """Map from steps of the robot to the filter's pose, for each leg, (m, 3, 3)."""
-    told: Innovations
+    innovations: Innovations
     p_values: tuple[float, ...]
     """P-value of each step, corrected for all steps tested (Bonferroni)."""
     many: bool
@@ -80,7 +80,7 @@ class Steps:
         since = np.abs(runs.ends_at[own] - runs.ends_at[leg])
         near = own[since <= max(rules.EVENT_SLOW, 3.0 * runs.duration[leg])]
         column = self.spread(near, np.full(near.size, leg)) / near.size
-        return np.asarray(column * self.told.known[leg])
+        return np.asarray(column * self.innovations.known[leg])
 
     def about(self, legs: Sequence[int]) -> Floats:
         """Steps in some legs and their neighbours, each of its own size, (3 m, 3 k).
@@ -90,7 +90,7 @@ class Steps:
         """
         runs = self.runs
         first, last = min(legs) - 1, max(legs) + 1
-        seen = self.told.known[legs[0]]
+        seen = self.innovations.known[legs[0]]
         near = [
             self.spread(np.array([leg]), np.array([legs[0]])) * (seen | (leg in legs))
             for leg in range(max(first, 0), min(last + 1, runs.count))
@@ -100,10 +100,10 @@ class Steps:
 
     def spread(self, legs: NDArray[np.intp], axes_of: NDArray[np.intp]) -> Floats:
         """Equal unit steps in several legs, in the axes of other legs, (3 m, 3)."""
-        states = 3 if self.told.ways is None else self.told.ways.carry.shape[-1]
+        states = 3 if self.innovations.ways is None else self.innovations.ways.carry.shape[-1]
         change = np.zeros((self.runs.count, states, 3))
-        change[legs, :3] = self.axes[axes_of if self.told.ways is not None else legs]
-        return np.asarray(self.told.shown(change).reshape(self.white.size, 3))
+        change[legs, :3] = self.axes[axes_of if self.innovations.ways is not None else legs]
+        return np.asarray(self.innovations.shown(change).reshape(self.white.size, 3))
 
 
 def steps_of(runs: Concatenated, point: Point) -> Steps:

@@ -8,22 +8,15 @@ drives costs as much as one long drive, without a round of numpy calls for each.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
-from copy import copy
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.caches import (
-    keep_freed_memory,
-    recalled,
-    remember,
-    results_of,
-    side_by_side,
-)
+from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
@@ -34,12 +27,6 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
-MODELS = 8
-"""Models whose results are cached: a fit returns to a few only."""
-DELAYS = 4
-"""Reference delays whose shifted runs are cached: a fit moves one both ways, then on."""
-DRIVES = 2
-"""Robots whose inputs to effects are cached: twenty numbers for each step."""
 WORTH_COPIES = range(30_000, 250_000)
 """Numbers of steps for which whole fits are worth threads and caches of their own: an hour at 50 Hz
 takes 1.4 GB so, and 1.0 GB without."""
@@ -74,26 +61,17 @@ class Concatenated:
     """Legs with an abrupt event, whose end pose may be anything; shape (m,)."""
     finer: Concatenated | None = None
     """The same nodes in shorter legs, which these legs merge."""
-    _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
-    _delayed: dict[float, Concatenated] = field(default_factory=dict)
-    _known: dict[Hashable, Any] = field(default_factory=dict)
-    _of_models: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
-    _of_steps: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
-    _latest: list[tuple[tuple[object, ...], Any]] = field(default_factory=list)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle without the caches, some of which have functions as keys."""
-        own = {
-            item.name: getattr(self, item.name)
-            for item in fields(self)
-            if not item.name.startswith("_")
-        }
-        return partial(Concatenated, **own), ()
+    cache: Caches = field(default_factory=Caches)
 
     @property
     def count(self) -> int:
         """Number of legs."""
         return self.begin.size
+
+    @property
+    def step_count(self) -> int:
+        """Number of steps."""
+        return int(self.steps[-1])
 
     @property
     def data(self) -> int:
@@ -174,69 +152,26 @@ class Concatenated:
         """Same legs with a reference delay: what it stamps t was seen at t - `delay` [s]."""
         if all(delay == run.delay for run in self.runs):
             return self
-        known = self._delayed.get(delay)
-        if known is None and self.finer is not None:
-            finer = self.finer.delayed(delay)
-            runs = zip(finer.runs, self.runs, strict=True)
-            known = concatenated([joined(fine, run.rows) for fine, run in runs], finer)
-        elif known is None:
-            known = concatenated([delayed(run, delay) for run in self.runs])
-        remember(self._delayed, delay, known, DELAYS)
-        return known
+        return self.cache.delayed(delay, lambda: self._delayed(delay))
 
-    def known(self, key: Hashable, work: Callable[[Concatenated], Found]) -> Found:
-        """Result of `work` on the runs, cached by key."""
-        found: Found | None = self._known.get(key)
-        if found is None:
-            found = work(self)
-            remember(self._known, key, found, MODELS)
-        return found
-
-    def of_model(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
-        """Result of `work` for a model, of the size of the legs; cached for the last few models."""
-        return recalled(self._of_models, model, key, work, MODELS)
-
-    def each_of_model(
-        self, model: object, works: Sequence[tuple[Hashable, Callable[[], Found]]]
-    ) -> list[Found]:
-        """`of_model` for several keys, whose missing results are worked out side by side."""
-        found = results_of(self._of_models, model, MODELS)
-        missing = {key: work for key, work in works if key not in found}
-        done = side_by_side(list(missing.values()), int(self.steps[-1]))
-        found.update(zip(missing, done, strict=True))
-        return [found[key] for key, _ in works]
+    def _delayed(self, delay: float) -> Concatenated:
+        if self.finer is None:
+            return concatenated([delayed(run, delay) for run in self.runs])
+        finer = self.finer.delayed(delay)
+        runs = zip(finer.runs, self.runs, strict=True)
+        return concatenated([joined(fine, run.rows) for fine, run in runs], finer)
 
     def side_by_side(self, works: Sequence[Callable[[Concatenated], Found]]) -> list[Found]:
         """Results of independent functions of the runs, in their order.
 
         In threads each gets a copy of the caches, as these are of one model at a time.
         """
-        steps = int(self.steps[-1])
-        if steps not in WORTH_COPIES:
+        if self.step_count not in WORTH_COPIES:
             return [work(self) for work in works]
-        return side_by_side([partial(self._apart, work) for work in works], steps)
+        return side_by_side([partial(self._apart, work) for work in works], self.step_count)
 
     def _apart(self, work: Callable[[Concatenated], Found]) -> Found:
-        own = [item.name for item in fields(self) if item.name.startswith("_")]
-        return work(replace(self, **{name: copy(getattr(self, name)) for name in own}))
-
-    def of_steps(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
-        """Result of `work` for a model, of the size of the steps; cached for the last model."""
-        return recalled(self._of_steps, model, key, work, 1)
-
-    def forget_steps(self) -> None:
-        """Drop what is cached of the size of the steps, where a task needs the memory itself."""
-        for cache in (self._features, self._delayed, self._of_steps):
-            cache.clear()
-
-    def latest(self, of: tuple[object, ...], work: Callable[[], Found]) -> Found:
-        """Result of `work`, cached while called with the identical objects."""
-        if not self._latest or any(
-            one is not other for one, other in zip(self._latest[0][0], of, strict=True)
-        ):
-            self._latest[:] = [(of, work())]
-        value: Found = self._latest[0][1]
-        return value
+        return work(replace(self, cache=self.cache.copied()))
 
     def parts(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """First leg of `finer` in each leg, and one past the last; shape (m,) each."""
@@ -248,19 +183,21 @@ class Concatenated:
 
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
         """Wheel travel of all steps before any effect."""
-        left, right = wiring_of(robot.effects).wheels(*self.known("counts", _counts))
+        left, right = wiring_of(robot.effects).wheels(
+            *self.cache.known("counts", lambda: _counts(self.runs))
+        )
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
     def drive(self, robot: Robot) -> Drive[Floats]:
         """Inputs of the effects over the steps of all runs."""
         wiring = wiring_of(robot.effects)
         key = (*wiring, robot.left_tick, robot.right_tick, robot.track)
-        known = self._features.get(key)
-        if known is None:
-            of_steps = zip(self.runs, self.known("messages", _messages), strict=True)
-            known = _drives_joined([_drive_of(run, its, robot, wiring) for run, its in of_steps])
-            remember(self._features, key, known, DRIVES)
-        return known
+        return self.cache.drive(key, lambda: self._drive(robot, wiring))
+
+    def _drive(self, robot: Robot, wiring: Wiring) -> DriveOfRun:
+        messages = self.cache.known("messages", lambda: _messages(self.runs))
+        of_runs = zip(self.runs, messages, strict=True)
+        return _drives_joined([_drive_of(run, its, robot, wiring) for run, its in of_runs])
 
 
 def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) -> Concatenated:
@@ -293,18 +230,14 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
         gap=np.concatenate([run.gap for run in runs]),
         stepped=np.concatenate([run.stepped for run in runs]),
         finer=finer,
-        _features={} if finer is None else finer._features,  # depend only on the steps, the same
+        # Inputs of effects depend only on the steps, the same in both.
+        cache=Caches() if finer is None else Caches(drives=finer.cache.drives),
     )
 
 
-def laid_out(runs: Sequence[MatchedRun] | Concatenated) -> Concatenated:
-    """Lay runs end to end, if they are not yet."""
-    return runs if isinstance(runs, Concatenated) else concatenated(runs)
-
-
-def _messages(runs: Concatenated) -> list[NDArray[np.intp]]:
+def _messages(runs: Sequence[MatchedRun]) -> list[NDArray[np.intp]]:
     """The message that each step is a part of, numbered from 0 on in each run."""
-    middles = [(run, 0.5 * (run.time[1:] + run.time[:-1])) for run in runs.runs]
+    middles = [(run, 0.5 * (run.time[1:] + run.time[:-1])) for run in runs]
     return [
         np.unique(run.counters.message_at(middle), return_inverse=True)[1]
         for run, middle in middles
@@ -332,9 +265,9 @@ def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:
     return DriveOfRun.by({name: partial(joined, name) for name in QUANTITIES})
 
 
-def _counts(runs: Concatenated) -> WheelTravel[Floats]:
+def _counts(runs: Sequence[MatchedRun]) -> WheelTravel[Floats]:
     """Counts of both wheels in all steps."""
-    counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
+    counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs])
     return counts
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     START_YAW,
@@ -52,7 +52,7 @@ class ModelFit:
     """Covariance of the values of `free`; singular where they exceed the identifiable `numbers`."""
     not_identifiable: tuple[FreeParameter, ...]
     """Shared parameters that are not identifiable; left unchanged."""
-    ways: Directions
+    directions: Directions
     """Identifiable directions, in the columns of the design."""
     at_bound: tuple[FreeParameter, ...]
     """Fitted parameters that ended at a physical bound."""
@@ -62,12 +62,12 @@ class ModelFit:
     @property
     def held(self) -> tuple[str, ...]:
         """Directions that are not identifiable (of `CALIBRATED`, or parameters): kept as given."""
-        return self.ways.held
+        return self.directions.held
 
     @property
     def numbers(self) -> int:
         """Number of shared parameters that the data determine (rank)."""
-        return len(self.ways.shared)
+        return len(self.directions.shared)
 
     @property
     def robot(self) -> Robot:
@@ -76,12 +76,11 @@ class ModelFit:
 
 
 def start_point(
-    runs: Sequence[MatchedRun] | Concatenated,
+    runs: Concatenated,
     robot: Robot,
     options: EvaluationOptions = EvaluationOptions(),
 ) -> Point:
     """Start of a fit: the robot as given, no leg excluded, start headings from the first legs."""
-    laid = laid_out(runs)
     guess = (
         max(robot.left_wheel_noise, rules.LEAST_WHEEL_NOISE),
         max(robot.right_wheel_noise, rules.LEAST_WHEEL_NOISE),
@@ -90,19 +89,19 @@ def start_point(
         rules.TYPICAL_STAMP_NOISE,
         *rules.TYPICAL_WALK,
     )
-    if laid.headings_alone and options.sigma_yaw is None:
+    if runs.headings_alone and options.sigma_yaw is None:
         guess = (*guess[:3], rules.TYPICAL_GYRO_WALK, *guess[4:])
-    own = tuple(_nuisances(robot, run) for run in laid.runs)
+    own = tuple(_nuisances(robot, run) for run in runs.runs)
     return Point(
         Model(robot, own),
         Variances(*(np.array([value**2]) for value in guess)),
-        tuple(np.zeros(run.legs, dtype=np.bool_) for run in laid.runs),
+        tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs),
         options,
     )
 
 
 def fit_model(
-    runs: Sequence[MatchedRun] | Concatenated,
+    runs: Concatenated,
     point: Point,
     numbers: Sequence[FreeParameter] = CALIBRATION,
     *,
@@ -113,7 +112,7 @@ def fit_model(
 
     Parameters
     ----------
-    runs : sequence of MatchedRun, or Concatenated
+    runs : Concatenated
         Runs to fit.
     point : Point
         Start of the fit.
@@ -125,43 +124,42 @@ def fit_model(
     rounds : int
         Largest number of alternations between noise and model parameters.
     """
-    laid = laid_out(runs)
     given = point.model
     if find_jumps:
         noise = point.variances
-        point = _robustly(laid, point, numbers)
-        if laid.data < rules.NOISE_NUMBERS:
+        point = _robustly(runs, point, numbers)
+        if runs.data < rules.NOISE_NUMBERS:
             point = replace(point, variances=noise)
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
-        point = turned_to_all_sides(laid, point)
-    ways: Directions | None = None
+        point = turned_to_all_sides(runs, point)
+    directions: Directions | None = None
     for _ in range(rounds):
-        if laid.data >= rules.NOISE_NUMBERS:
+        if runs.data >= rules.NOISE_NUMBERS:
             variances = map_variances(
-                Costs(laid, point), point.variances, point.options.sigmas_known
+                Costs(runs, point), point.variances, point.options.sigmas_known
             )
             point = replace(point, variances=variances)
-        design = stacked(laid, point, numbers)
-        ways = determined(design, point.model.robot, ways.held if ways else ())
-        model = with_held_as_given(point.model, given, ways.held, shared_of(numbers))
-        point, moved = gauss_newton(laid, replace(point, model=model), numbers, ways)
+        design = stacked(runs, point, numbers)
+        directions = determined(design, point.model.robot, directions.held if directions else ())
+        model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
+        point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
         if not moved:
             break
-    if ways is None:
-        design = stacked(laid, point, numbers)
-        ways = determined(design, point.model.robot)
-    covariance = ways.covariance(design.flat()[1])
-    moves = ways.matrix[:, ways.shared].any(axis=1)
+    if directions is None:
+        design = stacked(runs, point, numbers)
+        directions = determined(design, point.model.robot)
+    covariance = directions.covariance(design.flat()[1])
+    moves = directions.matrix[:, directions.shared].any(axis=1)
     where = np.flatnonzero(moves)
     free = [design.columns[index][0] for index in where]
-    costs = Costs(laid, point)
+    costs = Costs(runs, point)
     return ModelFit(
         point,
         tuple(free),
         covariance[np.ix_(where, where)],
         tuple(number for number in shared_of(numbers) if number not in free),
-        ways,
+        directions,
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
         float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )

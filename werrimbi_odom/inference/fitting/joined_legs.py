@@ -24,9 +24,10 @@ def predict_joined(model: Model, runs: Concatenated) -> Prediction:
         return predict_all(model, runs)
     robot = model.robot
     effects = wiring_of(robot.effects), view_of(robot.effects)
-    part = runs.finer.known(
+    finer = runs.finer
+    part = finer.cache.known(
         (robot.left_tick, robot.right_tick, robot.track, *effects),
-        lambda finer: predict_all(model, finer),
+        lambda: predict_all(model, finer),
     )
     begin, end = runs.parts()
     yaw = _sums(part.turn)

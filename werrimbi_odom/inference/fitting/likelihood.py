@@ -284,7 +284,7 @@ def _reading(
     """Covariance of a measured pose, including encoder quantisation; (g, 1 or m, 3, 3)."""
     stamps = runs.has_stamp_noise
     reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
-    shares = runs.known("shares", lambda runs: runs.shares) if kind == "absolute" else None
+    shares = runs.cache.known("shares", lambda: runs.shares) if kind == "absolute" else None
     place, heading = (1.0, 1.0) if shares is None else shares.T
     reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None] * place
     if kind != "incremental":

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import NORMAL_95, upper_part
-from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
 from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
@@ -122,7 +121,7 @@ def prior_cost(costs: Costs, variances: Variances) -> Floats:
 
 def _prior(costs: Costs) -> tuple[Floats, Floats]:
     """Log means of the prior standard deviations, and their spread; infinite where unknown."""
-    runs = laid_out(costs.runs)
+    runs = costs.runs
     middle = np.array(
         [rules.TYPICAL_WHEEL_NOISE, rules.TYPICAL_WHEEL_NOISE, 1.0, 1.0, rules.TYPICAL_STAMP_NOISE]
     )
@@ -227,7 +226,7 @@ def noise_estimates(
 
 def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
     """Mask of the variances to estimate: those of what is measured and not known."""
-    runs = laid_out(costs.runs)
+    runs = costs.runs
     measured = np.isfinite(runs.finish)
     places, headings = bool(measured[:, :2].any()), bool(measured[:, 2].any())
     wanders = costs.point.options.reference_kind == "local_map"

@@ -100,7 +100,7 @@ def turns_over(before: Floats, after: Floats) -> bool:
 
 def predict_all(model: Model, runs: Concatenated) -> Prediction:
     """Relative poses of all legs, with their covariance for unit noise of each wheel."""
-    return runs.of_model(model, "prediction", lambda: _predicted(model, runs))
+    return runs.cache.of_model(model, "prediction", lambda: _predicted(model, runs))
 
 
 def _predicted(model: Model, runs: Concatenated) -> Prediction:
@@ -123,7 +123,7 @@ def right_handed(poses: Floats, view: View) -> Floats:
 
 def path_of(model: Model, runs: Concatenated) -> DrivenPath:
     """Path of the model over the steps of all runs, without a reference delay; cached."""
-    return runs.of_steps(model, "path", lambda: _path_of(model, runs))
+    return runs.cache.of_steps(model, "path", lambda: _path_of(model, runs))
 
 
 def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
@@ -164,7 +164,7 @@ def anchors(runs: Concatenated, known: NDArray[np.bool_]) -> NDArray[np.intp]:
 
     It is the latest leg of the run with a `known` start (m,), or the run's first leg if none is.
     """
-    return runs.known(("anchors", known.tobytes()), lambda runs: _anchors(runs, known))
+    return runs.cache.known(("anchors", known.tobytes()), lambda: _anchors(runs, known))
 
 
 def _anchors(runs: Concatenated, known: NDArray[np.bool_]) -> NDArray[np.intp]:

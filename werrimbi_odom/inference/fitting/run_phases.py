@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
@@ -23,7 +24,8 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     changed,
     parameters_to_fit,
 )
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate, Score, scores
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import Score, scores
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.model.effect import AppliedEffect
 

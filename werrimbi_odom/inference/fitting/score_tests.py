@@ -143,7 +143,7 @@ def signatures(
             owners.append(number)
     if not works:
         return np.zeros(0), iter(())
-    change = np.stack(runs.each_of_model(point.model, works), axis=-1)
+    change = np.stack(runs.cache.each_of_model(point.model, works, runs.step_count), axis=-1)
     marks = unexpected(runs, point, prediction).marks(change)[..., :-1]
     frame, rest = residual_innovations(runs, point, numbers, prediction)
     owned = np.array(owners)

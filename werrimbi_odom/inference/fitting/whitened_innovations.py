@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -23,7 +23,6 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
-from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
 
 
@@ -70,26 +69,28 @@ def unexpected(
 ) -> Innovations:
     """Innovations of all runs; the latest are cached."""
     seen = prediction or predict_all(point.model, runs)
-    return runs.latest((point, seen), lambda: Costs(runs, point).innovations(point.variances, seen))
+    return runs.cache.latest(
+        (point, seen), lambda: Costs(runs, point).innovations(point.variances, seen)
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class Costs:
     """Minus two log-likelihood as a function of the variances, for a fixed model."""
 
-    runs: Sequence[MatchedRun] | Concatenated
+    runs: Concatenated
     point: Point
 
     def prediction(self) -> Prediction:
         """Prediction of all runs."""
-        return predict_all(self.point.model, laid_out(self.runs))
+        return predict_all(self.point.model, self.runs)
 
     def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
         """Innovations for each set of variances."""
         model = self.point.model
         return innovations(
             model.robot,
-            laid_out(self.runs),
+            self.runs,
             prediction,
             sets,
             self.point.options.reference_kind,
@@ -110,9 +111,8 @@ def jacobian_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParamete
     """
     moving = [number for number in numbers if number.name != YAW_DRIFT]
     sides = [(number, side) for number in moving for side in (number.scale, -number.scale)]
-    poses = runs.each_of_model(
-        model, [(key, partial(_legs_of_moved, runs, model, *key)) for key in sides]
-    )
+    works = [(key, partial(_legs_of_moved, runs, model, *key)) for key in sides]
+    poses = runs.cache.each_of_model(model, works, runs.step_count)
     both = zip(moving, poses[::2], poses[1::2], strict=True)
     columns = {number: (one - other) / _width(model, number) for number, one, other in both}
     drift = np.outer(runs.duration, [0.0, 0.0, 1.0])

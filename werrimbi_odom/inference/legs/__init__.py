@@ -3,6 +3,6 @@
 """Recorded drives cut into legs: one clock for ticks and reference, gaps, ends of legs.
 
 Reading order: `cutting` (the legs) with `aligned_run` and `matched_run`, `gaps`, `held_or_carried`
-(held and carried robots) with `measured_motion`, `even_stamps` (stamps of arrival put right),
-`counter_jumps` (counters that leap).
+(held and carried robots) with `agreement`, `displacement_agreement` and `measured_motion`,
+`even_stamps` (stamps of arrival put right), `counter_jumps` (counters that leap).
 """

@@ -15,7 +15,7 @@ from werrimbi_odom.files.run import NoDriving, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -46,7 +46,7 @@ def record_of(
     InputError
         As `match`.
     """
-    run = looked_at(run, robot, limits)
+    run = with_no_driving(run, robot, limits)
     reference = run.reference
     if reference is None:
         raise InputError(

@@ -18,8 +18,9 @@ from scipy.ndimage import median_filter
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
+from werrimbi_odom.inference.legs.agreement import Agreement, agreement_of_turns
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
+from werrimbi_odom.inference.legs.displacement_agreement import agreement_of_displacements
 from werrimbi_odom.inference.legs.even_stamps import (
     in_packets_of,
     stamped_together,
@@ -42,7 +43,7 @@ CARRIED = "the robot moved and its wheels did not: carried, or pushed"
 BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
 
 
-def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
+def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
     """Attach to a run its stretches without driving, found once and kept by its parts.
 
     Scan stamps are corrected first (`even_stamps`); a gyro's bias is removed last (`gyro_bias`).
@@ -69,7 +70,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     """Find stretches in which the robot was held or carried, in order."""
     seen: list[MeasuredMotion] = []
     turns = windows_of(counters, reference, robot, ways=False)
-    by_turns = None if turns is None else turns_agree(turns, robot.track)
+    by_turns = None if turns is None else agreement_of_turns(turns, robot.track)
     if by_turns is not None:
         span = by_turns.windows.steps * by_turns.windows.step
         seen.append(
@@ -78,7 +79,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
             )
         )
     ways = windows_of(counters, reference, robot, ways=True)
-    by_ways = None if ways is None else ways_agree(ways, by_turns, robot.track)
+    by_ways = None if ways is None else agreement_of_displacements(ways, by_turns, robot.track)
     if by_ways is not None:
         rolling = by_ways.windows.rolled > by_ways.windows.still
         typical = float(np.median(by_ways.gross[rolling]))

@@ -9,12 +9,13 @@ from dataclasses import dataclass, replace
 
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
+from werrimbi_odom.inference.changes.between_drives import ParameterChange, changes_between
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
-from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre, next_manoeuvre, strongest
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre, strongest
+from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
 from werrimbi_odom.progress import Show, silent
 
 WHEELS_ANGLE = frozenset({"left_angle", "right_angle"})
@@ -65,7 +66,7 @@ def _repeats_each_turn(diagnosis: Diagnosis) -> bool:
 
 
 @dataclass(frozen=True)
-class Told:
+class AdvisedDiagnosis:
     """A diagnosis and everything that is reported with it."""
 
     diagnosis: Diagnosis
@@ -75,13 +76,13 @@ class Told:
     """Length of the judged legs [m]."""
     held_out: bool = True
     """Whether held-out drives were given; otherwise the diagnosis held out parts itself."""
-    changes: Sequence[Moved] = ()
+    changes: Sequence[ParameterChange] = ()
     """Changes between the fitted drives."""
     open_at: float | None = None
     """Length of legs that leave this verdict *ambiguous*, where shorter ones were needed [m]."""
 
 
-def told_of(given: Recordings, show: Show = silent) -> Told:
+def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosis:
     """Diagnose one robot, with the next manoeuvre, the detection limits and the changes.
 
     Raises
@@ -97,7 +98,7 @@ def told_of(given: Recordings, show: Show = silent) -> Told:
             diagnosis, leg, open_at = again, shorter, leg
     show(0.97, "the next step")
     effects = given.collection.effects
-    return Told(
+    return AdvisedDiagnosis(
         diagnosis,
         next_manoeuvre(diagnosis),
         detection_limits(diagnosis, effects),

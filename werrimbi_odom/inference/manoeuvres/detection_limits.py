@@ -26,15 +26,18 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.effect_support import able, askable
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import noncentrality
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.free_parameters import STEP
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, OF_THE_MEASUREMENT, Candidate
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.fitting.score_tests import OF_THE_MEASUREMENT
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
     sensitivities_of,
 )
-from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, pace_of
+from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined
 from werrimbi_odom.model.effect import Effect
 

@@ -15,10 +15,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter, Model
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.prediction import predict_all, predicted_legs
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, stacked, unexpected
 from werrimbi_odom.inference.linear import SILENT, nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect

@@ -10,7 +10,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
-from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES
 
 
 @dataclass(frozen=True, slots=True)

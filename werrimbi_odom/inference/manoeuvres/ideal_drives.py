@@ -17,14 +17,12 @@ import numpy as np
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
+from werrimbi_odom.inference.manoeuvres.library import Ideal
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
-
-__all__ = ["MANOEUVRES", "DrivingLimits", "Ideal", "ideal_run", "pace_of", "rates_of"]
 
 REST = 0.6
 """Standstill before and after [s]."""
@@ -98,7 +96,7 @@ def ideal_run(
         The manoeuvre.
     robot : Robot
         The model.
-    pace : Pace
+    pace : DrivingLimits
         Speeds of the robot.
     ticks, poses : float
         Time between two messages, and between two poses of the reference [s].

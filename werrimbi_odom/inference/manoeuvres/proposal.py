@@ -24,7 +24,8 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.candidate import Candidate
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
     Sensitivities,
@@ -39,14 +40,12 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import (
     ProposedManoeuvre,
     for_the_unknown,
-    strongest,
 )
-from werrimbi_odom.inference.manoeuvres.ideal_drives import MANOEUVRES, Ideal, pace_of
+from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.manoeuvres.simulated_record import imagined, measured_in
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Twin, twin_of
 from werrimbi_odom.model.pose import Floats
-
-__all__ = ["Discrimination", "ProposedManoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 
 def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:
@@ -109,7 +108,7 @@ class Discrimination:
         rise = self.rises[self.hardest(pairs)] * minutes / self.minutes
         return float(ndtr((rise - rules.RIVAL) / (2.0 * np.sqrt(rise)))) if rise > 0.0 else 0.0
 
-    def told(self) -> list[Pair]:
+    def told_apart(self) -> list[Pair]:
         """The pairs that it tells in the longest drive."""
         return [pair for pair in self.rises if self.minutes_for([pair]) <= rules.LONGEST_DRIVE]
 
@@ -194,8 +193,8 @@ def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Propos
         if best.minutes_for(goal) <= rules.LONGEST_DRIVE:
             return _proposed(best, goal, rivals[0])
     best = max(weighed, key=lambda item: _tells(item, rivals[0]))
-    if best.told():
-        return _proposed(best, best.told(), rivals[0])
+    if best.told_apart():
+        return _proposed(best, best.told_apart(), rivals[0])
     best = min(weighed, key=lambda item: item.minutes_for(of_first or pairs))
     if best.chance_in(rules.LONGEST_DRIVE, of_first or pairs) < rules.AS_LIKELY_AS_NOT:
         return None
@@ -204,8 +203,12 @@ def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Propos
 
 def _tells(item: Discrimination, first: str) -> tuple[int, int, float]:
     """How many pairs, those of the first rival before all; of equals the quickest."""
-    told = item.told()
-    return sum(first in pair for pair in told), len(told), -item.minutes_for(told) if told else 0.0
+    apart = item.told_apart()
+    return (
+        sum(first in pair for pair in apart),
+        len(apart),
+        -item.minutes_for(apart) if apart else 0.0,
+    )
 
 
 def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> ProposedManoeuvre:

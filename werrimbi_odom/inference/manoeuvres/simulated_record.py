@@ -15,12 +15,8 @@ from werrimbi_odom.inference.fitting.free_parameters import NUISANCES
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment
-from werrimbi_odom.inference.manoeuvres.ideal_drives import (
-    DrivingLimits,
-    Ideal,
-    ideal_run,
-    rates_of,
-)
+from werrimbi_odom.inference.manoeuvres.ideal_drives import DrivingLimits, ideal_run, rates_of
+from werrimbi_odom.inference.manoeuvres.library import Ideal
 
 
 def measured_in(runs: Concatenated) -> tuple[bool, bool]:
@@ -42,7 +38,7 @@ def imagined(
         The manoeuvre.
     runs, point
         Recorded drives, and the model and noise fitted to them.
-    pace : Pace
+    pace : DrivingLimits
         Speeds of the robot.
     better : bool
         With a reference that measures positions and headings as well as motion capture does.

@@ -20,7 +20,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
@@ -45,9 +45,6 @@ from werrimbi_odom.inference.set_up.records import (
 from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, turning
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-
-__all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
-
 
 DELAY, RADIUS = "reference_delay", "wheel_radius_scale"
 IN_UNIT = (
@@ -121,7 +118,7 @@ def look_for_mistakes(
     InputError
         If a size would be beyond what its effect allows.
     """
-    runs = [looked_at(run, robot, options.limits) for run in runs]
+    runs = [with_no_driving(run, robot, options.limits) for run in runs]
     records = [each for run in runs if (each := record_of(run, robot, options.limits)) is not None]
     measured = measured_by(records)
     if measured is None:

@@ -99,7 +99,7 @@ def steps_of(added: Added) -> list[ErrorOfModel]:
     ]
 
 
-def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("nan")) -> Figure:
+def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float) -> Figure:
     """Bars of the errors in each step, and a line at the error by noise alone.
 
     Parameters
@@ -148,7 +148,7 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
         line = {"color": style.GREEN, "width": 2.5, "dash": "dash"}
         figure.add_hline(y=factor * floor, line=line)
         words = f"floor: what noise alone leaves, {factor * floor:.2f} {unit}"
-        style.plot(figure, [None], [None], words, told=None, line=line)
+        style.plot(figure, [None], [None], words, hover=None, line=line)
     figure.update_yaxes(title=f"error of a leg, rms [{unit}]", range=[0.0, 1.16 * factor * largest])
     figure.update_xaxes(showgrid=False)
     style.plain(figure, height=420)
@@ -192,7 +192,7 @@ def clouds_of_legs(
             style.small(drawn[:, 1]),
             f"{name}: median {np.median(size):.{digits}f} mm",
             marker={"color": style.paled(colour, 0.75), "symbol": symbol, "size": 8},
-            told=f"{style.escaped(name)}<br>along %{{x:.{digits}f}} mm"
+            hover=f"{style.escaped(name)}<br>along %{{x:.{digits}f}} mm"
             f"<br>sideways %{{y:.{digits}f}} mm",
         )
     return style.from_above(figure, height, "error along [mm]", "error sideways [mm]")

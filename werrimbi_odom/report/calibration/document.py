@@ -75,7 +75,7 @@ def umbmark_figure(before: OffsetCloud, after: OffsetCloud | None) -> Figure:
         ):
             _offsets(figure, f"{sense}, {cloud.name}", offsets, colour, symbol, filled)
     cross = {"symbol": "x", "size": 13, "color": GREY}
-    plot(figure, [None], [None], "centres of gravity", told=None, marker=cross)
+    plot(figure, [None], [None], "centres of gravity", hover=None, marker=cross)
     x, y = "x, along the first leg [mm]", "y, to its left [mm]"
     return from_above(figure, 760, x, y, zeroline=True)
 
@@ -92,11 +92,11 @@ def _offsets(
         "opacity": 0.55 if filled else 1.0,
         "line": {"width": 0.0 if filled else 1.8, "color": colour},
     }
-    plot(figure, x, y, name, group=name, marker=marker, told=f"{name}{place}")
+    plot(figure, x, y, name, group=name, marker=marker, hover=f"{name}{place}")
     marker = {"symbol": "x", "size": 14, "color": colour, "line": {"width": 1, "color": "white"}}
     centre, told = "centre of gravity", f"{name}: centre of gravity{place}"
     at = [float(x.mean())], [float(y.mean())]
-    plot(figure, *at, centre, group=name, shown=False, marker=marker, told=told)
+    plot(figure, *at, centre, group=name, shown=False, marker=marker, hover=told)
 
 
 def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
@@ -130,7 +130,7 @@ def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
         at: dict[str, Any] = {"row": 1, "col": column}
         marker, name = {"color": GREY, "size": 6, "opacity": 0.7}, f"{len(errors)} runs"
         runs = scaled[:, across], scaled[:, up]
-        plot(figure, *runs, name, group="runs", shown=first, told=None, marker=marker, **at)
+        plot(figure, *runs, name, group="runs", shown=first, hover=None, marker=marker, **at)
         for name, covariance, colour, dash in (
             ("95 % ellipse of the runs", data, BLUE, "dash"),
             ("95 % ellipse of the model", model, ORANGE, "solid"),

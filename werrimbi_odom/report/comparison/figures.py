@@ -63,7 +63,7 @@ def nees_figure(comparison: Comparison) -> Figure:
         style.plot(figure, x, y, words, group="bounds", shown=not drawn, line=bar)
         drawn = True
         marker = {"color": colour, "symbol": symbol, "size": 12}
-        style.plot(figure, at, values, NAMES[kind], told="%{text}", text=texts, marker=marker)
+        style.plot(figure, at, values, NAMES[kind], hover="%{text}", text=texts, marker=marker)
     figure.add_hline(y=1.0, line={"color": style.GREY, "width": 1.5, "dash": "dash"})
     figure.update_xaxes(
         title="length of the legs", tickvals=list(range(len(lengths))), ticktext=lengths
@@ -136,7 +136,7 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
                 figure,
                 [NAMES[kind]],
                 [middle],
-                told=f"{NAMES[kind]}, {name}: {values.size} legs"
+                hover=f"{NAMES[kind]}, {name}: {values.size} legs"
                 f"<br>mean {values.mean():+.2f} {unit}"
                 f"<br>95 % of them {low:+.2f} to {high:+.2f} {unit}"
                 f"<br>promised ± {promised:.2f} {unit}",

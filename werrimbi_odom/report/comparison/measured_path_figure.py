@@ -119,7 +119,7 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
         "line": {"width": 1, "color": style.PAPER},
     }
     style.plot(
-        figure, *style.places(middle), shown=False, text=texts, told="%{text}", marker=marker
+        figure, *style.places(middle), shown=False, text=texts, hover="%{text}", marker=marker
     )
     # Only for the legend, where a marker with many colours is black and invisible on a dark page.
     marker = {"color": style.GREY, "size": 12}

@@ -98,7 +98,7 @@ def covariance_words(verdict: Verdict, nees: float) -> list[str]:
     small = verdict.covariance == "too small"
     at = next((item for item in verdict.lengths if item.leg == verdict.judged_at), None)
     by_noise = verdict.mean_is_right and verdict.noise == verdict.covariance
-    if by_noise and at is not None and at.says == verdict.noise and verdict.factor.told:
+    if by_noise and at is not None and at.says == verdict.noise and verdict.factor.determined:
         return [_by_noise(verdict, at)]
     size = "small" if small else "large"
     text = f"The covariance is too {size}, {_where(verdict.lengths, small=small)}"

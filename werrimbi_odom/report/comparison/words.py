@@ -14,7 +14,7 @@ from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict
 from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.number_format import capital, counted, listed, two_digits
+from werrimbi_odom.report.number_format import capital, counted, length, listed, two_digits
 from werrimbi_odom.report.phrases import (
     left_out_words,
     leg_words,
@@ -72,11 +72,11 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
             f"--leg {longer:g}."
         )
     if not verdict.enough:
-        length, asked = comparison.median_length, comparison.main.leg
-        rare = rarer_than_asked(length, asked)  # then no leg is shorter
+        median, asked = comparison.median_length, comparison.main.leg
+        rare = rarer_than_asked(median, asked)  # then no leg is shorter
         other = "measure the robot more often on its way" if rare else "try a shorter --leg"
         return (
-            f"Too little to judge: {counted(count, 'leg')} of {leg_words(length, asked)} m, "
+            f"Too little to judge: {counted(count, 'leg')} of {leg_words(median, asked)} m, "
             f"{rules.FEWEST_LEGS} are the least. Drive more, or {other}."
         )
     if verdict.good:
@@ -150,7 +150,7 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
 def _errors(figures: LegFigures) -> str:
     parts = []
     if math.isfinite(figures.figures.rmse_position_m):
-        parts.append(_millimetres(figures.figures.rmse_position_m))
+        parts.append(length(figures.figures.rmse_position_m))
     if math.isfinite(figures.figures.rmse_yaw_rad):
         parts.append(f"{math.degrees(figures.figures.rmse_yaw_rad):.2f}°")
     return " and ".join(parts)
@@ -180,7 +180,7 @@ def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
     for cell in verdict.cells[:2]:
         lines.append(
             f"- Errors are larger on the floor about x {cell.x:.1f} m, y {cell.y:.1f} m (a square "
-            f"of {cell.side:.1f} m): {_millimetres(cell.figures.rmse_position_m)} over "
+            f"of {cell.side:.1f} m): {length(cell.figures.rmse_position_m)} over "
             f"{counted(cell.figures.count, 'leg')}."
         )
     return lines
@@ -274,10 +274,3 @@ def _next(verdict: Verdict, next_step: str) -> str:
             "happened on the legs that err most."
         )
     return f"Next: {next_step} says which physical effect explains it."
-
-
-def _millimetres(value: float) -> str:
-    millimetres = 1e3 * value
-    if millimetres >= 1e4:
-        return f"{value:.1f} m"
-    return f"{millimetres:.1f} mm" if millimetres < 100.0 else f"{millimetres:.0f} mm"

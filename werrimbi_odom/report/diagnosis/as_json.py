@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.inference.changes.between_drives import Moved
+from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
-from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.events import alike_json, events_json
@@ -32,7 +32,7 @@ def json_of(
     diagnosis: Diagnosis,
     manoeuvre: ProposedManoeuvre | None,
     sights: Sequence[DetectionLimit] = (),
-    changes: Sequence[Moved] = (),
+    changes: Sequence[ParameterChange] = (),
 ) -> dict[str, Any]:
     """Complete result."""
     misfit = diagnosis.misfit

@@ -10,9 +10,9 @@ from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response_curve import before_after
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
-from werrimbi_odom.inference.manoeuvres.proposal import ProposedManoeuvre
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence import label_of
 from werrimbi_odom.report.diagnosis.evidence_figures import (
@@ -37,9 +37,9 @@ from werrimbi_odom.report.sketches import effect_sketch
 _LISTED = 8
 
 
-def document_of(told: Told, steps: NextSteps | None = None) -> Document:
+def document_of(advised: AdvisedDiagnosis, steps: NextSteps | None = None) -> Document:
     """The complete report."""
-    diagnosis = told.diagnosis
+    diagnosis = advised.diagnosis
     title = {
         "none": "Nothing is missing",
         "named": f"What is missing: {', '.join(diagnosis.found)}",
@@ -51,15 +51,15 @@ def document_of(told: Told, steps: NextSteps | None = None) -> Document:
         title = f"What is set up wrongly: {mistakes}"
     return Document(
         title=title,
-        words=words_of(told, steps or NextSteps()),
-        tables=tables_of(diagnosis, told.sights),
+        words=words_of(advised, steps or NextSteps()),
+        tables=tables_of(diagnosis, advised.sights),
         draw=lambda: [
             *_effects(diagnosis),
             *_before_after(diagnosis),
             *_ranking(diagnosis),
             *_evidence(diagnosis),
             *_events(diagnosis),
-            *_next(diagnosis, told.manoeuvre),
+            *_next(diagnosis, advised.manoeuvre),
             *_sketches(diagnosis),
         ],
     )

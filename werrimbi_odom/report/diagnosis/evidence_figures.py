@@ -136,7 +136,7 @@ def _told(cell: Dependence) -> str:
 _POINTS = 160
 
 
-def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> Figure:
+def dependence_figure(cell: Dependence, run_names: Sequence[str]) -> Figure:
     """The error of a cell over its variable, as fitted for the evidence map."""
     if cell.form == "place":
         return _floor(cell)
@@ -169,7 +169,7 @@ def _curve(figure: Figure, cell: Dependence, unit: str, factor: float) -> None:
         style.small(values[chosen]),
         style.small(factor * (functions[chosen] @ cell.coefficients)),
         cell.form,
-        told=f"%{{x:.3g}}: %{{y:+.3g}} {unit}",
+        hover=f"%{{x:.3g}}: %{{y:+.3g}} {unit}",
         shown=False,
         line=line,
     )
@@ -209,7 +209,7 @@ def _turns(
             style.small(np.degrees(angle)),
             style.small(factor * (waves @ coefficients)),
             style.escaped(name),
-            told=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}",
+            hover=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}",
             shown=bool(name),
             line={"color": colour, "width": 2.5, "dash": dash},
         )
@@ -233,7 +233,7 @@ def _floor(cell: Dependence) -> Figure:
             style.small(x[which]),
             style.small(y[which]),
             name,
-            told=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}",
+            hover=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}",
             customdata=style.small(error[which]),
             marker={
                 "symbol": symbol,

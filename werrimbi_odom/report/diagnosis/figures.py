@@ -14,12 +14,8 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
-from werrimbi_odom.inference.manoeuvres.ideal_drives import (
-    MANOEUVRES,
-    DrivingLimits,
-    Ideal,
-    ideal_run,
-)
+from werrimbi_odom.inference.manoeuvres.ideal_drives import DrivingLimits, ideal_run
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -146,7 +142,7 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
                 name,
                 group=name,
                 shown=place == 1,
-                told=f"{name}<br>predicted %{{x:.2f}} {unit}, measured %{{y:.2f}} {unit}",
+                hover=f"{name}<br>predicted %{{x:.2f}} {unit}, measured %{{y:.2f}} {unit}",
                 marker={"color": style.paled(colour, 0.7), "symbol": symbol, "size": 7},
                 row=1,
                 col=place,
@@ -214,7 +210,7 @@ def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: DrivingLimits) -> Figure:
             figure,
             *style.places(track),
             f"track of the {name}",
-            told=f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<br>after %{{customdata:.0f}} s",
+            hover=f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<br>after %{{customdata:.0f}} s",
             customdata=style.small(time),
             line={"color": style.paled(colour, 0.75), "width": 2},
         )

@@ -20,17 +20,17 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 )
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.number_format import chance_words, error_words, listed, quantity
+from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed, quantity
 from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
-def about(told: Told, name: str) -> list[str]:
+def about(advised: AdvisedDiagnosis, name: str) -> list[str]:
     """What the effect is, its size, significance, cost, and how to check it."""
-    diagnosis = told.diagnosis
+    diagnosis = advised.diagnosis
     effect = diagnosis.effect_named(name)
     lines = []
     if effect is not None:
@@ -39,28 +39,30 @@ def about(told: Told, name: str) -> list[str]:
     ranked = ranked_of(diagnosis, name)
     if ranked is not None and name not in mistakes(diagnosis):
         lines.append(f"How sure: {chance_words(ranked.p_value)}{_deviations(diagnosis, name)}.")
-    lines += cost(told, name)
+    lines += cost(advised, name)
     lines += ruler(diagnosis, effect, "Check it")
     return lines
 
 
-def also(told: Told, name: str) -> list[str]:
+def also(advised: AdvisedDiagnosis, name: str) -> list[str]:
     """Short form for another effect that was found."""
-    effect = told.diagnosis.effect_named(name)
-    size = sizes(told.diagnosis, name)
-    ranked = ranked_of(told.diagnosis, name)
+    effect = advised.diagnosis.effect_named(name)
+    size = sizes(advised.diagnosis, name)
+    ranked = ranked_of(advised.diagnosis, name)
     sure = f"; {chance_words(ranked.p_value)}" if ranked is not None else ""
     what = f" {effect.summary}" if effect is not None else ""
-    own = own_scale_instead(name, told.diagnosis.final, told.diagnosis.given, told.diagnosis.runs)
+    own = own_scale_instead(
+        name, advised.diagnosis.final, advised.diagnosis.given, advised.diagnosis.runs
+    )
     if own:
         what += f" Headings alone cannot tell it from {listed(own, 'or')}."
     twins = effect.twins if effect is not None else ()
-    near = told.diagnosis.rivals_of_others.get(name, ())
+    near = advised.diagnosis.rivals_of_others.get(name, ())
     if rivals := [each for each in near if each not in (*twins, *own)]:
         what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
     if twins:
         what += f" To the reference it is one with {listed(twins, 'or')}, on any drive."
-    what = hang_together(values_of(told.diagnosis, name).values()) + what
+    what = hang_together(values_of(advised.diagnosis, name).values()) + what
     return [f"- Also {name}: {size}{sure}.{what}"]
 
 
@@ -80,6 +82,21 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     if name == "reference_delay" and values["delay"].value < 0.0:
         late += " Negative: it is the encoders' stamps that are late against the reference's."
     return [f"How large: {'; '.join(parts)}.{hang_together(every.values())}{late}"]
+
+
+def set_up_lines(diagnosis: Diagnosis) -> list[str]:
+    """Set-up mistakes, which come first because all else depends on them; then skid steering."""
+    findings = diagnosis.set_up.findings
+    wrong = diagnosis.set_up.wrong
+    lines = ["Something is set up wrongly:"] if wrong else []
+    for finding in wrong:
+        words = set_up_words(diagnosis, finding)
+        lines.append(f"- {capital(words)}: {finding.effect}.")
+    skids = [finding for finding in findings if finding not in wrong]
+    return [
+        *lines,
+        *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
+    ]
 
 
 def set_up_words(diagnosis: Diagnosis, finding: SetUpFinding) -> str:
@@ -111,7 +128,7 @@ def _unseen(value: Value) -> bool:
 
 def hang_together(values: Iterable[Value]) -> str:
     """Remark that the sizes of an effect are significant only jointly; "" otherwise."""
-    known = [value for value in values if value.told and value.determined and value.std > 0.0]
+    known = [value for value in values if value.reported and value.determined and value.std > 0.0]
     if len(known) < 2 or not all(map(_unseen, known)):
         return ""
     return " Any one of these may be none, but not all of them: they hang together in these drives."
@@ -136,7 +153,7 @@ def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
     return ", ".join(
         f"{parameter} {_value(value)}"
         for parameter, value in values.items()
-        if value.told and not (believed and value.std > abs(value.value - value.null))
+        if value.reported and not (believed and value.std > abs(value.value - value.null))
     )
 
 
@@ -146,19 +163,19 @@ def _value(value: Value) -> str:
     return quantity(value.value, value.std, value.unit)
 
 
-def cost(told: Told, name: str) -> list[str]:
+def cost(advised: AdvisedDiagnosis, name: str) -> list[str]:
     """Errors without an effect and with it."""
-    ranked = ranked_of(told.diagnosis, name)
+    ranked = ranked_of(advised.diagnosis, name)
     if ranked is None or ranked.holdout is None:
         return []
-    return _fall(told, ranked.holdout)
+    return _fall(advised, ranked.holdout)
 
 
-def _fall(told: Told, sides: Sides) -> list[str]:
+def _fall(advised: AdvisedDiagnosis, sides: Sides) -> list[str]:
     before, after = sides.before, sides.after
     if not (math.isfinite(before) and math.isfinite(after)):
         return []
-    where, kind = f"on {judged(told)}", error_kind(sides)
+    where, kind = f"on {judged(advised)}", error_kind(sides)
     if after >= before:
         both = (
             f"{where} the {kind} error is {error_words(before, sides.unit)} without it and "
@@ -178,8 +195,8 @@ def _fall(told: Told, sides: Sides) -> list[str]:
         ]
     part = math.sqrt(before**2 - after**2)
     return [
-        f"What it costs: {error_words(part, sides.unit)} {_each(told, sides)}; {where} the {kind} "
-        f"error falls from {told_before} to {told_after} when it is put in."
+        f"What it costs: {error_words(part, sides.unit)} {_each(advised, sides)}; {where} the "
+        f"{kind} error falls from {told_before} to {told_after} when it is put in."
     ]
 
 
@@ -188,16 +205,16 @@ def error_kind(sides: Sides) -> str:
     return "heading" if sides.unit == "rad" else "position"
 
 
-def _each(told: Told, sides: Sides) -> str:
-    if rarer_than_asked(sides.length, told.leg):
-        return f"on each leg of {leg_words(sides.length, told.leg)} m"
-    return f"on each {'metre' if told.leg == 1.0 else f'{told.leg:g} m'} or quarter turn"
+def _each(advised: AdvisedDiagnosis, sides: Sides) -> str:
+    if rarer_than_asked(sides.length, advised.leg):
+        return f"on each leg of {leg_words(sides.length, advised.leg)} m"
+    return f"on each {'metre' if advised.leg == 1.0 else f'{advised.leg:g} m'} or quarter turn"
 
 
-def judged(told: Told) -> str:
+def judged(advised: AdvisedDiagnosis) -> str:
     """Drives and legs of the held-out errors."""
-    which = "the drives held out" if told.held_out else "a part put aside for judging"
-    leg = leg_words(told.diagnosis.holdout.length, told.leg)
+    which = "the drives held out" if advised.held_out else "a part put aside for judging"
+    leg = leg_words(advised.diagnosis.holdout.length, advised.leg)
     return f"{which} (legs of {leg} m)"
 
 
@@ -206,9 +223,9 @@ def sizes_found(diagnosis: Diagnosis) -> str:
     return sizes_words(diagnosis.given, best_sizes(diagnosis))
 
 
-def whole(told: Told) -> list[str]:
+def whole(advised: AdvisedDiagnosis) -> list[str]:
     """Errors with everything that was found, if that is more than one effect."""
-    diagnosis = told.diagnosis
+    diagnosis = advised.diagnosis
     sides = diagnosis.holdout
     if len(diagnosis.found) < 2 or not math.isfinite(sides.before):
         return []
@@ -216,16 +233,16 @@ def whole(told: Told) -> list[str]:
     goes = f"{'falls' if sides.after < sides.before else 'goes'} from {before} to {after}"
     if before == after:
         goes = f"stays at {before}"
-    return [f"With all of them put in, the {error_kind(sides)} error on {judged(told)} {goes}."]
+    return [f"With all of them put in, the {error_kind(sides)} error on {judged(advised)} {goes}."]
 
 
-def by_sizes_alone(told: Told) -> list[str]:
+def by_sizes_alone(advised: AdvisedDiagnosis) -> list[str]:
     """Of errors that base and radii lower, where something else is missing as well.
 
     Sizes that are off by more than calibration may stand in for what is missing, and sizes that are
     as uncertain as they are off are not said to be off.
     """
-    diagnosis = told.diagnosis
+    diagnosis = advised.diagnosis
     sides, words = diagnosis.holdout, sizes_found(diagnosis)
     sizes = [
         (value, getattr(diagnosis.given, name), std)
@@ -238,7 +255,7 @@ def by_sizes_alone(told: Told) -> list[str]:
     before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
     return [
         f"Base and radii are off: {words}. With these the {error_kind(sides)} error on "
-        f"{judged(told)} falls from {before} to {after}. What follows is of the rest."
+        f"{judged(advised)} falls from {before} to {after}. What follows is of the rest."
     ]
 
 

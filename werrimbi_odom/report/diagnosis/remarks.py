@@ -14,8 +14,8 @@ from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.fitting.score_tests import CALIBRATED
-from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.number_format import (
@@ -27,9 +27,9 @@ from werrimbi_odom.report.number_format import (
 )
 
 
-def law(told: Told) -> list[str]:
+def law(advised: AdvisedDiagnosis) -> list[str]:
     """The misfit that remains with everything found, or that of a law in the robot file."""
-    misfit = told.diagnosis.misfit
+    misfit = advised.diagnosis.misfit
     if misfit is None:
         return []
     cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
@@ -39,7 +39,7 @@ def law(told: Told) -> list[str]:
             "hold as much driving that would show it, and do not. So no law of the robot is seen "
             "in it: "
             "something happened on that drive, its reference erred, or it was recorded otherwise"
-            f"{_or_a_held_law(told)}."
+            f"{_or_a_held_law(advised)}."
         ]
     if misfit.effect is None:
         return [
@@ -88,9 +88,9 @@ def wandering(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def scatter(told: Told) -> list[str]:
+def scatter(advised: AdvisedDiagnosis) -> list[str]:
     """Remark that values differ between parts of the drives by more than noise."""
-    diagnosis = told.diagnosis
+    diagnosis = advised.diagnosis
     widened = widest(diagnosis)
     if widened <= 1.0:
         return []
@@ -104,25 +104,25 @@ def scatter(told: Told) -> list[str]:
     ]
 
 
-def _or_a_held_law(told: Told) -> str:
+def _or_a_held_law(advised: AdvisedDiagnosis) -> str:
     """Laws in the model; their form may differ slightly from the true one."""
-    applied = told.diagnosis.robot.effects
+    applied = advised.diagnosis.robot.effects
     laws = [each.name for each in applied if not each.effect.is_mistake]
     return f", or the law of {listed(laws, 'or')} does not quite fit there" if laws else ""
 
 
-def without_events(told: Told) -> list[str]:
+def without_events(advised: AdvisedDiagnosis) -> list[str]:
     """Errors without the legs of abrupt events that are told."""
-    if not told.diagnosis.happened.events:
+    if not advised.diagnosis.happened.events:
         return []  # marked beside a first model, and none beside the last
-    every, quiet = told.diagnosis.holdout, told.diagnosis.quiet[1]
+    every, quiet = advised.diagnosis.holdout, advised.diagnosis.quiet[1]
     if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
         return []
     before, after = (error_words(error, quiet.unit) for error in (quiet.before, quiet.after))
-    change = f"goes from {before} to {after}" if told.diagnosis.found else f"is {after}"
+    change = f"goes from {before} to {after}" if advised.diagnosis.found else f"is {after}"
     return [
         "In the errors they count, as in those of `werrimbi compare`. Without their legs the "
-        f"{error_kind(quiet)} error on {judged(told)} {change}."
+        f"{error_kind(quiet)} error on {judged(advised)} {change}."
     ]
 
 
@@ -153,11 +153,11 @@ def otherwise(diagnosis: Diagnosis) -> list[str]:
     return lines
 
 
-def not_shown(told: Told) -> list[str]:
+def not_shown(advised: AdvisedDiagnosis) -> list[str]:
     """Effects that would not have been detected, and what would show them."""
     # Named effects were detected, with more than their typical size.
-    found = told.diagnosis.found
-    hidden = [sight for sight in told.sights if sight.hidden and sight.effect not in found]
+    found = advised.diagnosis.found
+    hidden = [sight for sight in advised.sights if sight.hidden and sight.effect not in found]
     if not hidden:
         return []
     by_drive = [
@@ -170,7 +170,7 @@ def not_shown(told: Told) -> list[str]:
         )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
-        runs, better = told.diagnosis.runs, "positions and headings does (motion capture, scans)"
+        runs, better = advised.diagnosis.runs, "positions and headings does (motion capture, scans)"
         if runs.own_axes:
             better = "finely, in axes of the floor, does (motion capture)"
         elif np.isfinite(runs.start).all(axis=1).any():
@@ -215,23 +215,23 @@ def instead_of_held(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def outdated_told(told: Told) -> list[str]:
+def outdated_told(advised: AdvisedDiagnosis) -> list[str]:
     """Effects in the robot file whose values these drives contradict, and the errors."""
-    diagnosis, sides = told.diagnosis, told.diagnosis.holdout
+    diagnosis, sides = advised.diagnosis, advised.diagnosis.holdout
     lines = []
     for name in diagnosis.outdated:
         values = next(item.values for item in diagnosis.given.effects if item.name == name)
         file = ", ".join(
             f"{parameter} {quantity(values[parameter], math.nan, item.unit)}"
             for parameter, item in values_of(diagnosis, name).items()
-            if item.told
+            if item.reported
         )
         lines.append(f"- {name}: {sizes(diagnosis, name)}, where the robot file has {file}.")
     if lines and math.isfinite(sides.before):
         before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
         lines.append(
-            f"With these values the {error_kind(sides)} error on {judged(told)} goes from {before} "
-            f"to {after}."
+            f"With these values the {error_kind(sides)} error on {judged(advised)} goes from "
+            f"{before} to {after}."
         )
     return lines
 
@@ -254,10 +254,10 @@ def like_noise(diagnosis: Diagnosis) -> str:
     return ", and they look like noise"
 
 
-def drowned(told: Told) -> list[str]:
+def drowned(advised: AdvisedDiagnosis) -> list[str]:
     """Of a *none* whose errors are a large part of the way: of little worth."""
-    sides = told.diagnosis.holdout
-    leg = max(told.leg, sides.length)
+    sides = advised.diagnosis.holdout
+    leg = max(advised.leg, sides.length)
     if sides.unit != "m" or not sides.after > rules.WRONG_OF_A_LEG * leg:
         return []
     return [

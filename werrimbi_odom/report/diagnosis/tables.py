@@ -34,7 +34,7 @@ def _parameters(diagnosis: Diagnosis) -> list[Part]:
             f"{name}.{parameter}",
             *(
                 in_unit(item.value, item.std, item.unit)
-                if item.told
+                if item.reported
                 else ("each drive its own" if item.per_run else "not determined", item.unit)
             ),
         ]

@@ -15,15 +15,15 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     one_wheel,
     reference_wanders,
 )
-from werrimbi_odom.inference.manoeuvres.advice import Told, significant
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis import phrases, remarks
-from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.unknown import mounted_anew, unknown_words
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed
+from werrimbi_odom.report.number_format import error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
 
@@ -39,18 +39,22 @@ class NextSteps:
     diagnose: str = "werrimbi diagnose"
 
 
-def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
+def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ...]:
     """All sentences, and the commands of the next step."""
-    diagnosis = told.diagnosis
+    diagnosis = advised.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
-    said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *remarks.otherwise(diagnosis)]
+    said = [
+        *_changes(advised),
+        *tell[diagnosis.verdict](advised, steps),
+        *remarks.otherwise(diagnosis),
+    ]
     suspect = either_side(diagnosis.ahead_or_behind) + remarks.wandering(diagnosis)
-    if not _mounted_anew(told):
+    if not mounted_anew(advised):
         suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
-    left_out = [*_shorter(told), *suspect, *left_out_words(diagnosis.left_out)]
+    left_out = [*_shorter(advised), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
-    left_out += remarks.without_events(told) + remarks.coarse_counters(diagnosis)
+    left_out += remarks.without_events(advised) + remarks.coarse_counters(diagnosis)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out
@@ -58,33 +62,35 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     return paragraphs(said, hanging=[*_HEADS, *checks])
 
 
-def _shorter(told: Told) -> list[str]:
+def _shorter(advised: AdvisedDiagnosis) -> list[str]:
     """Why the legs are shorter than was asked for."""
-    if told.open_at is None:
+    if advised.open_at is None:
         return []
     return [
-        f"Legs of {told.open_at:g} m leave it open: over whole turns of a wheel it is like "
-        f"another error. Legs of {told.leg:g} m show what happens within a turn; all that is "
+        f"Legs of {advised.open_at:g} m leave it open: over whole turns of a wheel it is like "
+        f"another error. Legs of {advised.leg:g} m show what happens within a turn; all that is "
         "said here, and the command below, is of those."
     ]
 
 
-def _changes(told: Told) -> list[str]:
+def _changes(advised: AdvisedDiagnosis) -> list[str]:
     """Changes between the drives, before what they have in common."""
-    changes = changes_words(told.changes, told.diagnosis.robot)
+    changes = changes_words(advised.changes, advised.diagnosis.robot)
     if not changes:
         return []
-    drives = [run.name for run in told.diagnosis.runs.runs]
-    last = max(drives.index(change.surely_from) for change in told.changes)
+    drives = [run.name for run in advised.diagnosis.runs.runs]
+    last = max(drives.index(change.surely_from) for change in advised.changes)
     alone = " That alone may be why no effect explains them all."
-    floor = [] if told.diagnosis.verdict == "unknown" else remarks.floor_not_asked(told.diagnosis)
+    floor = (
+        [] if advised.diagnosis.verdict == "unknown" else remarks.floor_not_asked(advised.diagnosis)
+    )
     return [
         "The robot was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
         *(f"Or the floor is why. {words}" for words in floor),
         "What follows takes them for one robot, the mean of both. For what it is now, ask again "
         f"with the drives from {drives[last]} on alone."
-        + (alone if told.diagnosis.verdict == "unknown" else ""),
+        + (alone if advised.diagnosis.verdict == "unknown" else ""),
         "",
     ]
 
@@ -93,21 +99,25 @@ _HEADS = ["On the robot", "What it is", "How large", "How sure", "What it costs"
 _HEADS += ["Next", "But", "Why"]
 
 
-def _none(told: Told, steps: NextSteps) -> list[str]:
-    diagnosis = told.diagnosis
+def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
+    diagnosis = advised.diagnosis
     wanders = reference_wanders(diagnosis)
-    large = remarks.drowned(told)
-    old = remarks.outdated_told(told)
+    large = remarks.drowned(advised)
+    old = remarks.outdated_told(advised)
     alike = diagnosis.happened.alike is not None
     noise = not (diagnosis.misfit or wanders or large or old or alike)
     ending = ": the model explains them to their noise." if noise else "."
     if old:
         ending = ", but values of effects in the robot file are off."
-    lines = [f"Nothing is missing that these drives could show{ending}", *old, *remarks.law(told)]
+    lines = [
+        f"Nothing is missing that these drives could show{ending}",
+        *old,
+        *remarks.law(advised),
+    ]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
         like = remarks.like_noise(diagnosis) if noise else ""
-        lines.append(f"Its errors on {phrases.judged(told)} are {errors}{like}.")
+        lines.append(f"Its errors on {phrases.judged(advised)} are {errors}{like}.")
         lines += large
     lines += remarks.instead_of_held(diagnosis)
     if wanders:
@@ -116,12 +126,12 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
             "the drives do not agree on what they go with. So errs a reference that wanders (a "
             "camera, a map that is matched); what is smaller than that is not seen."
         )
-    if not all(sight.hidden for sight in told.sights):
+    if not all(sight.hidden for sight in advised.sights):
         lines.append(
             "How well that is known: the table says from which size on each effect would have been "
             "seen."
         )
-    lines += remarks.not_shown(told)
+    lines += remarks.not_shown(advised)
     if old:
         return [
             *lines,
@@ -135,38 +145,38 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     return lines
 
 
-def _named(told: Told, steps: NextSteps) -> list[str]:
-    diagnosis = told.diagnosis
+def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
+    diagnosis = advised.diagnosis
     name = diagnosis.effect or ""
-    lines = _set_up(diagnosis)
+    lines = phrases.set_up_lines(diagnosis)
     things = _things(diagnosis)
     if not lines:
         lines.append(f"One thing is missing: {things[0]}." if len(things) == 1 else
                      f"{_count(len(things))} things are missing: "
                      f"{listed(things)}. The most important one first.")  # fmt: skip
-    lines += phrases.about(told, name)
+    lines += phrases.about(advised, name)
     for other in diagnosis.found[1:]:
         if other not in mistakes(diagnosis):
-            lines += phrases.also(told, other)
+            lines += phrases.also(advised, other)
     if sizes := phrases.sizes_found(diagnosis):
         lines.append(f"On the robot: {sizes}.")
     it = "it" if len(diagnosis.found) == 1 else "all of it"
     return [
         *lines,
-        *phrases.whole(told),
-        *_remainder(told),
+        *phrases.whole(advised),
+        *_remainder(advised),
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
         *remarks.by_headings_alone(diagnosis),
-        *remarks.not_shown(told),
+        *remarks.not_shown(advised),
     ]
 
 
-def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
-    diagnosis = told.diagnosis
+def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
+    diagnosis = advised.diagnosis
     rivals = diagnosis.rivals
     first = diagnosis.effect_named(rivals[0])
-    lines = _set_up(diagnosis)
+    lines = phrases.set_up_lines(diagnosis)
     which = listed(rivals, "or")
     lines.append(
         f"These drives cannot tell which it is, {which}."
@@ -190,8 +200,8 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
     lines += remarks.by_headings_alone(diagnosis)
-    lines += phrases.cost(told, rivals[0])
-    if (move := told.manoeuvre) is not None:
+    lines += phrases.cost(advised, rivals[0])
+    if (move := advised.manoeuvre) is not None:
         lines.append(f"Why: {move.why}.")
         lines.append(" ".join((f"Next: {move.do} ({move.name}).", *how_long(move, steps.diagnose))))
     else:
@@ -205,8 +215,12 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         lines += phrases.ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
-            lines += phrases.also(told, other)
-    return [*lines, *_remainder(told)]
+            lines += phrases.also(advised, other)
+    return [*lines, *_remainder(advised)]
+
+
+def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
+    return unknown_words(advised, steps.draft)
 
 
 def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
@@ -220,66 +234,6 @@ def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
     yield f"Then give that drive to `{diagnose}` together with these."
 
 
-def _mounted_anew(told: Told) -> bool:
-    """Whether places differ, and turns do not, because the reference was mounted otherwise."""
-    places = any(remark.what == "places" for remark in told.diagnosis.remarks)
-    return places and any(change.group == "mount" for change in told.changes)
-
-
-def _unknown(told: Told, steps: NextSteps) -> list[str]:
-    diagnosis = told.diagnosis
-    if diagnosis.of_another_drive and _mounted_anew(told):
-        return [
-            "No mount of the reference fits all of these drives, so together they tell nothing: "
-            "where an axis of its own begins anew with each recording (an IMU's heading beside "
-            "the positions of another sensor), diagnose each drive by itself.",
-            "Next: ask again with fewer drives, as above.",
-        ]
-    if diagnosis.of_another_drive:
-        if any(remark.what == "no_turn" for remark in diagnosis.remarks):
-            return [
-                "Nothing can be told of the robot from these drives.",
-                "Next: turn the robot by hand once about, from a line on the floor back onto it: "
-                "the reference's heading must turn by 360° with it.",
-            ]
-        unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
-        mend = " Give the reference of the same drive." if unrelated else ""
-        return [
-            "Nothing can be told of the robot from these drives.",
-            "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
-            f"--report draws both paths.{mend}",
-        ]
-    lines = _set_up(diagnosis)
-    cells = significant(diagnosis)
-    lines += phrases.by_sizes_alone(told)
-    lines.append("Something is missing that no effect of the library explains.")
-    if cells:
-        lines.append(
-            f"What is known of it: {dependence_words(cells[0])} ({chance_words(cells[0].p_value)})."
-        )
-        others = [cell for cell in cells[1:] if cell.variable.name != cells[0].variable.name]
-        if others:
-            lines.append(
-                f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
-                "the one may go with the other because of how it was driven."
-            )
-    lines += remarks.floor_not_asked(diagnosis)
-    lines += remarks.nearest(diagnosis, bool(cells))
-    lines += remarks.at_bounds_told(diagnosis)
-    if cells:
-        lines.append("Next: write it as an effect of your own, from what these drives show:")
-        lines.append(f"    {steps.draft}")
-    else:
-        lines.append(
-            "It goes with nothing that was looked at, so there is no law to write. Next: see where "
-            "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
-            "part of a second, a reference that loses its place, or one of another drive look so."
-        )
-    if (move := told.manoeuvre) is not None:
-        lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
-    return lines
-
-
 def _things(diagnosis: Diagnosis) -> list[str]:
     """Names of what was found; effects of one wrong wheel are combined."""
     side = one_wheel(diagnosis)
@@ -291,25 +245,10 @@ def _things(diagnosis: Diagnosis) -> list[str]:
     return [words for name in diagnosis.found if (words := told.get(name, name))]
 
 
-def _set_up(diagnosis: Diagnosis) -> list[str]:
-    """Set-up mistakes, which come first because all else depends on them; then skid steering."""
-    findings = diagnosis.set_up.findings
-    wrong = diagnosis.set_up.wrong
-    lines = ["Something is set up wrongly:"] if wrong else []
-    for finding in wrong:
-        words = phrases.set_up_words(diagnosis, finding)
-        lines.append(f"- {capital(words)}: {finding.effect}.")
-    skids = [finding for finding in findings if finding not in wrong]
-    return [
-        *lines,
-        *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
-    ]
-
-
-def _remainder(told: Told) -> list[str]:
+def _remainder(advised: AdvisedDiagnosis) -> list[str]:
     """What speaks against the model with everything found put in."""
-    bounds = remarks.at_bounds_told(told.diagnosis)
-    return [*remarks.law(told), *remarks.scatter(told), *bounds]
+    bounds = remarks.at_bounds_told(advised.diagnosis)
+    return [*remarks.law(advised), *remarks.scatter(advised), *bounds]
 
 
 def _count(number: int) -> str:

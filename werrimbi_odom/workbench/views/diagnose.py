@@ -11,7 +11,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
@@ -44,7 +44,7 @@ def diagnose_view(tab: Tab) -> None:
         return
     with box("div", "columns"):
         with box("div", "left"):
-            _verdict(found.told)
+            _verdict(found.advised)
             _add_all(tab, found.diagnosis)
             _ranking(tab, found.diagnosis)
             _response(tab, found)
@@ -85,7 +85,7 @@ def _ask(tab: Tab) -> None:
                 why(tab, tab.why)
 
 
-def _verdict(found: Told) -> None:
+def _verdict(found: AdvisedDiagnosis) -> None:
     parts = words_of(found, STEPS)
     with box("div", "verdict"):
         text("p", parts[0].text, "headline", data_key="verdict")
@@ -173,7 +173,7 @@ def _response(tab: Tab, found: Diagnosed) -> None:
 
 def _following(tab: Tab, found: Diagnosed) -> None:
     """The manoeuvre to drive next."""
-    manoeuvre = found.told.manoeuvre
+    manoeuvre = found.advised.manoeuvre
     if manoeuvre is None:
         return
     text("h3", "What to do next")

@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verdict *unknown* in words: no effect of the library, or no reference of this drive."""
+
+from __future__ import annotations
+
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
+from werrimbi_odom.report.diagnosis import phrases, remarks
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.number_format import chance_words
+
+
+def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
+    """What nothing explains: what is known of it, and what to do next; `draft` is a command."""
+    diagnosis = advised.diagnosis
+    if diagnosis.of_another_drive and mounted_anew(advised):
+        return [
+            "No mount of the reference fits all of these drives, so together they tell nothing: "
+            "where an axis of its own begins anew with each recording (an IMU's heading beside "
+            "the positions of another sensor), diagnose each drive by itself.",
+            "Next: ask again with fewer drives, as above.",
+        ]
+    if diagnosis.of_another_drive:
+        if any(remark.what == "no_turn" for remark in diagnosis.remarks):
+            return [
+                "Nothing can be told of the robot from these drives.",
+                "Next: turn the robot by hand once about, from a line on the floor back onto it: "
+                "the reference's heading must turn by 360° with it.",
+            ]
+        unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
+        mend = " Give the reference of the same drive." if unrelated else ""
+        return [
+            "Nothing can be told of the robot from these drives.",
+            "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
+            f"--report draws both paths.{mend}",
+        ]
+    lines = phrases.set_up_lines(diagnosis)
+    cells = significant(diagnosis)
+    lines += phrases.by_sizes_alone(advised)
+    lines.append("Something is missing that no effect of the library explains.")
+    if cells:
+        lines.append(
+            f"What is known of it: {dependence_words(cells[0])} ({chance_words(cells[0].p_value)})."
+        )
+        others = [cell for cell in cells[1:] if cell.variable.name != cells[0].variable.name]
+        if others:
+            lines.append(
+                f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
+                "the one may go with the other because of how it was driven."
+            )
+    lines += remarks.floor_not_asked(diagnosis)
+    lines += remarks.nearest(diagnosis, bool(cells))
+    lines += remarks.at_bounds_told(diagnosis)
+    if cells:
+        lines.append("Next: write it as an effect of your own, from what these drives show:")
+        lines.append(f"    {draft}")
+    else:
+        lines.append(
+            "It goes with nothing that was looked at, so there is no law to write. Next: see where "
+            "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
+            "part of a second, a reference that loses its place, or one of another drive look so."
+        )
+    if (move := advised.manoeuvre) is not None:
+        lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
+    return lines
+
+
+def mounted_anew(advised: AdvisedDiagnosis) -> bool:
+    """Whether places differ, and turns do not, because the reference was mounted otherwise."""
+    places = any(remark.what == "places" for remark in advised.diagnosis.remarks)
+    return places and any(change.group == "mount" for change in advised.changes)
