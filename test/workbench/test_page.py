@@ -8,6 +8,7 @@ import http.client
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -18,6 +19,9 @@ from test.command_line import WERRIMBI, ran
 from test.workbench.conftest import PATIENCE, Looked, Served
 from test.workbench.session import HIDDEN, RATIO, ROBOT
 from werrimbi_odom.files.robot_file import read_robot_file
+
+GIVEN_UP = 10.0
+"""From when on a tab that was closed is taken for closed (`workbench.server`) [s]."""
 
 
 def files(folder: Path) -> set[str]:
@@ -175,6 +179,17 @@ def test_no_figure_offers_to_be_uploaded(looked: Looked) -> None:
     )
     assert "Zoom" in buttons
     assert not [title for title in buttons if re.search("share|upload|cloud|edit", title, re.I)]
+
+
+@pytest.mark.evidence
+def test_work_of_a_tab_that_is_closed_ends_in_silence(served: Served, browser: Any) -> None:
+    """The server's own complaints are looked at once it has ended."""
+    left = Looked(browser, served.address)
+    press(left, "go-diagnose", "clicks")
+    press(left, "diagnose", "clicks")
+    left.at("cancel").wait_for()
+    left.close()
+    time.sleep(GIVEN_UP + 4.0)
 
 
 def test_a_page_of_another_server_here_cannot_hold_it_in_a_frame(

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO, TypeVar
@@ -20,9 +20,10 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.counter_columns import wraps_words
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks, by_hand
 from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
 from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -87,12 +88,23 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     start = _usable(recorded, lambda: start_of(recorded, complete))
     driven = _reckoned(recorded, complete, start.pose)
     seen = shown(driven, view_of(complete.robot.effects))
-    found = reckoning_of(recorded, start, driven, seen, learnt)
+    remarks = (*learnt, *_by_hand_words(looked_at(recorded, robot.robot, robot.limits)))
+    found = reckoning_of(recorded, start, driven, seen, remarks)
     return Reckoned(
         found=found,
         document=lambda: document_of(found, robot.path),
         figures_of_json=lambda: json_of(found),
     )
+
+
+def _by_hand_words(run: Run) -> Iterator[str]:
+    """Remarks on stretches in which the wheels do not say how the robot moved."""
+    began = float(run.ticks.time[0])
+    for part in by_hand(run):
+        yield (
+            f"from {part.begin - began:.1f} s to {part.end - began:.1f} s {part.words}; the error "
+            "at the end is of that, too"
+        )
 
 
 def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
