@@ -18,6 +18,8 @@ from werrimbi_odom.model.robot import Robot
 TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
 """Counts of one microradian, for wheel angles from an unknown encoder: no quantisation."""
+WHOLE_COUNTS = 50
+"""Different whole numbers, and nothing else, that no angle in radians runs through by chance."""
 
 PARAMETERS: tuple[NodeParameter, ...] = (
     NodeParameter(
