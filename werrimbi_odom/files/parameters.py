@@ -205,6 +205,19 @@ def find(name: str) -> NodeParameter:
     raise InputError(f"unknown parameter {name}{near or ' (docs/node.md lists all)'}")
 
 
+_LARGEST = {"wheel_separation": 20.0, "wheel_radius": 2.5}
+"""Sizes beyond those of the largest vehicles there are [m]: haul trucks, container carriers."""
+
+
+def doubtful_sizes(values: Mapping[str, Value]) -> list[str]:
+    """Remarks on sizes that are hardly metres."""
+    return [
+        f"{name} is {values[name]:g} m: is it in millimetres?"
+        for name, most in _LARGEST.items()
+        if float(values[name]) > most  # type: ignore[arg-type]
+    ]
+
+
 def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = ()) -> Robot:
     """Robot described by a complete set of checked values, and its effects."""
     numbers = {item.name: values[item.name] for item in fields(Robot) if item.name in values}
