@@ -47,6 +47,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from werrimbi_odom.api.arrays import write_run
     from werrimbi_odom.api.calibrate import calibrate_fit, calibrate_noise
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
     from werrimbi_odom.api.draft import draft
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
 _WHERE = {
     "read_robot": "api.drives",
     "read_run": "api.drives",
+    "write_run": "api.arrays",
     "odom": "api.odom",
     "odometry": "api.odom",
     "compare": "api.verbs",
@@ -109,6 +111,7 @@ __all__ = [
     "read_run",
     "reference_effect",
     "wheel_effect",
+    "write_run",
 ]
 
 

@@ -42,7 +42,7 @@ def test_the_blocks_run(
         Path("drives", name).parent.mkdir(parents=True, exist_ok=True)
         Path("drives", name).symlink_to(day / name)
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    assert len(blocks) == 3
+    assert len(blocks) == 4
     names: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, str(PAGE), "exec"), names)

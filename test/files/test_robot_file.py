@@ -91,6 +91,15 @@ def test_what_every_node_understands_is_let_through(tmp_path: Path) -> None:
     assert len(read_robot_file(path).given) == 4
 
 
+def test_sizes_in_millimetres_are_doubted(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text(COMMENTED.replace("0.35  ", "350.0").replace("5e-2", "50.0"))
+    assert read_robot_file(path).remarks == (
+        "wheel_separation is 350 m: is it in millimetres?",
+        "wheel_radius is 50 m: is it in millimetres?",
+    )
+
+
 def test_line_ends_of_windows_and_a_byte_order_mark(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_bytes(b"\xef\xbb\xbf" + BARE.replace("\n", "\r\n").encode())

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -29,7 +30,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.remarks import without_events
-from werrimbi_odom.report.events import events_json, events_words
+from werrimbi_odom.report.events import event_words, events_json, events_words
 from werrimbi_odom.simulation import TrueRobot, free, out_and_back, record, write_run
 from werrimbi_odom.simulation.hidden.knocks import Knock
 from werrimbi_odom.simulation.robot_file import write_robot_file
@@ -118,7 +119,9 @@ def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> N
     assert found.verdict == _diagnosed(sound).verdict == "none"
     [told] = events_json(found.happened, robot.track)
     assert (told["run"], told["unit"], told["left_out"]) == (str(runs[0].path), "m", True)
-    assert "to the left" in told["words"]
+    assert re.search(r"pushed [\d.]+ ± [\d.]+ mm to the left", told["words"])
+    turned = replace(event, channel="heading", unit="rad", size=0.0087, std=0.001)
+    assert event_words(turned, robot.track) == "it was turned by 0.498 ± 0.057° to the left"
     said = " ".join(events_words(replace(found.happened, kind="local_map"), robot.track))
     assert "the robot or the reference jumped by" in said
     assert "A localiser that corrects itself" in said
@@ -216,7 +219,8 @@ def test_events_of_the_engine_are_found_and_no_verdict_is_made_of_them(tmp_path:
         assert event.time == pytest.approx(truth.t_s, abs=0.2)
         assert event.sizes[2] == pytest.approx(truth.turn_rad, abs=4.0 * event.stds[2])
     assert found.verdict == "none"
-    assert "wheel slipped by" in " ".join(events_words(found.happened, robot.track))
+    said = " ".join(events_words(found.happened, robot.track))
+    assert re.search(r"wheel slipped by [\d.]+ ± [\d.]+ mm", said)
 
 
 def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(sound: Drives) -> None:

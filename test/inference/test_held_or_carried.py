@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import werrimbi_odom as wo
+from test.cli.commands import ROBOT_FILE
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_by, run_of
 from test.inference.test_gaps import parts
 from test.model.drives import ROBOT
@@ -205,6 +207,20 @@ def test_nothing_of_a_carry_is_left_in_the_next_leg(seed: int) -> None:
     ]
     assert left[0] < 2e-3
     assert 1.0 - left[1] < 2e-3, "of 1.1 m: two millimetres"
+
+
+def test_an_end_error_is_not_that_of_a_hand(tmp_path: Path) -> None:
+    run = carried(run_of(ROBOT, 1), 30.0, 5.0)
+    found = compare([run, run_of(ROBOT, 2)], ROBOT).runs
+    assert np.isnan([found[0].end_error_m, found[0].end_error_rad, found[0].rmse_path_m]).all()
+    assert np.isfinite([found[1].end_error_m, found[1].end_error_rad]).all()
+    ticks, seen = run.ticks, run.reference
+    assert seen is not None
+    poses = np.stack([seen.time, seen.x, seen.y, seen.yaw], axis=1)
+    wo.write_run(tmp_path / "run", ticks.time, ticks.left, ticks.right, poses)
+    (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
+    told = wo.odom(wo.read_robot(tmp_path / "robot.yaml"), tmp_path / "run").to_dict()["notes"]
+    assert any("the robot moved and its wheels did not" in note for note in told)
 
 
 def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:

@@ -93,18 +93,43 @@ def test_messages_of_another_driver_on_the_topic_are_not_for_us(node: Any) -> No
     assert len(node.odometry) == published + 3
 
 
-def test_nothing_but_other_joints_is_no_input(
+def test_wheels_by_other_names_are_told_by_name(
     launch: Callable[..., Any], robot: dict[str, Any]
 ) -> None:
-    """As where the wheels' names are wrong in the robot file."""
     node = launch(robot | {"left_wheel_names": ["left"], "right_wheel_names": ["right"]})
     while len(node.diagnostics) < 2:
         node.step(0, 0)
         node.rest(0.1)
     status = node.diagnostics[-1]
-    assert status.level == DiagnosticStatus.STALE
-    assert status.message.startswith("no input: /joint_states never heard; ")
-    assert status.message.endswith(" messages of other joints came")
+    assert status.level == DiagnosticStatus.ERROR
+    assert status.message == (
+        "no odometry: /joint_states has left_wheel_joint, right_wheel_joint, and none of the "
+        "joints in left_wheel_names and right_wheel_names"
+    )
+
+
+@pytest.mark.parametrize(
+    ("unit", "step", "told"),
+    [
+        ("radians", 7.0, "whole numbers, and rather counts than radians: position_unit: ticks"),
+        ("ticks", 0.13, "no whole numbers, and rather radians than counts: position_unit: radians"),
+        ("radians", 0.13, ""),
+        ("ticks", 7.0, ""),
+    ],
+)
+def test_positions_in_another_unit_than_stated_are_suspected(
+    launch: Callable[..., Any], robot: dict[str, Any], unit: str, step: float, told: str
+) -> None:
+    node = launch(robot | {"position_unit": unit}).begin()
+    for row in range(60):
+        node.ticks(step * row, step * row)
+    seen = len(node.diagnostics)
+    while len(node.diagnostics) < seen + 2:
+        node.step(step, step)
+        node.rest(0.1)
+    message = node.diagnostics[-1].message
+    assert told in message
+    assert told or "positions" not in message
 
 
 def test_time_goes_back(node: Any) -> None:

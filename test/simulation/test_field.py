@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
+import werrimbi_odom as wo
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.simulation.bag import EPOCH
@@ -114,6 +115,24 @@ def test_the_bag_holds_what_was_seen(tmp_path: Path) -> None:
     parts = [message.transforms[0] for message in found["/tf"]]  # type: ignore[attr-defined]
     frames = {(part.header.frame_id, part.child_frame_id) for part in parts}
     assert frames == {("map", "odom"), ("odom", "base_link")}
+
+
+def test_the_positions_of_the_localiser_are_proposed_with_the_headings_of_the_gyro(
+    tmp_path: Path,
+) -> None:
+    """By the localiser alone a castor of usual size is nothing that these drives could show."""
+    folder = sim.write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    found = wo.info(folder, out=tmp_path / "robot.yaml")
+    words = " ".join(found.summary().split())
+    assert "(map -> odom comes from a sensor or a localiser). Its positions are taken." in words
+    assert "Its headings are taken: they wander less." in words
+    assert "Stamps of /imu: " in words
+    both = "--ticks-topic /joint_states --reference-topic /tf:map:base_link --reference-topic /imu"
+    assert both in found.to_dict()["next"]
+    taken = [each["topic"] for each in found.to_dict()["runs"][0]["references"] if each["taken"]]
+    assert taken == ["/tf:map:base_link", "/imu"]
+    alone = wo.info(folder, reference_topic="/tf:map:base_link").summary()
+    assert "It is taken." in " ".join(alone.split())
 
 
 def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:

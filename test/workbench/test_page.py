@@ -6,7 +6,9 @@ from __future__ import annotations
 
 import http.client
 import re
+import time
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -15,6 +17,9 @@ from test.command_line import WERRIMBI, ran
 from test.workbench.conftest import PATIENCE, Looked, Served
 from test.workbench.session import HIDDEN, RATIO, ROBOT
 from werrimbi_odom.files.robot_file import read_robot_file
+
+GIVEN_UP = 10.0
+"""From when on a tab that was closed is taken for closed (`workbench.server`) [s]."""
 
 
 def files(folder: Path) -> set[str]:
@@ -172,6 +177,17 @@ def test_no_figure_offers_to_be_uploaded(looked: Looked) -> None:
     )
     assert "Zoom" in buttons
     assert not [title for title in buttons if re.search("share|upload|cloud|edit", title, re.I)]
+
+
+@pytest.mark.evidence
+def test_work_of_a_tab_that_is_closed_ends_in_silence(served: Served, browser: Any) -> None:
+    """The server's own complaints are looked at once it has ended."""
+    left = Looked(browser, served.address)
+    press(left, "go-diagnose", "clicks")
+    press(left, "diagnose", "clicks")
+    left.at("cancel").wait_for()
+    left.close()
+    time.sleep(GIVEN_UP + 4.0)
 
 
 def test_another_name_or_another_site_is_refused(served: Served) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import UnionType
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from werrimbi_odom.errors import InputError
@@ -116,8 +117,7 @@ def recordings_of(
     robot: RobotFile, runs: Drives, holdout: Drives = (), **options: Unpack[Options]
 ) -> Recordings:
     """Read and check all inputs of a verb, as the command line does."""
-    if not isinstance(robot, RobotFile):
-        raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
+    require_robot(robot, RobotFile)
     how = how_of(**options)
     fitted, held = _several(runs), _several(holdout)
     if not fitted:
@@ -126,6 +126,18 @@ def recordings_of(
     for words in refuse_circles(found):
         warnings.warn(words, stacklevel=3)
     return found
+
+
+def require_robot(robot: object, kind: type | UnionType) -> None:
+    """Check that what should be a robot is one.
+
+    Raises
+    ------
+    TypeError
+        If it is not.
+    """
+    if not isinstance(robot, kind):
+        raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
 
 
 def how_of(**options: Unpack[Options]) -> DriveOptions:
@@ -166,5 +178,11 @@ def refuse_circles(given: Recordings) -> list[str]:
 
 
 def _several(runs: Drives) -> list[Run | Path]:
-    given = [runs] if isinstance(runs, Run | str | Path) else runs
+    given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
+    for each in given:
+        if not isinstance(each, Run | str | Path):
+            raise TypeError(
+                f"drives are runs from read_run, or paths, and not {type(each).__name__}; "
+                "write_run makes a folder of arrays"
+            )
     return [each if isinstance(each, Run) else Path(each) for each in given]

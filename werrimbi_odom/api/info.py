@@ -18,11 +18,13 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of, preference
 from werrimbi_odom.files.bag_joints import wheel_names
+from werrimbi_odom.files.bag_reference import LOCALISED
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_poses
 from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
@@ -127,11 +129,29 @@ def _held(
         if source is None:
             first = _with_ticks(path, held.wheels, first)
         file, topic = source or robot_file_of(first), held.wheels.name
-        run = read_run(path, file, ticks_topic=topic, reference_topic=reference)
+        run = _with_gyro(path, held, file)
+        if run is None:
+            held = replace(held, beside=None)
+            run = read_run(path, file, ticks_topic=topic, reference_topic=reference)
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first
     return _judged(replace(held, run=run), source, first), first
+
+
+def _with_gyro(path: Path, held: Held, file: RobotFile) -> Run | None:
+    """The run with a localiser's positions and a gyro's headings; None if that is not to be had.
+
+    A localiser's headings wander by more than most effects turn a robot in a metre. A gyro's do
+    not, and the localiser frees them of their drift.
+    """
+    if held.beside is None or held.wheels is None:
+        return None
+    try:
+        run = read_run(path, file, ticks_topic=held.wheels.name, reference_topic=tuple(held.topics))
+    except InputError:
+        return None
+    return run if run.reference is not None and run.reference.kind == "local_map" else None
 
 
 def _at_fault(
@@ -175,10 +195,12 @@ def _of_bag(
         others = of_another_robot(contents, wheels)
         ours = [each for each in contents.references if each.name not in others]
         reference = _best(ours, reference_topic)
+        beside = None if reference_topic else _gyro(ours, reference)
         listed = [wheels, *contents.references]
         topics = {name for each in listed if each for name in _topics(each)}
         stamps = stamps_of(opened, sorted(topics))
-    return Held(path, contents, wheels, reference, stamps, None, "", joints), first
+    held = Held(path, contents, wheels, reference, stamps, None, "", joints, beside=beside)
+    return held, first
 
 
 def _topics(each: Wheels | Measured) -> list[str]:
@@ -192,6 +214,15 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
     usable = [each for each in references if each.independent and each.messages >= rules.FEW_POSES]
     usable = usable or [each for each in references if each.independent]
     return min(usable, key=preference, default=None)
+
+
+def _gyro(references: Sequence[Measured], reference: Measured | None) -> Measured | None:
+    """A gyro that may give the headings beside the poses of a localiser."""
+    if reference is None or reference.measures != "poses":
+        return None
+    if reference.chain is None and reference.kind != LOCALISED:  # motion capture, scans
+        return None
+    return _best([each for each in references if each.measures == "yaw"], None)
 
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:

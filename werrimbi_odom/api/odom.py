@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO, TypeVar
@@ -12,13 +14,16 @@ from typing import Any, NamedTuple, TextIO, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from werrimbi_odom.api.drives import read_run
+from werrimbi_odom.api.arrays import ticks_of
+from werrimbi_odom.api.drives import read_run, require_robot
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.counter_columns import wraps_words
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import Run, Ticks, by_hand
 from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
 from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.inference.legs.held_or_carried import looked_at
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -29,7 +34,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 from werrimbi_odom.progress import Show, silent
 from werrimbi_odom.report.dead_reckoning_summary import Reckoning, reckoning_of
-from werrimbi_odom.report.odom import document_of, json_of
+from werrimbi_odom.report.odom import document_of, json_of, rows_told
 
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
 _BLOCK = 32768  # rows formatted at once
@@ -83,12 +88,23 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     start = _usable(recorded, lambda: start_of(recorded, complete))
     driven = _reckoned(recorded, complete, start.pose)
     seen = shown(driven, view_of(complete.robot.effects))
-    found = reckoning_of(recorded, start, driven, seen, learnt)
+    remarks = (*learnt, *_by_hand_words(looked_at(recorded, robot.robot, robot.limits)))
+    found = reckoning_of(recorded, start, driven, seen, remarks)
     return Reckoned(
         found=found,
         document=lambda: document_of(found, robot.path),
         figures_of_json=lambda: json_of(found),
     )
+
+
+def _by_hand_words(run: Run) -> Iterator[str]:
+    """Remarks on stretches in which the wheels do not say how the robot moved."""
+    began = float(run.ticks.time[0])
+    for part in by_hand(run):
+        yield (
+            f"from {part.begin - began:.1f} s to {part.end - began:.1f} s {part.words}; the error "
+            "at the end is of that, too"
+        )
 
 
 def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
@@ -132,6 +148,12 @@ def _half_open(yaw: Floats) -> Floats:
     return np.minimum(np.where(wrapped <= -np.pi, wrapped + 2.0 * np.pi, wrapped), np.pi)
 
 
+_FAULTS = (
+    *("duplicates", "out_of_order", "not_finite", "implausible", "clock_jumps", "resets", "jumps"),
+)
+"""Counts of `EncoderTally` that are worth a warning, however few."""
+
+
 class Odometry(NamedTuple):
     """Pose and covariance for each row of ticks, in the frame of the start."""
 
@@ -143,6 +165,20 @@ class Odometry(NamedTuple):
     """Unwrapped [rad], shape (n,)."""
     covariance: Floats
     """Covariance of (x, y, yaw) [m², m·rad, rad²], shape (n, 3, 3)."""
+
+    def __repr__(self) -> str:
+        x, y, yaw, covariance = (values[-1] for values in self)
+        around = ", ".join(
+            f"{name} {value:.6g} ± {math.sqrt(max(variance, 0.0)):.2g} {unit}"
+            for name, value, variance, unit in zip(
+                ("x", "y", "yaw"),
+                (x, y, yaw),
+                np.diagonal(covariance),
+                ("m", "m", "rad"),
+                strict=True,
+            )
+        )
+        return f"<Odometry of {self.x.size} rows, to {around}>"
 
 
 def odometry(
@@ -174,31 +210,52 @@ def odometry(
     Odometry
         One row per row of ticks; an unusable row repeats the latest estimate.
 
+    Warns
+    -----
+    UserWarning
+        If rows were not usable, or counters were reset, wrap, or have gaps nearly everywhere.
+
     Raises
     ------
-    ValueError
-        If the arrays differ in length, or no row is usable.
+    InputError
+        If the arrays differ in length or hold no numbers, or no row after the first is usable.
     """
-    time, of_left, of_right = (np.atleast_1d(np.asarray(part)) for part in (t, left, right))
-    if not time.shape == of_left.shape == of_right.shape or time.ndim != 1:
-        raise ValueError(
-            f"t, left and right must be as long as each other, and are {time.shape}, "
-            f"{of_left.shape} and {of_right.shape}"
-        )
+    require_robot(robot, RobotFile | Robot)
     if isinstance(robot, RobotFile):
         plain, tolerance, limits = robot.robot, robot.tolerance, robot.limits
     else:
         plain, tolerance, limits = robot, PieceTolerance(), EncoderLimits()
-    driven = trajectory(
-        plain,
-        time.astype(np.float64),
-        of_left,
-        of_right,
-        start=Pose(*start),
-        tolerance=tolerance,
-        limits=limits,
-        channels={name: np.asarray(values) for name, values in (channels or {}).items()},
-    )
-    rows = driven.expanded(time.size)
+    ticks = ticks_of(t, left, right, channels)
+    try:
+        driven = trajectory(
+            plain,
+            ticks.time,
+            ticks.left,
+            ticks.right,
+            start=Pose(*start),
+            tolerance=tolerance,
+            limits=limits,
+            channels=ticks.channels,
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    _remark(ticks, plain, driven)
+    rows = driven.expanded(ticks.rows)
     covariance = driven.covariance.matrix()[rows]
     return Odometry(driven.x[rows], driven.y[rows], driven.yaw[rows], covariance)
+
+
+def _remark(ticks: Ticks, robot: Robot, driven: Trajectory) -> None:
+    """Warn about rows that were not usable, and columns that do not look like ticks."""
+    tally = driven.tally.as_dict()
+    told = f"rows of ticks: {rows_told(tally)}"
+    if ticks.rows > 1 and driven.row.size == 1:
+        raise InputError(f"no row after the first can be used; {told}")
+    words = "" if robot.encoder_bits else wraps_words(ticks)
+    if words:
+        warnings.warn(words, stacklevel=3)
+    if 2 * tally["gaps"] > ticks.rows:
+        told += "; is t in seconds, and in the first place?"
+    elif not any(tally[name] for name in _FAULTS):
+        return
+    warnings.warn(told, stacklevel=3)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of
+from werrimbi_odom.files.parameters import WHOLE_COUNTS
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks, counts_of, integrated
 from werrimbi_odom.model.counter_wraps import differences
@@ -32,8 +33,6 @@ _UNLIKE = 0.25
 """Share of the way of a side's wheels that may be unlike. Steered and driven wheels of one side
 differ by up to an eighth in the tightest turns, skidding ones by less; mecanum wheels on a drive
 that is sideways in part by more than a third."""
-_WHOLE_COUNTS = 50
-"""Different whole numbers, and nothing else, that no angle in radians runs through by chance."""
 UNTURNED = "the angles begin anew at each turn; they are unwrapped"
 
 
@@ -113,7 +112,7 @@ class JointsCollector:
                 f"{self._place}: its positions are no whole numbers, and so no counts; angles are "
                 "read with position_unit: radians"
             )
-        if in_radians and not fractions.any() and np.unique(known).size >= _WHOLE_COUNTS:
+        if in_radians and not fractions.any() and np.unique(known).size >= WHOLE_COUNTS:
             raise InputError(
                 f"{self._place}: its positions are whole numbers, and so counts, no angles; they "
                 "are read with position_unit: ticks and left_ticks_per_revolution in the robot file"

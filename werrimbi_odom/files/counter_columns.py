@@ -53,7 +53,7 @@ def what_counters_hold(ticks: Ticks, reference: Reference, bits: int) -> str:
     """
     windows = _windows(ticks, reference)
     words = "" if windows is None else _no_totals(windows) or _no_signs(ticks, windows)
-    return words or ("" if bits else _wraps(ticks))
+    return words or ("" if bits else wraps_words(ticks))
 
 
 class _Windows(NamedTuple):
@@ -140,7 +140,8 @@ def _related(one: Floats, other: Floats, without: int = 0) -> float:
     return abs(float(np.corrcoef(one[known], other[known])[0, 1]))
 
 
-def _wraps(ticks: Ticks) -> str:
+def wraps_words(ticks: Ticks) -> str:
+    """Which counter wraps, and how to say so; "" if none does."""
     periods = {
         name: period
         for name, counts in (("left_ticks", ticks.left), ("right_ticks", ticks.right))

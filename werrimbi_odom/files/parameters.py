@@ -18,6 +18,8 @@ from werrimbi_odom.model.robot import Robot
 TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
 """Counts of one microradian, for wheel angles from an unknown encoder: no quantisation."""
+WHOLE_COUNTS = 50
+"""Different whole numbers, and nothing else, that no angle in radians runs through by chance."""
 
 PARAMETERS: tuple[NodeParameter, ...] = (
     NodeParameter(
@@ -201,6 +203,19 @@ def find(name: str) -> NodeParameter:
             return item
     near = nearest(name, [item.name for item in PARAMETERS])
     raise InputError(f"unknown parameter {name}{near or ' (docs/node.md lists all)'}")
+
+
+_LARGEST = {"wheel_separation": 20.0, "wheel_radius": 2.5}
+"""Sizes beyond those of the largest vehicles there are [m]: haul trucks, container carriers."""
+
+
+def doubtful_sizes(values: Mapping[str, Value]) -> list[str]:
+    """Remarks on sizes that are hardly metres."""
+    return [
+        f"{name} is {values[name]:g} m: is it in millimetres?"
+        for name, most in _LARGEST.items()
+        if float(values[name]) > most  # type: ignore[arg-type]
+    ]
 
 
 def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = ()) -> Robot:

@@ -4,9 +4,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
+from typing import get_args
 
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
@@ -47,6 +50,19 @@ class DriveOptions:
     """References of the runs, then of the held-out ones, in order; empty: contained in the runs."""
     force_reference: bool = False
     """Accept a reference that is computed from the wheels."""
+
+    def __post_init__(self) -> None:
+        """Refuse what the command line refuses; it says so itself, with the option's name there."""
+        kinds = get_args(ReferenceKind)
+        if self.reference_kind is not None and self.reference_kind not in kinds:
+            raise InputError(
+                f"reference_kind must be one of {', '.join(kinds)}, and is {self.reference_kind!r}"
+            )
+        for name in ("leg", "reference_sigma_xy", "reference_sigma_yaw"):
+            value = getattr(self, name)
+            known = value is not None or name == "leg"
+            if known and not (isinstance(value, Real) and 0.0 < float(value) < math.inf):
+                raise InputError(f"{name} must be a number greater than zero, and is {value!r}")
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ from werrimbi_odom.files.parameters import (
     TICKS,
     VIRTUAL_TICKS_PER_REVOLUTION,
     defaults,
+    doubtful_sizes,
     find,
     limits_of,
     needs_no_ticks,
@@ -192,6 +193,7 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
         worst = max(named, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
         raise InputError(f"{path}, line {line_of(block, worst)}: {error}") from None
     found = effects.applied()
+    remarks += doubtful_sizes(values)
     values_of_all = MappingProxyType(values)
     return RobotFile(path, node, values_of_all, tuple(given), text, found, tuple(remarks))
 

@@ -180,6 +180,11 @@ class Run:
     their errors are not evaluated."""
 
 
+def by_hand(run: Run) -> list[NoDriving]:
+    """Stretches in which the robot was held or carried."""
+    return [part for part in run.no_driving or () if part.why in ("held", "carried")]
+
+
 class Collected(NamedTuple):
     """A reference from the messages of one topic."""
 

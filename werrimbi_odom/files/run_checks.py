@@ -20,6 +20,8 @@ from werrimbi_odom.model.robot import Robot
 
 FEW_STEPS_BACK = 3
 """More steps back in time than this are unsorted rows and not a clock set back."""
+REVERSED = 0.9
+"""Share of steps back in time from which rows are taken for reversed; shuffled ones have half."""
 APART = 5.0
 """Largest time between reference and ticks that a search for the delay covers [s]
 (docs/set_up.md)."""
@@ -31,11 +33,13 @@ def refuse_unjudgeable(run: Run, robot: Robot) -> None:
     Raises
     ------
     InputError
-        If there is no reference, it lies entirely before or after the ticks, the ticks go back in
+        If there is no reference, it lies entirely before or after the ticks, either goes back in
         time, or a column holds something else than its name says.
     """
     if run.reference is None:
         raise InputError(f"{run.path}: there is no reference to compare with {run.no_reference}")
+    _refuse_reversed(run, "the ticks go", run.ticks.time)
+    _refuse_reversed(run, "the reference goes", run.reference.time)
     _refuse_back(run)
     _refuse_apart(run, run.reference)
     refuse_wrong_columns(run, robot)
@@ -54,6 +58,16 @@ def words_about(runs: Sequence[Run]) -> list[str]:
             )
     held = words_about_held(runs)
     return found if held is None else [*found, held]
+
+
+def _refuse_reversed(run: Run, what: str, time: Floats) -> None:
+    steps = np.diff(time)
+    back = int((steps < 0.0).sum())
+    if back and back >= REVERSED * np.count_nonzero(steps):
+        raise InputError(
+            f"{run.path}: {what} back in time in {back} of {time.size} rows: the last row comes "
+            "first; sort the rows by t_s"
+        )
 
 
 def _refuse_back(run: Run) -> None:

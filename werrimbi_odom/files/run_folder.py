@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs recorded as a folder with ticks.csv and, optionally, reference.csv."""
+"""Runs as a folder with ticks.csv and, optionally, reference.csv: read and written."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,34 @@ def read_run_folder(path: str | Path) -> Run:
         damage=damage,
         no_reference=f"({REFERENCE}: {','.join(REFERENCE_COLUMNS)})",
     )
+
+
+def write_run_folder(path: Path, ticks: Ticks, reference: Reference | None) -> Path:
+    """Write a run folder, to be read again without loss; stated sigmas are left out.
+
+    Raises
+    ------
+    InputError
+        If it exists, or cannot be written.
+    """
+    try:
+        path.mkdir(parents=True)
+        counts = (ticks.time, ticks.left, ticks.right, *ticks.channels.values())
+        _write(path / TICKS, (*TICKS_COLUMNS, *ticks.channels), counts)
+        if reference is not None:
+            poses = (reference.time, reference.x, reference.y, reference.yaw)
+            _write(path / REFERENCE, REFERENCE_COLUMNS, poses, missing="")
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; a new folder is wanted") from error
+    return path
+
+
+def _write(
+    path: Path, names: Sequence[str], columns: Sequence[Counts], missing: str = "nan"
+) -> None:
+    rows = zip(*(values.tolist() for values in columns), strict=True)
+    lines = [",".join(missing if each != each else repr(each) for each in row) for row in rows]
+    path.write_text("\n".join([",".join(names), *lines, ""]), encoding="utf-8")
 
 
 def _cut(table: CsvTable) -> tuple[str, ...]:

@@ -51,6 +51,13 @@ class Held:
     """Correction of the scan stamps, rms [s]."""
     gyro_bias: float = 0.0
     """Rate of the headings at rest, which is removed (`legs.gyro_bias`) [rad/s]."""
+    beside: Measured | None = None
+    """Gyro whose headings are taken with the positions of `reference`, a localiser."""
+
+    @property
+    def topics(self) -> list[str]:
+        """Topics of the references that are taken."""
+        return [each.name for each in (self.reference, self.beside) if each is not None]
 
     @property
     def judged(self) -> DrivenAmount | None:

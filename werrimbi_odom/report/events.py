@@ -62,22 +62,22 @@ def event_words(event: Event, track: float, *, either: bool) -> str:
     either : bool
         Whether steps of the robot and of the reference are indistinguishable.
     """
-    size, unit = _size(event)
+    size = _size(event)
     if event.channel == "reference":
         how = "and stayed there" if event.stays else "and was right again at the next pose"
-        return f"the reference jumped by {size} {unit} {how}"
+        return f"the reference jumped by {size} {how}"
     if either:
         how = {"heading": "in heading"}.get(event.channel, event.channel)
-        return f"the robot or the reference jumped by {size} {unit} {how}"
+        return f"the robot or the reference jumped by {size} {how}"
     slipped = _slipped(event, track)
     if slipped is not None:
         return slipped
     if event.channel == "heading":
-        return f"it was turned by {size} {unit} to the {'left' if event.size > 0.0 else 'right'}"
+        return f"it was turned by {size} to the {'left' if event.size > 0.0 else 'right'}"
     if event.channel == "sideways":
-        return f"it was pushed {size} {unit} to the {'left' if event.size > 0.0 else 'right'}"
+        return f"it was pushed {size} to the {'left' if event.size > 0.0 else 'right'}"
     way = "ahead of" if event.size > 0.0 else "behind"
-    return f"it was thrown {size} {unit} {way} where its wheels were (a bump, a slip)"
+    return f"it was thrown {size} {way} where its wheels were (a bump, a slip)"
 
 
 def alike_words(common: Alike) -> str:
@@ -151,10 +151,10 @@ def when(event: Event) -> str:
     return f"{from_start(event.started, event.time)[0]:.1f} s"
 
 
-def _size(event: Event) -> tuple[str, str]:
+def _size(event: Event) -> str:
     if event.unit == "rad":
-        return with_std(math.degrees(abs(event.size)), math.degrees(event.std)), "°"
-    return in_unit(abs(event.size), event.std, event.unit)
+        return f"{with_std(math.degrees(abs(event.size)), math.degrees(event.std))}°"
+    return " ".join(in_unit(abs(event.size), event.std, event.unit))
 
 
 def _slipped(event: Event, track: float) -> str | None:
@@ -169,8 +169,8 @@ def _slipped(event: Event, track: float) -> str | None:
         return None
     # If a wheel loses travel, the robot lags behind its path and turns to the side of that wheel.
     side = "left" if (turn > 0.0) == (along < 0.0) else "right"
-    size, unit = in_unit(2.0 * abs(along), 2.0 * s_along, "m")
-    return f"its {side} wheel slipped by {size} {unit}"
+    size = " ".join(in_unit(2.0 * abs(along), 2.0 * s_along, "m"))
+    return f"its {side} wheel slipped by {size}"
 
 
 _SURELY = 3.0

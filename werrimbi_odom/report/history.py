@@ -71,6 +71,8 @@ def history_figure(history: History) -> Figure:
         _panel(figure, row, number, history, dates, names)
     figure = style.plain(figure, height=120 + _HEIGHT * len(numbers))
     figure.update_xaxes(showticklabels=True)
+    if _in_order(history):
+        figure.update_xaxes(title_text="drive, in the order given", row=len(numbers))
     return figure.update_layout(legend={"y": 1.0 + 40.0 / figure.layout.height})
 
 
@@ -137,8 +139,13 @@ def _unit(number: Number) -> str:
     return f" [{unit}]" if unit else ""
 
 
+def _in_order(history: History) -> bool:
+    """Whether drives have no dates."""
+    return any(drive.date_from == "order" for drive in history.drives)
+
+
 def _dates(history: History) -> list[Any]:
-    if any(drive.date_from == "order" for drive in history.drives):
+    if _in_order(history):
         return list(range(1, len(history.drives) + 1))
     return [
         datetime.fromtimestamp(drive.date, timezone.utc).strftime("%Y-%m-%d %H:%M:%S")

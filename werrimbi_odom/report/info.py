@@ -54,7 +54,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "wheel_joints": picked(held.joints, "left right no_wheels:others"),
         "references": [
             picked(each, "topic:name type:kind measures independent why messages")
-            | {"taken": each == held.reference}
+            | {"taken": each.name in held.topics}
             for each in contents.references
         ]
         if contents is not None
@@ -143,5 +143,7 @@ def command_of(found: Info) -> str:
         words += ["--leg", f"{found.leg:g}"]
     held = usable[0]
     if held.contents is not None and held.wheels is not None and held.reference is not None:
-        words += ["--ticks-topic", held.wheels.name, "--reference-topic", held.reference.name]
+        topics = held.topics if all(each.beside for each in usable) else held.topics[:1]
+        words += ["--ticks-topic", held.wheels.name]
+        words += [word for topic in topics for word in ("--reference-topic", topic)]
     return shlex.join([*words, *paths])

@@ -87,6 +87,10 @@ def _references(held: Held) -> Iterator[str]:
     assert held.contents is not None
     for each in held.contents.references:
         taken = " It is taken." if each == held.reference else ""
+        if held.beside is not None and each == held.reference:
+            taken = " Its positions are taken."
+        if held.beside is not None and each == held.beside:
+            taken = " Its headings are taken: they wander less."
         kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
@@ -109,7 +113,7 @@ def _references(held: Held) -> Iterator[str]:
 
 def _stamps(held: Held) -> Iterator[str]:
     for name, stamps in held.stamps.items():
-        chosen = [held.wheels and held.wheels.name, held.reference and held.reference.name]
+        chosen = [held.wheels and held.wheels.name, *held.topics]
         if any(each and name in (*each.split(","), each.partition(":")[0]) for each in chosen):
             yield _clock(name, stamps)
     yield from _apart(held)

@@ -56,7 +56,7 @@ def _rows(found: Reckoning) -> Iterator[tuple[str, str]]:
         f"{1e3 * along:.1f} mm along, {1e3 * across:.1f} mm across, "
         f"{math.degrees(heading):.2f}° in heading",
     )
-    yield "rows of ticks", _rows_told(found.driven.tally.as_dict())
+    yield "rows of ticks", rows_told(found.driven.tally.as_dict())
     end = found.end_error
     if end is not None:
         yield "measured", f"{_told(end.measured)} at {end.time:.3f} s"
@@ -65,7 +65,8 @@ def _rows(found: Reckoning) -> Iterator[tuple[str, str]]:
         yield "note", note
 
 
-def _rows_told(tally: dict[str, int]) -> str:
+def rows_told(tally: dict[str, int]) -> str:
+    """Number of rows, how many were used, and what was wrong with how many."""
     events = {
         "duplicates": "with the stamp of the one before",
         "out_of_order": "late",

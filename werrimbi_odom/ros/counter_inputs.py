@@ -23,7 +23,7 @@ from std_msgs.msg import Int32, Int64, Int64MultiArray
 
 from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.node_parameter import Value
-from werrimbi_odom.files.parameters import robot_of
+from werrimbi_odom.files.parameters import WHOLE_COUNTS, robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.input_health import Health
 from werrimbi_odom.ros.topics import subscribe
@@ -111,6 +111,7 @@ class JointStates:
         self._places: tuple[list[int], list[int]] = ([], [])
         self._ours = False
         self._wrong = ""
+        self._unit = UnitWatch(in_radians=values["position_unit"] == "radians")
         _subscribe(wiring, JointState, "joint_states", self._arrived)
 
     def tally(self) -> dict[str, int]:
@@ -139,6 +140,8 @@ class JointStates:
             )
             return
         of_left, of_right = self._places
+        if not self._unit.settled:
+            self._health.doubts += self._unit.look(positions[of_left[0]])
         left = self._sides[0].count([positions[place] for place in of_left])
         right = self._sides[1].count([positions[place] for place in of_right])
         if not (abs(left) < COUNTER_LIMIT and abs(right) < COUNTER_LIMIT):
@@ -164,9 +167,45 @@ class JointStates:
         # Other joints only: for example from an arm's driver on the same topic.
         self._ours = len(absent) < len(wanted)
         self._wrong = f"{absent[0]} missing" if absent else f"{twice[0]} twice" if twice else ""
+        if not self._ours:
+            self._health.meet(self._names)
         if not absent:
             left, right = ([names.index(name) for name in side] for side in self._wanted)
             self._places = left, right
+
+
+class UnitWatch:
+    """Whether the first positions of a wheel that turns are in the stated unit."""
+
+    def __init__(self, *, in_radians: bool) -> None:
+        self._in_radians = in_radians
+        self._last = math.nan
+        self._whole = self._others = 0
+        self.settled = False
+
+    def look(self, position: float) -> list[str]:
+        """Look at one more position; return what is suspected, once it is."""
+        if position == self._last or not math.isfinite(position):
+            return []
+        self._last = position
+        whole = position == round(position)
+        self._whole += whole
+        self._others += not whole
+        if self._in_radians:
+            self.settled = self._others > 0 or self._whole >= WHOLE_COUNTS
+            if self.settled and not self._others:
+                return [
+                    "the wheels' positions are whole numbers, and rather counts than radians: "
+                    "position_unit: ticks"
+                ]
+            return []
+        self.settled = self._whole + self._others >= WHOLE_COUNTS
+        if self.settled and self._others > self._whole:
+            return [
+                "the wheels' positions are no whole numbers, and rather radians than counts: "
+                "position_unit: radians"
+            ]
+        return []
 
 
 class Pair:

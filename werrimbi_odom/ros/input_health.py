@@ -17,6 +17,9 @@ from werrimbi_odom.ros.diagnostics import diagnostic
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
+_OTHERS = 8
+"""Joints that are named in a message, at most."""
+
 _REFUSALS = ("refused: ", "refused set_pose: ", "not learnt from: ")
 _WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock jumps", "out of order", "gaps")
 _UNUSABLE = {
@@ -50,6 +53,9 @@ class Health:
         self.published = 0
         self.unstamped = 0
         self.foreign = 0
+        self.doubts: list[str] = []
+        """What the input is suspected of, in words; reported until the node ends."""
+        self._others: dict[str, None] = {}
         self._logger = logger
         self._topics = topics
         self._heard = [0] * len(topics)
@@ -63,6 +69,10 @@ class Health:
         self._lost = 0
         self._before: dict[str, int] = {}
         self._reported_at = time.monotonic()
+
+    def meet(self, others: Sequence[str]) -> None:
+        """Remember joints of messages that hold none of ours."""
+        self._others |= dict.fromkeys(others[:_OTHERS])
 
     def hear(self, topic: int, info: Mapping[str, Any], *, ours: bool = True) -> None:
         """Count a message, with its DDS sequence number."""
@@ -127,7 +137,7 @@ class Health:
             "input rate": f"{new['messages'] / elapsed:.1f} Hz",
             "output rate": f"{new['published'] / elapsed:.1f} Hz",
         }
-        level, words = self._verdict(now, new, wrong)
+        level, words = self._verdict(now, new, [*wrong, *self.doubts])
         if new["published"]:
             self._answered = list(self._heard)
         told = rates | counts | dict(effects or {})
@@ -171,6 +181,12 @@ class Health:
         ]
         if len(silent) == len(silences):
             foreign = new["messages of other joints"]
+            if foreign and not any(self._heard):
+                names = ", ".join([*self._others][:_OTHERS])
+                return ERROR, (
+                    f"no odometry: {self._topics[0]} has {names}, and none of the joints in "
+                    "left_wheel_names and right_wheel_names"
+                )
             but = f"; {foreign} messages of other joints came" if foreign else ""
             return STALE, f"no input: {', '.join(silent)}{but}"
         if silent:

@@ -25,6 +25,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import doubtful_sizes
 from werrimbi_odom.ros import counter_inputs, odom_parameters
 from werrimbi_odom.ros.diagnostics import diagnostics_publisher, status_of, tell
 from werrimbi_odom.ros.input_health import Health
@@ -220,6 +221,8 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _say_hello(self) -> None:
         log, values = self.get_logger(), self._settings.values
+        for words in doubtful_sizes(values):
+            log.warning(words)
         for name in odom_parameters.leftover_qos_overrides(self):
             log.warning(f"{name} is not used: there is no such topic or policy")
         if odom_parameters.has_virtual_ticks(values):

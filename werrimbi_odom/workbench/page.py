@@ -92,6 +92,8 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
     main = box("div", "main", data_key="main")
 
     def draw(focus: str | None) -> None:
+        if client.id not in Client.instances:
+            return  # the tab was closed while something was under way
         with client:  # the caller's slot may be deleted: a pressed button is redrawn
             tab.actions.clear()
             for place in (top, bar, main):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import Run, by_hand
 from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.dependence import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs, paths
@@ -85,8 +85,8 @@ class RunFigures:
     """Absolute travel of the axle's midpoint while the robot was neither held nor carried."""
     duration_s: float
     end_error_m: float
-    """Error at the last reference pose, dead reckoning from the first; NaN where the path of a
-    reference with axes of its own is in pieces."""
+    """Error at the last reference pose, dead reckoning from the first; NaN where the robot was held
+    or carried in between, or the path of a reference with axes of its own is in pieces."""
     end_error_rad: float
     """Heading error there, measured minus predicted."""
     rmse_path_m: float
@@ -238,8 +238,9 @@ def _run_figures(
 ) -> RunFigures:
     off = np.abs(path.measured - path.predicted)
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
-    if run.reference is not None and run.reference.own_axes and run.taken_out:
-        off, turned = np.full_like(off, np.nan), turned[:0]  # each piece has axes of its own
+    in_pieces = run.reference is not None and run.reference.own_axes and run.taken_out
+    if in_pieces or by_hand(run):  # each piece has axes of its own; a hand is no dead reckoning
+        off, turned = np.full_like(off, np.nan), turned[:0]
     known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0
     # The counters are unwrapped, and bridged where they leapt.

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.files.run import by_hand
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.dependence import ByVariable
@@ -92,7 +93,8 @@ def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
     """All tables with their headings."""
     length = leg_words(comparison.median_length, comparison.main.leg)
     tables: list[Part] = [_motions(comparison.main, length), _lengths(comparison)]
-    if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
+    first = comparison.runs[0]
+    if len(comparison.runs) > 1 or math.isfinite(first.end_error_m) or by_hand(first.run):
         tables.append(_runs(comparison))
     said = list(dict.fromkeys(item.variable for item in verdict.depends))
     by_name = {item.name: item for item in comparison.variables}

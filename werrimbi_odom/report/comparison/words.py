@@ -259,8 +259,10 @@ def _sizes(measure: Measure, xy: float, yaw: float) -> str:
 
 
 def _next(verdict: Verdict, next_step: str) -> str:
-    if not next_step or not verdict.enough or verdict.good:
+    if not next_step or not verdict.enough:
         return ""
+    if verdict.good:
+        return f"Smaller effects may hide in such errors: {next_step} looks for each by itself."
     if verdict.gross:
         return f"Next: {next_step} looks for the mistake."
     if verdict.mean_is_right and verdict.noise in ("too small", "too large"):

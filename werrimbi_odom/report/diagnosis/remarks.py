@@ -120,8 +120,10 @@ def without_events(advised: AdvisedDiagnosis) -> list[str]:
         return []
     before, after = (error_words(error, quiet.unit) for error in (quiet.before, quiet.after))
     change = f"goes from {before} to {after}" if advised.diagnosis.found else f"is {after}"
+    one = len(advised.diagnosis.happened.events) == 1
     return [
-        "In the errors they count, as in those of `werrimbi compare`. Without their legs the "
+        f"In the errors {'it counts' if one else 'they count'}, as in those of `werrimbi compare`. "
+        f"Without {'its' if one else 'their'} legs the "
         f"{error_kind(quiet)} error on {judged(advised)} {change}."
     ]
 
