@@ -137,19 +137,18 @@ def fit_model(
         point = turned_to_all_sides(laid, point)
     ways: Directions | None = None
     for _ in range(rounds):
-        if laid.data >= rules.NOISE_NUMBERS:
-            variances = map_variances(
-                Costs(laid, point), point.variances, point.options.sigmas_known
-            )
-            point = replace(point, variances=variances)
+        point = _with_fitted_noise(laid, point)
         design = stacked(laid, point, numbers)
         ways = determined(design, point.model.robot, ways.held if ways else ())
         model = with_held_as_given(point.model, given, ways.held, shared_of(numbers))
         point, moved = gauss_newton(laid, replace(point, model=model), numbers, ways)
         if not moved:
             break
-    if ways is None:
+    else:  # it moved to the last: the noise is that of the model before
+        if rounds > 0:
+            point = _with_fitted_noise(laid, point)
         design = stacked(laid, point, numbers)
+    if ways is None:
         ways = determined(design, point.model.robot)
     covariance = ways.covariance(design.flat()[1])
     moves = ways.matrix[:, ways.shared].any(axis=1)
@@ -165,6 +164,14 @@ def fit_model(
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
         float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
+
+
+def _with_fitted_noise(runs: Concatenated, point: Point) -> Point:
+    """The point with the noise that its model leaves, where data are enough to tell it."""
+    if runs.data < rules.NOISE_NUMBERS:
+        return point
+    found = map_variances(Costs(runs, point), point.variances, point.options.sigmas_known)
+    return replace(point, variances=found)
 
 
 def _at_bound(value: float, number: FreeParameter) -> bool:
