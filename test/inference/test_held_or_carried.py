@@ -376,6 +376,18 @@ def test_a_slow_carry_is_found_however_roughly_wheels_follow_their_law() -> None
     assert found == pytest.approx((10.0, 15.0), abs=0.3)
 
 
+@pytest.mark.parametrize("lines", [2.0, 10.0])
+@pytest.mark.parametrize("radius", [0.7, 1.0, 1.4])
+def test_nobody_holds_a_robot_on_the_lines_before_and_after_an_arc(
+    radius: float, lines: float
+) -> None:
+    """In one arc a turn for any way of both wheels fits as well, and more goes into it."""
+    time = np.arange(0.0, 30.0, 0.05)
+    straight = (time < lines) | (time > 29.0 - lines / 3.0)
+    run = run_by(ROBOT, np.full(time.size, 0.25), np.where(straight, 0.0, 0.25 / radius))
+    assert looked_at(run, ROBOT).no_driving == ()
+
+
 def stop_and_go(noise: float) -> Run:
     """Moves of a second with rests of three, below a camera that sees tags at 8 Hz."""
     time = np.arange(0.0, 120.0, 0.05)
