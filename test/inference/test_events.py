@@ -195,6 +195,21 @@ def test_a_reference_that_is_wrong_in_one_pose_jumped_and_came_back(sound: Drive
     assert event.size == pytest.approx(0.05, abs=4.0 * event.std)
 
 
+def test_a_pose_with_a_wrong_heading_is_no_push_of_the_robot_that_drives_on(sound: Drives) -> None:
+    """The robot does not go on along it: what it would have gone aside is no motion of its own."""
+    runs, robot = sound
+
+    def glance(seen: Reference) -> Reference:
+        yaw = seen.yaw.copy()
+        yaw[[250, 450, 650]] += [0.35, -0.4, 0.3]
+        return replace(seen, yaw=yaw)
+
+    found = _diagnosed(([_measured(runs[0], glance), *runs[1:]], robot))
+    assert {event.channel for event in found.happened.events} == {"reference"}
+    assert not any(event.stays for event in found.happened.events)
+    assert found.verdict == "none"
+
+
 def test_what_creeps_in_over_seconds_is_no_event(sound: Drives) -> None:
     """An error as large as that push, which takes four seconds to come."""
 

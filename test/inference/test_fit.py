@@ -97,6 +97,18 @@ def test_a_base_that_was_never_turned_on_is_left_alone() -> None:
     assert fit.robot.wheel_separation_multiplier == 1.02
 
 
+@pytest.mark.parametrize("rounds", [1, 2])
+def test_the_noise_of_a_fit_is_that_of_its_model_however_far_it_came(rounds: int) -> None:
+    """What the model that it began with left was noise of the wheels, ten times theirs."""
+    wrong = replace(NOMINAL, wheel_separation_multiplier=1.2)
+    matched = [match(run, wrong, 0.25) for run in runs_of(seed=11)]
+    fit = fit_model(matched, start_point(matched, wrong), find_jumps=False, rounds=rounds)
+    noises = [
+        float(np.sqrt(part[0])) for part in (fit.point.variances.left, fit.point.variances.right)
+    ]
+    assert noises == pytest.approx([TRUE.left_noise, TRUE.right_noise], rel=0.4)
+
+
 def test_jumps_of_the_tracker_are_found_and_left_out() -> None:
     clean = runs_of(3, count=2)
     spoilt = runs_of(3, count=2)

@@ -391,6 +391,45 @@ def test_a_slow_carry_is_found_however_roughly_wheels_follow_their_law() -> None
     assert found == pytest.approx((10.0, 15.0), abs=0.3)
 
 
+@pytest.mark.parametrize("lines", [2.0, 10.0])
+@pytest.mark.parametrize("radius", [0.7, 1.0, 1.4])
+def test_nobody_holds_a_robot_on_the_lines_before_and_after_an_arc(
+    radius: float, lines: float
+) -> None:
+    """In one arc a turn for any way of both wheels fits as well, and more goes into it."""
+    time = np.arange(0.0, 30.0, 0.05)
+    straight = (time < lines) | (time > 29.0 - lines / 3.0)
+    run = run_by(ROBOT, np.full(time.size, 0.25), np.where(straight, 0.0, 0.25 / radius))
+    assert looked_at(run, ROBOT).no_driving == ()
+
+
+def stop_and_go(noise: float) -> Run:
+    """Moves of a second with rests of three, below a camera that sees tags at 8 Hz."""
+    time = np.arange(0.0, 120.0, 0.05)
+    going = np.where(time % 4.0 < 1.0, np.sin(np.pi * (time % 4.0)), 0.0)
+    turning = np.where(time // 4.0 % 3.0 == 1.0, 0.8, 0.0) * going
+    run = run_by(ROBOT, 0.3 * going, turning)
+    assert run.reference is not None
+    stamps = np.arange(0.1, 119.0, 0.125)
+    table = np.stack([run.reference.x, run.reference.y, np.unwrap(run.reference.yaw)])
+    seen = np.stack([np.interp(stamps, run.reference.time, each) for each in table])
+    seen += noise * np.random.default_rng(1).standard_t(4, seen.shape)
+    return replace(run, reference=Reference(stamps, *seen))
+
+
+@pytest.mark.parametrize("noise", [0.01, 0.02])
+def test_nobody_carries_a_robot_that_stands_below_a_poor_camera(noise: float) -> None:
+    """Of slow windows only those with little noise keep to the law, and they told the noise."""
+    assert looked_at(stop_and_go(noise), ROBOT).no_driving == ()
+
+
+def test_a_carry_below_a_poor_camera_is_found() -> None:
+    run = carried(stop_and_go(0.01), 62.0, 4.0)
+    found = span(run)
+    assert found[:2] == pytest.approx((62.0, 66.0), abs=1.0)
+    assert found[2] == {"carried"}
+
+
 def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
     """A tenth of a radian a second, beside brisk turns: wheels that hardly roll are believed."""
     time = np.arange(0.0, 60.0, 0.02)

@@ -34,7 +34,7 @@ from werrimbi_odom.inference.diagnosis.forward_selection import (
     Round,
     fit_calibration,
     instead_of_calibration,
-    refit_with_jumps,
+    refit_to_rest,
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
@@ -141,7 +141,7 @@ def _searched(
             break
         if not holds_when_cross_validated(laid, fit, best):
             break
-        fit = refit_with_jumps(laid, best, set_up.robot)
+        fit = refit_to_rest(laid, best, set_up.robot)
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit

@@ -67,18 +67,18 @@ def fit_calibration(
     return min(fits, key=lambda fit: fit.total)
 
 
-def refit_with_jumps(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
-    """Fit again, with the jumps of the reference found by the better model.
+def refit_to_rest(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
+    """Fit an accepted model again until its noise is that of itself, not of the model before.
 
-    Only a reference with correlated errors has jumps that stay. Where the errors of poses are
-    independent, a bad pose costs two legs and no more.
+    The jumps of the reference are found by the better model. Only a reference with correlated
+    errors has jumps that stay. Where the errors of poses are independent, a bad pose costs two legs
+    and no more.
     """
-    if fit.point.options.reference_kind == "absolute":
-        return fit
-    point = without_jumps(runs, fit.point)
-    both = (jumped | edge for jumped, edge in zip(point.excluded, at_edges(runs.runs), strict=True))
-    point = replace(point, excluded=tuple(both))
-    return fitted(runs, point, fit.names, fit.numbers, robot)
+    point = fit.point
+    if point.options.reference_kind != "absolute":
+        jumps = zip(without_jumps(runs, point).excluded, at_edges(runs.runs), strict=True)
+        point = replace(point, excluded=tuple(jumped | edge for jumped, edge in jumps))
+    return fitted(runs, point, fit.names, fit.numbers, robot, rounds=4)
 
 
 @dataclass(frozen=True, slots=True)

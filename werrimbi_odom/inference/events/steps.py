@@ -131,6 +131,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     shocks = told.shocks(white)
     view = _of_view(view_of(model.robot.effects), headings=runs.headings_alone)
     axes = shocks.enter[:, :3] @ view
+    onward = _onward(shocks.enter[:, :3] @ prediction.relative[..., None])
     # The reference errs only in what it measures: positions alone have no heading error.
     measured = axes * told.known[:, :, None]
     of_shape: dict[Shape, Floats] = {"robot": axes, "spike": measured, "reference": measured}
@@ -144,10 +145,10 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     scatter = np.ones(len(runs.runs))
     left = white
     while True:
-        gains = {shape: _gain(*_asked(shape, shocks, of_shape[shape])) for shape in shapes}
+        gains = {shape: _gain(*_asked(shape, shocks, of_shape[shape], onward)) for shape in shapes}
         # The noise is that of an error in one pose alone, wherever that can be tested.
         local: Shape = "spike" if shocks.both.any() else "robot"
-        gain = gains.get(local) or _gain(*_asked(local, shocks, of_shape[local]))
+        gain = gains.get(local) or _gain(*_asked(local, shocks, of_shape[local], onward))
         scatter = _scatter(runs, gain, told)
         new = _peaks(runs, gains, scatter, tests)
         if not new or len(steps) + len(new) > rules.MOST_EVENTS:
@@ -155,7 +156,8 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
         steps += [step for step, _ in new]
         chances += [chance for _, chance in new]
         change = np.concatenate(
-            [_change(step, of_shape[step.shape], shocks.enter.shape[1]) for step, _ in new], axis=-1
+            [_change(step, of_shape[step.shape], onward, shocks.enter.shape[1]) for step, _ in new],
+            axis=-1,
         )
         columns = np.concatenate([columns, told.shown(change).reshape(white.size, -1)], axis=-1)
         solution = np.linalg.lstsq(columns, white.ravel(), rcond=None)[0]
@@ -205,15 +207,32 @@ def _kept(
     return kept
 
 
-def _asked(shape: Shape, shocks: Shocks, axes: Floats) -> tuple[Floats, Floats]:
+def _onward(moved: Floats) -> Floats:
+    """How an error of the pose at each leg's start goes on to its end, (m, 3, 3).
+
+    Parameters
+    ----------
+    moved : ndarray, shape (m, 3, 1)
+        What the robot moves in each leg, in the axes of the states.
+    """
+    onward = np.tile(np.eye(3), (moved.shape[0], 1, 1))
+    onward[:, 0, 2], onward[:, 1, 2] = -moved[:, 1, 0], moved[:, 0, 0]
+    return onward
+
+
+def _asked(shape: Shape, shocks: Shocks, axes: Floats, onward: Floats) -> tuple[Floats, Floats]:
     """Score and information of the steps of one shape in each leg, (m, 3) and (m, 3, 3)."""
     own = slice(3, 6) if shape == "reference" else slice(0, 3)
     score, known = shocks.score[:, own], shocks.known[:, own, own]
     if shape == "spike":
-        both = shocks.both[:, own, own]
+        # What the robot would have carried on of it is taken back: nothing but the reference erred.
+        on = np.roll(onward, -1, axis=0)
+        back = on.swapaxes(-1, -2)
+        both = shocks.both[:, own, own] @ on
         follows = np.any(both != 0.0, axis=(1, 2), keepdims=True)[:, :, 0]
-        score = np.where(follows, score - np.roll(score, -1, axis=0), 0.0)
-        after = np.roll(known, -1, axis=0)
+        score = score - (back @ np.roll(score, -1, axis=0)[..., None])[..., 0]
+        score = np.where(follows, score, 0.0)
+        after = back @ np.roll(known, -1, axis=0) @ on
         known = (known + after - both - both.swapaxes(-1, -2)) * follows[..., None]
     turned = axes.swapaxes(-1, -2)
     return (turned @ score[..., None])[..., 0], turned @ known @ axes
@@ -267,13 +286,13 @@ def _peaks(
     return found
 
 
-def _change(step: PoseStep, axes: Floats, states: int) -> Floats:
+def _change(step: PoseStep, axes: Floats, onward: Floats, states: int) -> Floats:
     """Change of the filter's states for a unit step, (m, s, 3)."""
     change = np.zeros((axes.shape[0], states, 3))
     first = 3 if step.shape == "reference" else 0
     change[step.leg, first : first + 3] = axes[step.leg]
     if step.shape == "spike":
-        change[step.leg + 1, :3] = -axes[step.leg]
+        change[step.leg + 1, :3] = -onward[step.leg + 1] @ axes[step.leg]
     return change
 
 

@@ -135,19 +135,18 @@ def fit_model(
         point = turned_to_all_sides(runs, point)
     directions: Directions | None = None
     for _ in range(rounds):
-        if runs.data >= rules.NOISE_NUMBERS:
-            variances = map_variances(
-                Costs(runs, point), point.variances, point.options.sigmas_known
-            )
-            point = replace(point, variances=variances)
+        point = _with_fitted_noise(runs, point)
         design = stacked(runs, point, numbers)
         directions = determined(design, point.model.robot, directions.held if directions else ())
         model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
         point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
         if not moved:
             break
-    if directions is None:
+    else:  # it moved to the last: the noise is that of the model before
+        if rounds > 0:
+            point = _with_fitted_noise(runs, point)
         design = stacked(runs, point, numbers)
+    if directions is None:
         directions = determined(design, point.model.robot)
     covariance = directions.covariance(design.flat()[1])
     moves = directions.matrix[:, directions.shared].any(axis=1)
@@ -163,6 +162,14 @@ def fit_model(
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
         float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
+
+
+def _with_fitted_noise(runs: Concatenated, point: Point) -> Point:
+    """The point with the noise that its model leaves, where data are enough to tell it."""
+    if runs.data < rules.NOISE_NUMBERS:
+        return point
+    found = map_variances(Costs(runs, point), point.variances, point.options.sigmas_known)
+    return replace(point, variances=found)
 
 
 def _at_bound(value: float, number: FreeParameter) -> bool:

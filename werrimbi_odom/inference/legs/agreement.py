@@ -131,9 +131,12 @@ def _consensus_law(windows: Windows, base: float) -> tuple[Floats, float, float]
         _least_squares(windows, law, terms) for law in (np.array([-1.0, 1.0]) / base, best)
     )
     kept, asked = inlier_weight(windows, *_predicted(windows, np.stack([own, best], axis=1)))
-    # A law that nearly all of the drive fits is the robot's, whatever wiring the file has.
-    needed = rules.AGREE_LAGS if kept[1] > rules.AGREE_LAGS * asked[1] else rules.AGREE_OWN
-    return own if kept[0] > needed * kept[1] else best, float(kept.max()), float(asked.max())
+    # A law that nearly all of the drive fits is the robot's, whatever wiring the file has; the
+    # file's first. (In wide arcs of one radius wheels that turn alike do more by another.)
+    nearly_all = kept > rules.AGREE_LAGS * asked
+    needed = rules.AGREE_LAGS if nearly_all[1] else rules.AGREE_OWN
+    is_own = nearly_all[0] or kept[0] > needed * kept[1]
+    return own if is_own else best, float(kept.max()), float(asked.max())
 
 
 def _least_squares(windows: Windows, law: Floats, terms: Floats) -> Floats:

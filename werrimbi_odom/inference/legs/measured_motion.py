@@ -63,7 +63,10 @@ def judged_motion(
     # How roughly wheels follow their law says nothing of a robot whose wheels stand. (And what is
     # measured at rest may all be of one carry.)
     gentle = keeps & (gross <= np.quantile(gross[keeps], rules.NO_DRIVING_GENTLE))
+    # Of windows that roll slowly only those with little noise keep to the law. Poses at rest tell
+    # the least.
     scatter = np.where(rolls, noise, min(noise, float(np.median(found.off[gentle]))))
+    scatter = np.maximum(scatter, windows.noise)
     least = np.maximum(rules.NO_DRIVING_NOISE * scatter, slowest)
     beyond = off / np.maximum(
         max(rules.NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least

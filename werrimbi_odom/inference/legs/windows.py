@@ -19,6 +19,7 @@ from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # grid step, where messages come as often [s]
 _WINDOWS = 1500  # windows used for fitting, from a long drive
+_TWO_POSES, _THIRD_DIFFERENCE = 2.0, 20.0  # variances, of poses with unit noise
 _STILL = 0.1  # share of the standing limit within which not even the motors stir
 
 
@@ -44,6 +45,9 @@ class Windows:
     without_leaps: bool = False
     """Whether jumps between successive reference poses are removed from the measurement, so that
     what is left takes several steps."""
+    noise: float = 0.0
+    """Median of what the noise of two poses does to one coordinate of a window, as told by poses
+    while the wheels stand; 0 where too few do [rad or m]."""
 
     @property
     def still(self) -> float:
@@ -129,17 +133,32 @@ def windows_of(
             np.diff(stamps) > max(rules.NO_DRIVING_SILENCE * each, 2.0 * step)
         ).tolist():
             measured[(begin < stamps[gap + 1]) & (end > stamps[gap])] = np.nan
+    middle, gone_by = 0.5 * (begin + end), _over(rolled, steps)
+    stands = np.interp(time, middle, gone_by) <= standing_below(gone_by)
     return Windows(
         step,
         steps,
-        0.5 * (begin + end),
+        middle,
         _over(left, steps),
         _over(right, steps),
-        _over(rolled, steps),
+        gone_by,
         measured,
         np.ones_like(measured),
         often,
+        _noise(steps_seen, stands, ways=ways),
     )
+
+
+def _noise(seen: NDArray[np.complex128], stands: NDArray[np.bool_], *, ways: bool) -> float:
+    """Noise of a window's measurement, by third differences of poses while the wheels stand.
+
+    A hand moves a robot smoothly from one pose to the next, so it hardly adds to them.
+    """
+    third = np.diff(seen, 2)[stands[:-3] & stands[1:-2] & stands[2:-1] & stands[3:]]
+    if third.size < rules.AGREE_FEWEST:
+        return 0.0
+    each = np.concatenate([third.real, third.imag]) if ways else third.real
+    return float(np.median(np.abs(each)) * np.sqrt(_TWO_POSES / _THIRD_DIFFERENCE))
 
 
 def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[np.complex128]:
