@@ -98,7 +98,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     wanders = reference_wanders(diagnosis)
     large = remarks.drowned(told)
     old = remarks.outdated_told(told)
-    alike = diagnosis.happened.alike is not None
+    alike = bool(diagnosis.happened.events) and not diagnosis.happened.accidents
     noise = not (diagnosis.misfit or wanders or large or old or alike)
     ending = ": the model explains them to their noise." if noise else "."
     if old:
