@@ -199,7 +199,8 @@ def _of_fix(message: BagMessage) -> Iterator[_Row]:
     """Degrees and altitude take the place of a pose until the first fix is known."""
     content = message.content
     degrees = float(content.latitude), float(content.longitude)
-    if content.status.status < 0:  # STATUS_NO_FIX
+    # STATUS_NO_FIX; or zeros, which drivers send without a fix and with the status of one.
+    if content.status.status < 0 or degrees == (0.0, 0.0):
         degrees = NAN, NAN
     east, north = (float(content.position_covariance[place]) for place in (0, 4))
     sigma = _deviation(0.5 * (east + north)) if content.position_covariance_type > 0 else NAN
