@@ -101,7 +101,8 @@ def test_fixes_of_satellites_are_metres(tmp_path: Path, ros: Any, robot: Any) ->
     second = 1.0 / 3600.0
     places = [(60.0, 25.0), (60.0 + second, 25.0), (60.0, 25.0 + second)]
     entries = [("/fix", n, ros.fix(n * MS, place)) for n, place in enumerate(places, start=2)]
-    entries.append(("/fix", 9, ros.fix(9 * MS, (0.0, 0.0), fixed=False)))
+    # Without a fix, and as drivers send that: zeros with the status of a fix.
+    entries += [("/fix", n, ros.fix(n * MS, (0.0, 0.0), fixed=n > 9)) for n in (9, 10)]
     run = read_run(
         ros.write(tmp_path / "bag", [("/ticks", 1, ros.counts(1, 2)), *entries]), robot()
     )
@@ -110,10 +111,11 @@ def test_fixes_of_satellites_are_metres(tmp_path: Path, ros: Any, robot: Any) ->
     across = axis / np.sqrt(1.0 - flat * sine) + 50.0
     along = axis * (1.0 - flat) / (1.0 - flat * sine) ** 1.5 + 50.0
     arc = np.radians(second)
-    np.testing.assert_allclose(run.reference.x, [0, 0, 0.5 * across * arc, np.nan], atol=2e-3)
-    np.testing.assert_allclose(run.reference.y, [0, along * arc, 0, np.nan], atol=2e-3)
+    nothing = [np.nan, np.nan]
+    np.testing.assert_allclose(run.reference.x, [0, 0, 0.5 * across * arc, *nothing], atol=2e-3)
+    np.testing.assert_allclose(run.reference.y, [0, along * arc, 0, *nothing], atol=2e-3)
     assert not run.reference.has_yaw.any()
-    np.testing.assert_allclose(run.reference.sigma_xy, [0.2, 0.2, 0.2, 0.2])
+    np.testing.assert_allclose(run.reference.sigma_xy, 5 * [0.2])
     assert run.reference.kind == "local_map", "what they err by lasts, and is no robot's"
 
 

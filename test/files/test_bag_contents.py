@@ -235,3 +235,16 @@ def test_of_several_poses_one_may_have_no_stamps(tmp_path: Path, ros: Any) -> No
         entries.append(("/pose2D", n * MS + 2, ros.plane_pose(0.095 * n, 0.0, 0.0)))
     held = contents(ros.write(tmp_path / "bag", entries))
     assert {each.name for each in held.independent} == {"/vicon/pose", "/pose2D"}
+
+
+def test_points_in_no_frame_come_after_satellites(tmp_path: Path, ros: Any) -> None:
+    """A car's speed and steering, sent as a point."""
+    kind = "geometry_msgs/msg/PointStamped"
+    entries = []
+    for name, frame in (("/a_speed", ""), ("/place", "map")):
+        point = ros.make("geometry_msgs/msg/Point", 1.0, 2.0, 0.0)
+        entries.append((name, 1, (kind, ros.make(kind, ros.header(MS, frame), point))))
+    entries.append(("/fix", 2, ros.fix(2 * MS, (60.0, 25.0))))
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.references][-1] == "/a_speed"
+    assert "may be no positions" in held.references[-1].why

@@ -216,6 +216,18 @@ def test_odometry_that_goes_sideways_is_of_no_two_wheels(
     assert run.ticks.right[-1] > 0.0, "once set elsewhere, it is no mecanum robot"
 
 
+def test_a_robot_that_only_spins_does_not_go_sideways(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """A TurtleBot3 that turned by 2750 degrees and went 81 mm, by rounding as much sideways."""
+    random = np.random.default_rng(1)
+    x, y = np.cumsum(random.normal(0.0, 2e-5, (2, 400)), axis=1)
+    entries = [
+        ("/odom", n * 50 * 10**6, ros.odometry(n * 50 * 10**6, *pose))
+        for n, pose in enumerate(zip(x, y, 0.03 * np.arange(400.0), strict=True), start=1)
+    ]
+    run = read_run(ros.write(tmp_path / "spins", entries), robot())
+    assert run.ticks.right[-1] > run.ticks.left[-1]
+
+
 @pytest.mark.parametrize(("rear", "refused"), [(-1.0, True), (0.0, True), (0.9, False)])
 def test_wheels_of_a_side_that_do_not_turn_alike(
     tmp_path: Path, ros: Any, robot: Any, rear: float, refused: bool

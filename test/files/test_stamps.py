@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.stamps import _judged, stamps_of
+from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
 from werrimbi_odom.report.info_words import _clock
 
 MS = 10**6
@@ -52,3 +52,34 @@ def test_milliseconds_of_a_simulation_are_even_enough() -> None:
     received = 0.1 * np.arange(300.0)
     stamped = np.round(received + np.random.default_rng(1).choice([0.0, 1e-3], 300), 3)
     assert "believe the headers" in _clock("/joint_states", _judged(stamped, received))
+
+
+def test_what_waited_behind_a_pause_is_stamped_late() -> None:
+    """Poses at 100 Hz, stamped on receipt, over a network that now and then holds them back.
+
+    A robot at 0.2 m/s goes 40 mm in a pause of 0.2 s; the poses that wait then come at once, and
+    each looked like a jump of the reference.
+    """
+    measured = 0.01 * np.arange(1000.0)
+    came = measured + np.random.default_rng(1).uniform(0.0, 0.004, 1000)
+    for begin in (3.0, 5.0, 5.6):
+        waits = (begin < measured) & (measured < begin + 0.2)
+        came[waits] = begin + 0.2 + 1e-4 * np.arange(waits.sum())
+    keep, told = newest_of_bursts(came)
+    assert np.max(came[keep] - measured[keep]) < 0.02
+    assert np.sum(~keep) == pytest.approx(57, abs=3)
+    assert "came at once" in told
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        np.repeat(0.1 * np.arange(50.0), 2) + np.tile([0.0, 0.02], 50),  # two sensors in turn
+        np.delete(0.1 * np.arange(200.0), [30, 31, 32, 90, 91]),  # some are lost
+        np.sort(0.1 * np.arange(200.0) + np.random.default_rng(2).uniform(0.0, 0.09, 200)),
+    ],
+)
+def test_what_only_comes_unevenly_is_kept(time: np.ndarray) -> None:
+    keep, told = newest_of_bursts(time)
+    assert keep.mean() > 0.95
+    assert (told == "") == keep.all()

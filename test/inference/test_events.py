@@ -268,7 +268,31 @@ def test_what_comes_at_one_place_is_no_accident(sound: Drives) -> None:
     chance = np.random.default_rng(1)
     anywhere = chance.choice(runs.count, 8, replace=False)
     at_a_line = np.flatnonzero(np.abs(x - np.median(x)) < 0.03)
-    assert alike([anywhere], sides) is None
-    common = alike([chance.choice(at_a_line, 8, replace=False)], sides)
+    robots_own = [np.zeros(8, dtype=np.bool_)]
+    assert alike([anywhere], sides, robots_own) is None
+    common = alike([chance.choice(at_a_line, 8, replace=False)], sides, robots_own)
     assert common is not None
-    assert (common.what, common.count) == ("x", 8)
+    assert (common.what, common.count, common.of_reference) == ("x", 8, False)
+
+
+def test_where_a_reference_goes_wrong_is_no_floor(sound: Drives) -> None:
+    """A marker that is hidden at one place, time and again: nothing of the robot goes with it."""
+
+    def hidden(seen: Reference) -> Reference:
+        x, poses = seen.x.copy(), seen.x.size
+        first = int(np.argmax(seen.x))
+        near = np.hypot(seen.x - seen.x[first], seen.y - seen.y[first]) < 0.2
+        rows = np.flatnonzero(near)
+        for row in rows[np.diff(rows, prepend=-poses) > 0][::8]:
+            x[row] += 0.05
+        return replace(seen, x=x)
+
+    runs, robot = sound
+    found = _diagnosed(([_measured(runs[0], hidden), *runs[1:]], robot)).happened
+    assert found.alike is not None
+    assert found.alike.of_reference
+    assert found.left_out
+    said = " ".join(events_words(found, robot.track))
+    assert "there the reference goes wrong" in said
+    assert "floor" not in said
+    assert "They are left out of the fits" in said

@@ -51,13 +51,14 @@ ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int1
 """The same for both wheels, as values without names."""
 FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
 """They may hold counters but usually hold commands; read on request only."""
+POINT = "geometry_msgs/msg/PointStamped"
 POSES = {
     ODOMETRY: "poses",
     "geometry_msgs/msg/PoseStamped": "poses",
     "geometry_msgs/msg/PoseWithCovarianceStamped": "poses",
     "geometry_msgs/msg/TransformStamped": "poses",
     "geometry_msgs/msg/Pose2D": "poses",
-    "geometry_msgs/msg/PointStamped": "positions",
+    POINT: "positions",
     FIX: "positions",
     IMU: "yaw",
     SCAN: "poses",
@@ -177,12 +178,13 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         replace(each, why=f"{each.why}; {made_of[each.name]}") if each.name in made_of else each
         for each in references
     ]
-    # Scans last, since a localiser may have made poses of them. The sort is stable: otherwise the
-    # bag's order.
+    # Scans last, since a localiser may have made poses of them; before them points without a frame,
+    # which may be speeds. The sort is stable: otherwise the bag's order.
     references.sort(
         key=lambda each: (
             not each.independent,
             each.aboard,
+            each.kind == POINT and not each.parent,
             each.kind == SCAN,
             each.name in made_of,
         )
@@ -210,6 +212,8 @@ def _measured(topic: Topic, first: Any) -> Measured:
     else:
         reason = why_from_wheels(topic.name, kind, parent, child)
         why = reason or f"poses in {parent or 'a frame of their own'}, of a sensor or a localiser"
+        if kind == POINT and not parent:
+            why = "points in no frame, which may be no positions at all"
     return Measured(topic.name, kind, topic.messages, measures, parent, child, not reason, why)
 
 

@@ -89,9 +89,10 @@ class OdometryTurnedBack:
         # A frame ahead of the axle goes sideways as the robot turns: by as much for each radian.
         lever = float(way.imag @ turned) / float(turned @ turned) if turned.any() else 0.0
         aside = np.abs(way.imag - lever * turned)
-        length = np.abs(way)
-        moves = length > _SLOW * np.quantile(length, 0.9)
-        share = float(np.mean(aside[moves] > _ASIDE * length[moves])) if moves.any() else 0.0
+        # Of a robot that only spins, the wheels roll, and its way is what rounding makes of none.
+        rolled = np.abs(way) + 0.5 * self._robot.wheel_separation * np.abs(turned)
+        moves = rolled > _SLOW * np.quantile(rolled, 0.9)
+        share = float(np.mean(aside[moves] > _ASIDE * rolled[moves])) if moves.any() else 0.0
         if share > _OFTEN:
             two = ", or two nodes publish poses of their own on one topic"
             two = f"{two} (its stamps go back {back} times)" if back else ""

@@ -82,7 +82,7 @@ class ReferenceCollector:
         if self._source.kind == FIX:
             table[:, 1], table[:, 2] = east_and_north(self._place, *table[:, 1:4].T)
             table[:, 3] = NAN
-        newest = newest_of_bursts(table[:, 0])
+        newest, left_out = newest_of_bursts(table[:, 0])
         time, x, y, yaw, sigma_xy, sigma_yaw = table[newest].T.copy()
         if not (np.isfinite(yaw) | np.isfinite(x + y)).any():
             raise InputError(f"{self._place}: no message holds a finite pose")
@@ -91,9 +91,7 @@ class ReferenceCollector:
             f"{parent} -> {child}" if parent and child else f"frame {parent or child or 'unnamed'}"
         )
         told = f"{told}, {mounted}" if mounted else told
-        if not newest.all():
-            together = newest.size / newest.sum()
-            told += f"; they come {together:.0f} at a time, of which the last is kept"
+        told = f"{told}; {left_out}" if left_out else told
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
         if self._source.kind == LOCALISED and parent == "map":
             kind = "local_map"  # AMCL, SLAM: their errors drift
@@ -201,7 +199,8 @@ def _of_fix(message: BagMessage) -> Iterator[_Row]:
     """Degrees and altitude take the place of a pose until the first fix is known."""
     content = message.content
     degrees = float(content.latitude), float(content.longitude)
-    if content.status.status < 0:  # STATUS_NO_FIX
+    # STATUS_NO_FIX; or zeros, which drivers send without a fix and with the status of one.
+    if content.status.status < 0 or degrees == (0.0, 0.0):
         degrees = NAN, NAN
     east, north = (float(content.position_covariance[place]) for place in (0, 4))
     sigma = _deviation(0.5 * (east + north)) if content.position_covariance_type > 0 else NAN

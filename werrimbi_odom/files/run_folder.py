@@ -9,10 +9,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
+from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
@@ -127,7 +129,7 @@ def _not_a_count(text: str) -> str:
 
 
 def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
-    """A reference, and the damage of its file in words.
+    """A reference, and in words the damage of its file and the rows that are left out.
 
     Raises
     ------
@@ -147,7 +149,23 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
     reference = Reference(_times(table), x, y, yaw, *sigmas)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
-    return reference, _cut(table)
+    keep, late = _on_time(reference)
+    remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
+    return (reference if keep.all() else reference.chosen(keep)), remarks
+
+
+def _on_time(reference: Reference) -> tuple[NDArray[np.bool_], list[str]]:
+    """Rows that are not stamped late, and what was left out, in words.
+
+    Rows of positions and rows of headings may share their stamps, so each are judged by themselves.
+    """
+    keep, told = np.ones(reference.time.size, dtype=np.bool_), []
+    measured = reference.has_position + 2 * reference.has_yaw
+    for kind in np.unique(measured):
+        own = measured == kind
+        keep[own], left_out = newest_of_bursts(reference.time[own])
+        told += [left_out] if left_out else []
+    return keep, told
 
 
 def _nothing_measured(table: CsvTable) -> InputError:

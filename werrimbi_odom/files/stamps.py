@@ -28,6 +28,16 @@ _BURST = 0.2
 _MOSTLY = 0.5
 """Share of intervals within bursts from which on a topic counts as sent in bursts: then the usual
 interval is next to nothing, and every pause between two bursts would look like a loss."""
+_HEELS = 0.5
+"""Share of the usual interval below which a message came on the heels of another, in a queue that
+a pause had made."""
+_LOST = 1.5
+"""Interval, in usual ones, from which on something was lost or waited."""
+_TELLING = 20
+"""Intervals that it takes to know the usual one."""
+_PAUSE = 0.5
+"""Least pause before such messages, beyond their number, in usual intervals: pairs and triples that
+are always sent together have none."""
 _SLOW = 1.0
 """Usual interval from which on readings close together were taken so [s], by a person."""
 _LATE = 0.1
@@ -134,18 +144,39 @@ def _judged(header: Floats, received: Floats) -> Stamps:
     )
 
 
-def newest_of_bursts(time: Floats) -> NDArray[np.bool_]:
-    """Rows to keep where most stamps are of arrival in bursts, shape (n,): the last of each.
+def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
+    """Rows to keep where stamps are of arrival in bursts, shape (n,): the last of each burst.
 
     What came before it in a burst was measured up to a whole pause earlier than it is stamped.
+    Where most come so, all bursts count; else those of a pause that is long enough for its rows.
+
+    Returns
+    -------
+    keep : ndarray
+    told : str
+        What was left out, in words; empty if nothing was.
     """
     gaps = np.abs(np.diff(time))
-    usual = float(np.ptp(time)) / max(gaps.size, 1) if time.size else 0.0
-    together = gaps < _BURST * usual
     keep = np.ones(time.size, dtype=np.bool_)
-    if usual < _SLOW and together.size and together.mean() > _MOSTLY:
-        keep[:-1] = ~together
-    return keep
+    mean = float(np.ptp(time)) / max(gaps.size, 1) if time.size else 0.0
+    apart = gaps >= _BURST * mean
+    if mean >= _SLOW or not gaps.size:
+        return keep, ""
+    if apart.mean() < 1.0 - _MOSTLY:
+        keep[:-1] = apart
+        together = keep.size / keep.sum()
+        return keep, f"they come {together:.0f} at a time, of which the last is kept"
+    if gaps.size < _TELLING:
+        return keep, ""
+    usual = float(np.mean(gaps[gaps < _LOST * np.median(gaps[apart])]))
+    ends = np.flatnonzero(np.append(gaps >= _HEELS * usual, True))  # the last row of each burst
+    for first, last in zip(ends[:-1] + 1, ends[1:], strict=True):
+        waited = gaps[first - 1] / usual
+        if 0 < last - first <= waited - _PAUSE:
+            keep[first:last] = False
+    late = int(np.sum(~keep))
+    told = f"{late} of {keep.size} waited and came at once, and are left out: they are stamped late"
+    return keep, told if late else ""
 
 
 def _spread(intervals: Floats) -> float:

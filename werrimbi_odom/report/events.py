@@ -95,6 +95,11 @@ def alike_words(common: Alike) -> str:
             "tyres or of clocks (longitudinal_slip, reference_delay)."
         )
     where = {"x": f"x {x:.1f} m", "y": f"y {y:.1f} m", "place": f"x {x:.1f} m, y {y:.1f} m"}
+    if common.of_reference:
+        return (
+            f"{near} happened at {where[common.what]}: there the reference goes wrong (a marker "
+            "that is hidden or taken for another, say), or a cable tips the robot."
+        )
     return (
         f"{near} happened at {where[common.what]}: look at the floor there, for a threshold, a "
         "joint or a cable."

@@ -137,10 +137,14 @@ def _searched(
         misfit = misfit_of_held_law(this, best, beyond, laid)
         if misfit is not None:
             beyond = None
-        if best is None or beyond is not None or misfit is not None:
             break
-        if not holds_when_cross_validated(laid, fit, best):
+        further: list[Round] = []
+        if best is None:
+            best, further = _together(this, laid, effects, set_up.robot)
+            beyond = beyond if best is None else None
+        if best is None or beyond is not None or not holds_when_cross_validated(laid, fit, best):
             break
+        rounds += further
         fit = refit_to_rest(laid, best, set_up.robot)
     remaining = (
         rounds[-1].dependences
@@ -205,6 +209,29 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
         return None, lasts
     beyond = _beyond_the_library(this, best, runs)
     return (best, None) if beyond is None else (None, beyond)
+
+
+def _together(
+    this: Round, runs: Concatenated, effects: Sequence[Effect], given: Robot
+) -> tuple[Fitted | None, list[Round]]:
+    """Effects that hold only beside one another, and the rounds that found them.
+
+    Where several are missing, the parts of the drives disagree on each of them alone: what the
+    others do differs from part to part. So the best is taken on trial, and the next ones too, until
+    all of them hold, or no more are significant.
+    """
+    rounds: list[Round] = []
+    fit = _significant(this)
+    while fit is not None and len(rounds) < rules.TOGETHER:
+        this = search_round(runs, refit_to_rest(runs, fit, given), effects, given)
+        rounds.append(this)
+        fit = _significant(this)
+        if fit is None or _beyond_the_library(this, fit, runs) is not None:
+            continue
+        trial = fit.names[-len(rounds) - 1 :]
+        if all(p_value_by_parts(runs, fit, name, this.number) < rules.SURE for name in trial):
+            return fit, rounds
+    return None, []
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:

@@ -3,8 +3,8 @@
 """Common cause of events: a reversal, a start or stop, a place on the floor, or none.
 
 Events with a common cause are no accidents: reversals suggest an effect, a place suggests the
-floor. The count of events at each possible cause is compared with its share of the driving
-(binomial test).
+floor, or what the reference sees there. The count of events at each possible cause is compared with
+its share of the driving (binomial test).
 """
 
 from __future__ import annotations
@@ -44,6 +44,8 @@ class Alike:
     """Position on the floor [m]; NaN where the cause is no place."""
     p_value: float
     """P-value, corrected for all causes tested (Bonferroni)."""
+    of_reference: bool
+    """Whether it is a place, and most of the events there are jumps of the reference."""
 
 
 class _Tried(NamedTuple):
@@ -60,6 +62,7 @@ class _Tried(NamedTuple):
 def alike(
     legs: Sequence[NDArray[np.intp]],
     sides: Sequence[tuple[Concatenated, Prediction]],
+    jumped: Sequence[NDArray[np.bool_]],
     *,
     places: bool = True,
 ) -> Alike | None:
@@ -71,6 +74,8 @@ def alike(
         Intervals of the events, for each side.
     sides : sequence of (Concatenated, Prediction)
         Sets of drives divided into intervals, each with a model's prediction.
+    jumped : sequence of ndarray
+        Which of the events are jumps of the reference, for each side.
     places : bool
         Whether measured positions are places on the floor; those of an incremental reference are
         not, after a jump.
@@ -100,13 +105,16 @@ def alike(
                 tried.append(_Tried("y", (nan, y), along, way))
                 tried.append(_Tried("place", (x, y), about, way))
     for what, at, near, weight in tried:
-        count = sum(int(here[own].sum()) for own, here in zip(legs, near, strict=True))
+        there = [here[own] for own, here in zip(legs, near, strict=True)]
+        count = sum(int(each.sum()) for each in there)
+        strayed = sum(int((a & b).sum()) for a, b in zip(there, jumped, strict=True))
         whole = sum(float(part.sum()) for part in weight)
         share = sum(float(p @ here) for p, here in zip(weight, near, strict=True)) / whole
         # The event that gave the place is no evidence for it.
         told_by = 0 if np.isnan(at).all() else 1
         chance = binomial_survival(count - told_by, of - told_by, share)
-        found.append(Alike(what, count, of, at, bonferroni(len(tried), chance)))
+        seen_badly = what in PLACES and 2 * strayed > count
+        found.append(Alike(what, count, of, at, bonferroni(len(tried), chance), seen_badly))
     common = [
         each
         for each in found

@@ -87,8 +87,12 @@ class Events:
 
     @property
     def accidents(self) -> bool:
-        """Whether they have no common cause; what has one is systematic, and stays in fits."""
-        return bool(self.events) and self.alike is None
+        """Whether they have no common cause in the robot or in its floor.
+
+        What has one is systematic, and stays in fits. A place where the reference goes wrong tells
+        of the reference: no law of the robot follows it.
+        """
+        return bool(self.events) and (self.alike is None or self.alike.of_reference)
 
     @property
     def left_out(self) -> bool:
@@ -113,7 +117,7 @@ class EventSide(NamedTuple):
 def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
     """Abrupt errors that a model does not explain."""
     events: list[Event] = []
-    legs, looked = [], []
+    legs, jumped, looked = [], [], []
     many, time = False, 0.0
     spans: dict[Path, float] = {}
     for side in sides:
@@ -122,6 +126,9 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
         found = [(own, event) for own in _groups(steps) if (event := _event(steps, own, side))]
         events += [event for _, event in found]
         legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
+        jumped.append(
+            np.array([event.channel == "reference" for _, event in found], dtype=np.bool_)
+        )
         looked.append((runs, predict_all(side.point.model, runs)))
         many |= steps.many
         for index, path in enumerate(side.paths):
@@ -143,7 +150,7 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
         for side, (runs, _) in zip(sides, looked, strict=True)
         for run, path in zip(runs.runs, side.paths, strict=True)
     ]
-    common = alike(legs, looked, places=kind != "incremental")
+    common = alike(legs, looked, jumped, places=kind != "incremental")
     return Events(tuple(events), tuple(ways), common, kind=kind)
 
 

@@ -146,3 +146,7 @@ LEGS_A_TURN = 3
 end of a leg of a third of a turn, what goes once round in a turn (an axle off the centre) and what
 goes twice round (an oval wheel) both change by sin(60 degrees), 0.87, of the most that they can;
 of half a turn, the second cancels."""
+
+TOGETHER = 2
+"""Most effects that are tried beside one on which the parts of the drives disagree. Chosen: a mount
+has a place, a direction and a clock."""

@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Effects that hold only beside one another: of each alone the parts of the drives disagree."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.effects import all_effects
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.simulation import TrueRobot, free, record, write_run
+from werrimbi_odom.simulation.robot_file import write_robot_file
+
+AHEAD, LEFT, ASKEW = 0.11, -0.012, 0.032
+EARLY, DRIFT = 0.07, 0.025
+"""Of the headings [s], and of all positions along x, for each metre driven."""
+
+
+def test_a_mount_a_clock_and_a_drift_are_found_in_one_short_drive(tmp_path: Path) -> None:
+    """A student's robot under motion capture: 70 s, and nothing of its reference is right.
+
+    Of the lever arm beside the headings, which are early, the parts disagreed, by what the drift
+    and the mount's angle did: two were named, and 12.7 mm were left of 25.5.
+    """
+    write_robot_file(TrueRobot(), tmp_path / "robot.yaml")
+    file = read_robot_file(tmp_path / "robot.yaml")
+    drive = free(70.0, seed=1, speed=0.2, yaw_rate=0.3)
+    run = read_run(write_run(record(TrueRobot(), drive, seed=1), tmp_path / "run"), file)
+    seen = run.reference
+    assert seen is not None
+    yaw = np.unwrap(seen.yaw)
+    x = seen.x + AHEAD * np.cos(yaw) - LEFT * np.sin(yaw)
+    y = seen.y + AHEAD * np.sin(yaw) + LEFT * np.cos(yaw)
+    x = x + DRIFT * np.cumsum(np.hypot(np.diff(x, prepend=x[0]), np.diff(y, prepend=y[0])))
+    early = np.interp(seen.time + EARLY, seen.time, yaw) + ASKEW
+    run = replace(run, reference=replace(seen, x=x, y=y, yaw=early))
+    found = diagnose([run], file.robot, all_effects().effects)
+    assert set(found.found) == {
+        "reference_lever_arm",
+        "reference_yaw_offset",
+        "reference_heading_delay",
+        "floor_slope",
+    }
+    assert found.holdout.after < 0.2 * found.holdout.before
+    values = {held.name: held.values for held in found.robot.effects}
+    assert values["reference_lever_arm"]["x"] == pytest.approx(AHEAD, abs=2e-3)
+    assert values["reference_heading_delay"]["delay"] == pytest.approx(-EARLY, abs=0.01)
