@@ -400,7 +400,7 @@ def test_nobody_holds_a_robot_on_the_lines_before_and_after_an_arc(
     time = np.arange(0.0, 30.0, 0.05)
     straight = (time < lines) | (time > 29.0 - lines / 3.0)
     run = run_by(ROBOT, np.full(time.size, 0.25), np.where(straight, 0.0, 0.25 / radius))
-    assert looked_at(run, ROBOT).no_driving == ()
+    assert with_no_driving(run, ROBOT).no_driving == ()
 
 
 def stop_and_go(noise: float) -> Run:
@@ -420,7 +420,7 @@ def stop_and_go(noise: float) -> Run:
 @pytest.mark.parametrize("noise", [0.01, 0.02])
 def test_nobody_carries_a_robot_that_stands_below_a_poor_camera(noise: float) -> None:
     """Of slow windows only those with little noise keep to the law, and they told the noise."""
-    assert looked_at(stop_and_go(noise), ROBOT).no_driving == ()
+    assert with_no_driving(stop_and_go(noise), ROBOT).no_driving == ()
 
 
 def test_a_carry_below_a_poor_camera_is_found() -> None:

@@ -129,10 +129,10 @@ def _held(
         if source is None:
             first = _with_ticks(path, held.wheels, first)
         file, topic = source or robot_file_of(first), held.wheels.name
-        run = _with_gyro(path, held, file)
-        if run is None:
+        beside = _with_gyro(path, held, file)
+        if beside is None:
             held = replace(held, beside=None)
-            run = read_run(path, file, ticks_topic=topic, reference_topic=reference)
+        run = beside or read_run(path, file, ticks_topic=topic, reference_topic=reference)
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first

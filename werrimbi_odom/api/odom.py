@@ -23,7 +23,7 @@ from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run, Ticks, by_hand
 from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
 from werrimbi_odom.files.text_files import replacing
-from werrimbi_odom.inference.legs.held_or_carried import looked_at
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -88,7 +88,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     start = _usable(recorded, lambda: start_of(recorded, complete))
     driven = _reckoned(recorded, complete, start.pose)
     seen = shown(driven, view_of(complete.robot.effects))
-    remarks = (*learnt, *_by_hand_words(looked_at(recorded, robot.robot, robot.limits)))
+    remarks = (*learnt, *_by_hand_words(with_no_driving(recorded, robot.robot, robot.limits)))
     found = reckoning_of(recorded, start, driven, seen, remarks)
     return Reckoned(
         found=found,
