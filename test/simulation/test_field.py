@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -133,6 +134,18 @@ def test_the_positions_of_the_localiser_are_proposed_with_the_headings_of_the_gy
     assert taken == ["/tf:map:base_link", "/imu"]
     alone = wo.info(folder, reference_topic="/tf:map:base_link").summary()
     assert "It is taken." in " ".join(alone.split())
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, 57.3])
+def test_a_gyro_that_contradicts_the_localiser_is_not_proposed(
+    tmp_path: Path, factor: float
+) -> None:
+    """Dead, turned over, or in degrees a second."""
+    spoilt = replace(seen(), imu=seen().imu * [1.0, 1.0, factor])
+    folder = sim.write_field_bag(spoilt, ROBOT, tmp_path / "bag")
+    found = wo.info(folder, out=tmp_path / "robot.yaml").to_dict()
+    assert "--reference-topic /tf:map:base_link " in found["next"]
+    assert "/imu" not in found["next"]
 
 
 def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:

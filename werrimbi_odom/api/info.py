@@ -21,6 +21,7 @@ from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
+from werrimbi_odom.files.merged_reference import SCALE_MOST
 from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
@@ -129,10 +130,13 @@ def _held(
         if source is None:
             first = _with_ticks(path, held.wheels, first)
         file, topic = source or robot_file_of(first), held.wheels.name
-        beside = _with_gyro(path, held, file)
-        if beside is None:
-            held = replace(held, beside=None)
-        run = beside or read_run(path, file, ticks_topic=topic, reference_topic=reference)
+        merged = _with_gyro(path, held, file)
+        if merged is not None:
+            judged = _judged(replace(held, run=merged), source, first)
+            if not judged.problem:
+                return judged, first
+        held = replace(held, beside=None)
+        run = read_run(path, file, ticks_topic=topic, reference_topic=reference)
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first
@@ -143,13 +147,17 @@ def _with_gyro(path: Path, held: Held, file: RobotFile) -> Run | None:
     """The run with a localiser's positions and a gyro's headings; None if that is not to be had.
 
     A localiser's headings wander by more than most effects turn a robot in a metre. A gyro's do
-    not, and the localiser frees them of their drift.
+    not, and the localiser frees them of their drift. It also tells a gyro that is dead, turned over
+    or in other units: then the localiser is taken alone.
     """
     if held.beside is None or held.wheels is None:
         return None
     try:
         run = read_run(path, file, ticks_topic=held.wheels.name, reference_topic=tuple(held.topics))
     except InputError:
+        return None
+    gyro = None if run.reference is None else run.reference.gyro
+    if gyro is None or max(abs(gyro.scale - 1.0), gyro.std) > SCALE_MOST:
         return None
     return run if run.reference is not None and run.reference.kind == "local_map" else None
 
