@@ -66,6 +66,7 @@ def test_the_shipped_drive_is_explained_and_the_json_is_the_contracts(
     said = capsys.readouterr()
     assert said.err == ""
     assert max(map(len, said.out.splitlines()[:-1])) <= 80
+    assert "Smaller effects may hide in such errors: `werrimbi diagnose` looks" in said.out
 
 
 def test_end_errors_are_those_of_werrimbi_odom(tmp_path: Path) -> None:

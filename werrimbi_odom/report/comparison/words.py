@@ -58,7 +58,7 @@ def words_of(
             said += covariance_words(verdict, comparison.main.all.figures.nees)
     said += _reference(comparison)
     step = _next(verdict, next_step)
-    return paragraphs([*said, step, command if step else ""])
+    return paragraphs([*said, step, command if step and not verdict.good else ""])
 
 
 def headline(comparison: Comparison, verdict: Verdict) -> str:
