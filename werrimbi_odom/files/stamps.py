@@ -33,6 +33,8 @@ _HEELS = 0.5
 a pause had made."""
 _LOST = 1.5
 """Interval, in usual ones, from which on something was lost or waited."""
+_TOLD = 0.01
+"""Share of messages that were left out above which it is said."""
 _TELLING = 20
 """Intervals that it takes to know the usual one."""
 _PAUSE = 0.5
@@ -154,7 +156,7 @@ def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
     -------
     keep : ndarray
     told : str
-        What was left out, in words; empty if nothing was.
+        What was left out, in words; empty if nothing was, or next to nothing.
     """
     gaps = np.abs(np.diff(time))
     keep = np.ones(time.size, dtype=np.bool_)
@@ -176,7 +178,7 @@ def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
             keep[first:last] = False
     late = int(np.sum(~keep))
     told = f"{late} of {keep.size} waited and came at once, and are left out: they are stamped late"
-    return keep, told if late else ""
+    return keep, told if late > _TOLD * keep.size else ""
 
 
 def _spread(intervals: Floats) -> float:
