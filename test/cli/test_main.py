@@ -79,6 +79,11 @@ def test_help_is_quick_and_imports_nothing_heavy() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_the_package_runs_as_the_command() -> None:
+    done = ran([sys.executable, "-m", "werrimbi_odom", "--help"], timeout=60)
+    assert done.stdout == help_of("").stdout
+
+
 def test_version() -> None:
     done = werrimbi("--version")
     assert done.returncode == 0
