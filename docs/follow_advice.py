@@ -169,6 +169,8 @@ def row(case: Case) -> str:
 
 
 if __name__ == "__main__":
+    if not ROBOTS.is_dir():
+        sys.exit(f"no recordings in {ROBOTS}: run `make recordings` first")
     print("| robot, held-out error | as its robot file says | added | after | then |")
     print("| --- | --- | --- | --- | --- |")
     for each in CASES:
