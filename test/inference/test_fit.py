@@ -23,10 +23,12 @@ from werrimbi_odom.inference.comparison.leg_errors import (
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model, parameters_to_fit
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.cutting import match
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
@@ -101,12 +103,40 @@ def test_a_base_that_was_never_turned_on_is_left_alone() -> None:
 def test_the_noise_of_a_fit_is_that_of_its_model_however_far_it_came(rounds: int) -> None:
     """What the model that it began with left was noise of the wheels, ten times theirs."""
     wrong = replace(NOMINAL, wheel_separation_multiplier=1.2)
-    matched = [match(run, wrong, 0.25) for run in runs_of(seed=11)]
+    matched = concatenated([match(run, wrong, 0.25) for run in runs_of(seed=11)])
     fit = fit_model(matched, start_point(matched, wrong), find_jumps=False, rounds=rounds)
     noises = [
         float(np.sqrt(part[0])) for part in (fit.point.variances.left, fit.point.variances.right)
     ]
     assert noises == pytest.approx([TRUE.left_noise, TRUE.right_noise], rel=0.4)
+
+
+@wheel_effect(grip=Parameter("", 0.0, 0.2, (-5.0, 5.0), "what holds; a wheel slips with the rest"))
+def slip_beyond_grip(travel: Any, drive: Any, grip: float) -> Any:
+    """A wheel slips until it is held.
+
+    Formula    travel *= 1 - (0.3 - grip) where that is above 0
+    Signature  distances shrink
+    Ruler      drive a taped line
+    """
+    lost = max(0.3 - grip, 0.0)
+    return WheelTravel(travel.left * (1.0 - lost), travel.right * (1.0 - lost))
+
+
+@pytest.mark.parametrize("rounds", [1, 3])
+def test_what_has_no_effect_where_a_fit_ends_is_no_number(rounds: int) -> None:
+    """Wheels larger than the file says: no slip at all is best, and more grip moves nothing."""
+    robot = replace(
+        NOMINAL,
+        left_wheel_radius_multiplier=0.9,
+        right_wheel_radius_multiplier=0.9,
+        effects=(slip_beyond_grip.using(grip=0.1),),
+    )
+    matched = concatenated([match(run, robot, 0.25) for run in runs_of(seed=11)])
+    numbers = parameters_to_fit(slip_beyond_grip)
+    fit = fit_model(matched, start_point(matched, robot), numbers, find_jumps=False, rounds=rounds)
+    assert fit.free == ()
+    assert fit.robot.effects == robot.effects
 
 
 def test_jumps_of_the_tracker_are_found_and_left_out() -> None:

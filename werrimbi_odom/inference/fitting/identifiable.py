@@ -49,6 +49,21 @@ class Directions:
     held: tuple[str, ...]
     """Shared directions that are not identifiable."""
 
+    def that_move(self, flat: Floats) -> Directions:
+        """Those along which anything moves in a whitened Jacobian (n, p); the others are held.
+
+        A fit may end where a direction has no effect: a threshold above all speeds.
+        """
+        moves = (flat @ self.matrix).any(axis=0)
+        kept = np.flatnonzero(moves)
+        return Directions(
+            tuple(self.names[index] for index in kept),
+            self.matrix[:, kept],
+            self.limits[kept],
+            [place for place, index in enumerate(kept) if index in self.shared],
+            (*self.held, *(self.names[index] for index in self.shared if not moves[index])),
+        )
+
     def covariance(self, flat: Floats) -> Floats:
         """Covariance of the columns' parameters (p, p) for a whitened Jacobian (n, p)."""
         inside = covariance_of(flat @ self.matrix)
