@@ -54,7 +54,7 @@ class Directions:
 
         A fit may end where a direction has no effect: a threshold above all speeds.
         """
-        moves = (flat @ self.matrix).any(axis=0)
+        moves = np.asarray(np.any(flat @ self.matrix, axis=0))
         kept = np.flatnonzero(moves)
         return Directions(
             tuple(self.names[index] for index in kept),
