@@ -46,7 +46,8 @@ def test_every_recorded_drive(run: Path, tmp_path: Path, werrimbi: Werrimbi) -> 
     out, figures = tmp_path / "odom.csv", tmp_path / "figures.json"
     words = ["odom", "--robot", run.parent / "robot.yaml", run, "--out", out, "--json", figures]
     said = werrimbi(*words)
-    assert said.err == ""
+    remarks = said.err.splitlines()
+    assert all("they are stamped late" in each for each in remarks)  # the skid steer's gyro
 
     ticks, reference, rows = (
         columns(run / "ticks.csv"),

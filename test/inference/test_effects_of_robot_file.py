@@ -79,6 +79,6 @@ def test_errors_that_are_told_are_those_of_the_file(runs: list[Run]) -> None:
 
 def test_events_that_come_with_starts_are_no_noise(runs: list[Run]) -> None:
     """The model was said to explain the drives, and, below, to lack a law."""
-    alike = Alike("start or stop", 8, 8, (math.nan, math.nan), 1e-6)
+    alike = Alike("start or stop", 8, 8, (math.nan, math.nan), 1e-6, of_reference=False)
     found = diagnosed(runs, holding(0.04))
     assert "noise" not in words(replace(found, happened=Events(alike=alike))).partition("Next")[0]

@@ -19,7 +19,6 @@ from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # grid step, where messages come as often [s]
 _WINDOWS = 1500  # windows used for fitting, from a long drive
-_TWO_POSES, _THIRD_DIFFERENCE = 2.0, 20.0  # variances, of poses with unit noise
 _STILL = 0.1  # share of the standing limit within which not even the motors stir
 
 
@@ -158,7 +157,8 @@ def _noise(seen: NDArray[np.complex128], stands: NDArray[np.bool_], *, ways: boo
     if third.size < rules.AGREE_FEWEST:
         return 0.0
     each = np.concatenate([third.real, third.imag]) if ways else third.real
-    return float(np.median(np.abs(each)) * np.sqrt(_TWO_POSES / _THIRD_DIFFERENCE))
+    # Of poses with unit noise a third difference has the variance 20, a difference of two 2.
+    return float(np.median(np.abs(each)) * np.sqrt(2.0 / 20.0))
 
 
 def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[np.complex128]:

@@ -104,7 +104,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     wanders = reference_wanders(diagnosis)
     large = remarks.drowned(advised)
     old = remarks.outdated_told(advised)
-    alike = bool(diagnosis.happened.events) and not diagnosis.happened.accidents
+    alike = diagnosis.happened.alike is not None and not diagnosis.happened.accidents
     noise = not (diagnosis.misfit or wanders or large or old or alike)
     ending = ": the model explains them to their noise." if noise else "."
     if old:
