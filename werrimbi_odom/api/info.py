@@ -156,10 +156,10 @@ def _with_gyro(path: Path, held: Held, file: RobotFile) -> Run | None:
         run = read_run(path, file, ticks_topic=held.wheels.name, reference_topic=tuple(held.topics))
     except InputError:
         return None
-    gyro = None if run.reference is None else run.reference.gyro
-    if gyro is None or max(abs(gyro.scale - 1.0), gyro.std) > SCALE_MOST:
+    seen = run.reference
+    if seen is None or seen.gyro is None or seen.kind != "local_map":
         return None
-    return run if run.reference is not None and run.reference.kind == "local_map" else None
+    return run if max(abs(seen.gyro.scale - 1.0), seen.gyro.std) <= SCALE_MOST else None
 
 
 def _at_fault(

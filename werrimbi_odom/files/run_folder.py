@@ -15,7 +15,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
 from werrimbi_odom.files.stamps import newest_of_bursts
-from werrimbi_odom.files.text_files import readable
+from werrimbi_odom.files.text_files import readable, replacing
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -78,7 +78,8 @@ def _write(
 ) -> None:
     rows = zip(*(values.tolist() for values in columns), strict=True)
     lines = [",".join(missing if each != each else repr(each) for each in row) for row in rows]
-    path.write_text("\n".join([",".join(names), *lines, ""]), encoding="utf-8")
+    with replacing(path) as file:
+        file.write("\n".join([",".join(names), *lines, ""]))
 
 
 def _cut(table: CsvTable) -> tuple[str, ...]:

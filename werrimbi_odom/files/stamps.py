@@ -172,10 +172,10 @@ def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
         return keep, ""
     usual = float(np.mean(gaps[gaps < _LOST * np.median(gaps[apart])]))
     ends = np.flatnonzero(np.append(gaps >= _HEELS * usual, True))  # the last row of each burst
-    for first, last in zip(ends[:-1] + 1, ends[1:], strict=True):
-        waited = gaps[first - 1] / usual
-        if 0 < last - first <= waited - _PAUSE:
-            keep[first:last] = False
+    waiting = np.diff(ends) - 1  # rows of each burst beside its last
+    queued = (waiting > 0) & (waiting <= gaps[ends[:-1]] / usual - _PAUSE)
+    for last, rows in zip(ends[1:][queued], waiting[queued], strict=True):
+        keep[last - rows : last] = False
     late = int(np.sum(~keep))
     told = f"{late} of {keep.size} waited and came at once, and are left out: they are stamped late"
     return keep, told if late > _TOLD * keep.size else ""

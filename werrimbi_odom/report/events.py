@@ -47,7 +47,7 @@ def events_words(happened: Events, track: float) -> list[str]:
     if happened.left_out:
         they = "It is" if len(events) == 1 else "They are"
         lines.append(f"{they} left out of the fits.")
-    elif not happened.accidents:
+    elif happened.systematic:
         lines.append("They stay in the fits, for what repeats itself is no accident.")
     return lines
 

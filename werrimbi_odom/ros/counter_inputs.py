@@ -191,16 +191,16 @@ class UnitWatch:
         whole = position == round(position)
         self._whole += whole
         self._others += not whole
-        if self._in_radians:
-            self.settled = self._others > 0 or self._whole >= WHOLE_COUNTS
-            if self.settled and not self._others:
-                return [
-                    "the wheels' positions are whole numbers, and rather counts than radians: "
-                    "position_unit: ticks"
-                ]
+        enough = self._whole + self._others >= WHOLE_COUNTS
+        self.settled = enough or (self._in_radians and self._others > 0)
+        if not self.settled:
             return []
-        self.settled = self._whole + self._others >= WHOLE_COUNTS
-        if self.settled and self._others > self._whole:
+        if self._in_radians and not self._others:
+            return [
+                "the wheels' positions are whole numbers, and rather counts than radians: "
+                "position_unit: ticks"
+            ]
+        if not self._in_radians and self._others > self._whole:
             return [
                 "the wheels' positions are no whole numbers, and rather radians than counts: "
                 "position_unit: radians"

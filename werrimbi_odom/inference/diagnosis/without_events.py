@@ -79,7 +79,7 @@ def refit_without_events(
             break
         runs, holdout = both
         again, happened = fit(runs, holdout, False)
-        if not happened.many and (happened.accidents or not happened.events):
+        if not happened.many and not happened.systematic:
             found = again
     return found, happened
 

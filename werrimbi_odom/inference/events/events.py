@@ -86,13 +86,13 @@ class Events:
     """Kind of the reference."""
 
     @property
-    def accidents(self) -> bool:
-        """Whether they have no common cause in the robot or in its floor.
+    def systematic(self) -> bool:
+        """Whether they have a common cause in the robot or in its floor; then they stay in fits.
 
-        What has one is systematic, and stays in fits. A place where the reference goes wrong tells
-        of the reference: no law of the robot follows it.
+        A place where the reference goes wrong tells of the reference: no law of the robot follows
+        it.
         """
-        return bool(self.events) and (self.alike is None or self.alike.of_reference)
+        return self.alike is not None and not self.alike.of_reference
 
     @property
     def left_out(self) -> bool:
@@ -101,7 +101,7 @@ class Events:
         The jumps of a reference with correlated errors are already handled by its filter, which
         resets the error. A step of the robot would be another thing.
         """
-        return self.accidents and self.kind != "local_map"
+        return bool(self.events) and not self.systematic and self.kind != "local_map"
 
 
 class EventSide(NamedTuple):

@@ -134,6 +134,7 @@ def fit_model(
     if rounds > 0:
         point = turned_to_all_sides(runs, point)
     directions: Directions | None = None
+    moved = False
     for _ in range(rounds):
         point = _with_fitted_noise(runs, point)
         design = stacked(runs, point, numbers)
@@ -142,16 +143,15 @@ def fit_model(
         point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
         if not moved:
             break
-    else:
-        if directions is not None:  # it moved to the last: the noise is that of the model before
-            point = _with_fitted_noise(runs, point)
-            design = stacked(runs, point, numbers)
-            directions = directions.that_move(design.flat()[1])
-            model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
-            point = replace(point, model=model)
     if directions is None:
         design = stacked(runs, point, numbers)
         directions = determined(design, point.model.robot)
+    elif moved:  # to the last: the noise is that of the model before
+        point = _with_fitted_noise(runs, point)
+        design = stacked(runs, point, numbers)
+        directions = directions.that_move(design.flat()[1])
+        model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
+        point = replace(point, model=model)
     covariance = directions.covariance(design.flat()[1])
     moves = directions.matrix[:, directions.shared].any(axis=1)
     where = np.flatnonzero(moves)

@@ -104,8 +104,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     wanders = reference_wanders(diagnosis)
     large = remarks.drowned(advised)
     old = remarks.outdated_told(advised)
-    alike = diagnosis.happened.alike is not None and not diagnosis.happened.accidents
-    noise = not (diagnosis.misfit or wanders or large or old or alike)
+    noise = not (diagnosis.misfit or wanders or large or old or diagnosis.happened.systematic)
     ending = ": the model explains them to their noise." if noise else "."
     if old:
         ending = ", but values of effects in the robot file are off."
