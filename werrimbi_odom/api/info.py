@@ -159,7 +159,7 @@ def _with_gyro(path: Path, held: Held, file: RobotFile) -> Run | None:
     seen = run.reference
     if seen is None or seen.gyro is None or seen.kind != "local_map":
         return None
-    return run if max(abs(seen.gyro.scale - 1.0), seen.gyro.std) <= SCALE_MOST else None
+    return None if max(abs(seen.gyro.scale - 1.0), seen.gyro.std) > SCALE_MOST else run
 
 
 def _at_fault(

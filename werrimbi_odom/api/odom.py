@@ -100,7 +100,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
 def _by_hand_words(run: Run) -> Iterator[str]:
     """Remarks on stretches in which the wheels do not say how the robot moved."""
     began = float(run.ticks.time[0])
-    for part in by_hand(run):
+    for part in by_hand(run.no_driving):
         yield (
             f"from {part.begin - began:.1f} s to {part.end - began:.1f} s {part.words}; the error "
             "at the end is of that, too"

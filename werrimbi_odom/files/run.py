@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeVar
@@ -180,9 +180,9 @@ class Run:
     their errors are not evaluated."""
 
 
-def by_hand(run: Run) -> list[NoDriving]:
-    """Stretches in which the robot was held or carried."""
-    return [part for part in run.no_driving or () if part.why in ("held", "carried")]
+def by_hand(parts: Iterable[NoDriving] | None) -> list[NoDriving]:
+    """The stretches in which the robot was held or carried; None if they were not looked for."""
+    return [part for part in parts or () if part.why in ("held", "carried")]
 
 
 class Collected(NamedTuple):

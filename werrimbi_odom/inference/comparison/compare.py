@@ -239,7 +239,8 @@ def _run_figures(
     off = np.abs(path.measured - path.predicted)
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
     in_pieces = run.reference is not None and run.reference.own_axes and run.taken_out
-    if in_pieces or by_hand(run):  # each piece has axes of its own; a hand is no dead reckoning
+    # Each piece has axes of its own; a hand is no dead reckoning.
+    if in_pieces or by_hand(run.no_driving):
         off, turned = np.full_like(off, np.nan), turned[:0]
     known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0

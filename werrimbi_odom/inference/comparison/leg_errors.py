@@ -15,6 +15,7 @@ from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
+from werrimbi_odom.inference.fitting.leg_loop import lever_of
 from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
@@ -202,8 +203,7 @@ def _reference_part(
     if kind == "incremental":
         walk = walked(prediction, runs.intervals, xy, yaw)
         return np.asarray(walk + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
-    lever = np.zeros((runs.count, 3, 3)) + np.eye(3)
-    lever[:, 0, 2], lever[:, 1, 2] = -prediction.relative[:, 1], prediction.relative[:, 0]
+    lever = lever_of(prediction.relative)
     own = np.stack([xy, xy, yaw], axis=-1) + reading
     first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
     of_map = map_walk(prediction, xy, yaw) if runs.own_axes else 0.0

@@ -24,6 +24,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import chi2_median, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.filtering import Shocks
+from werrimbi_odom.inference.fitting.leg_loop import lever_of
 from werrimbi_odom.inference.fitting.likelihood import Innovations, innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
@@ -131,7 +132,8 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     shocks = told.shocks(white)
     view = _of_view(view_of(model.robot.effects), headings=runs.headings_alone)
     axes = shocks.enter[:, :3] @ view
-    onward = _onward(shocks.enter[:, :3] @ prediction.relative[..., None])
+    moves = (shocks.enter[:, :3] @ prediction.relative[..., None])[..., 0]
+    onward = np.roll(lever_of(moves), -1, axis=0)  # over the leg after each
     # The reference errs only in what it measures: positions alone have no heading error.
     measured = axes * told.known[:, :, None]
     of_shape: dict[Shape, Floats] = {"robot": axes, "spike": measured, "reference": measured}
@@ -207,32 +209,18 @@ def _kept(
     return kept
 
 
-def _onward(moved: Floats) -> Floats:
-    """How an error of the pose at each leg's start goes on to its end, (m, 3, 3).
-
-    Parameters
-    ----------
-    moved : ndarray, shape (m, 3, 1)
-        What the robot moves in each leg, in the axes of the states.
-    """
-    onward = np.tile(np.eye(3), (moved.shape[0], 1, 1))
-    onward[:, 0, 2], onward[:, 1, 2] = -moved[:, 1, 0], moved[:, 0, 0]
-    return onward
-
-
 def _asked(shape: Shape, shocks: Shocks, axes: Floats, onward: Floats) -> tuple[Floats, Floats]:
     """Score and information of the steps of one shape in each leg, (m, 3) and (m, 3, 3)."""
     own = slice(3, 6) if shape == "reference" else slice(0, 3)
     score, known = shocks.score[:, own], shocks.known[:, own, own]
     if shape == "spike":
         # What the robot would have carried on of it is taken back: nothing but the reference erred.
-        on = np.roll(onward, -1, axis=0)
-        back = on.swapaxes(-1, -2)
-        both = shocks.both[:, own, own] @ on
+        back = onward.swapaxes(-1, -2)
+        both = shocks.both[:, own, own] @ onward
         follows = np.any(both != 0.0, axis=(1, 2), keepdims=True)[:, :, 0]
         score = score - (back @ np.roll(score, -1, axis=0)[..., None])[..., 0]
         score = np.where(follows, score, 0.0)
-        after = back @ np.roll(known, -1, axis=0) @ on
+        after = back @ np.roll(known, -1, axis=0) @ onward
         known = (known + after - both - both.swapaxes(-1, -2)) * follows[..., None]
     turned = axes.swapaxes(-1, -2)
     return (turned @ score[..., None])[..., 0], turned @ known @ axes
@@ -292,7 +280,7 @@ def _change(step: PoseStep, axes: Floats, onward: Floats, states: int) -> Floats
     first = 3 if step.shape == "reference" else 0
     change[step.leg, first : first + 3] = axes[step.leg]
     if step.shape == "spike":
-        change[step.leg + 1, :3] = -onward[step.leg + 1] @ axes[step.leg]
+        change[step.leg + 1, :3] = -onward[step.leg] @ axes[step.leg]
     return change
 
 

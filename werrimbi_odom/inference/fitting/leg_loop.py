@@ -77,12 +77,11 @@ def loop_over_arrays(of: Loop) -> None:
         own, still = of.leg[now], now.stop - now.start
         seen, leapt = of.known[own], of.jumped[own]
         state, spread = state[:, :still], spread[:, :still]
-        turn, lever = np.empty((2, *state.shape, 3))
+        turn = np.empty((*state.shape, 3))
         turn_into(turn, state[..., 2])
         back = turn.swapaxes(-1, -2)
         move = (turn @ of.relative[own, :, None])[..., 0]
-        lever[:] = identity
-        lever[..., 0, 2], lever[..., 1, 2] = -move[..., 1], move[..., 0]
+        lever = lever_of(move)
         of.turns[now], of.carry[now] = turn[0], lever[0] @ kept[:still]
         state = state + move
         spread = lever @ spread @ lever.swapaxes(-1, -2)
@@ -267,6 +266,13 @@ def turn_into(turn: Floats, yaw: Floats) -> None:
     turn[..., 0, 0] = turn[..., 1, 1] = cos
     turn[..., 0, 1], turn[..., 1, 0] = -sin, sin
     turn[..., 2, 2] = 1.0
+
+
+def lever_of(move: Floats) -> Floats:
+    """What becomes of an error of the pose as the robot moves on by (x, y, yaw), (..., 3, 3)."""
+    lever = np.zeros((*move.shape, 3)) + np.eye(3)
+    lever[..., 0, 2], lever[..., 1, 2] = -move[..., 1], move[..., 0]
+    return lever
 
 
 def diagonal_of(rows: NDArray[np.bool_]) -> Floats:

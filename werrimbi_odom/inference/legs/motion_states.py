@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import NoDriving
+from werrimbi_odom.files.run import NoDriving, by_hand
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.windows import standing_below
@@ -66,10 +66,9 @@ def driven(
         if state[begin] == "stood" and (end - begin) * _GRID < rules.REST_LASTS:
             state[begin:end] = "drove"
     middle = 0.5 * (grid[1:] + grid[:-1])
-    for part in no_driving:
-        if part.why in ("held", "carried"):
-            what = "lost" if part.words == LOST else part.why
-            state[(middle >= part.begin) & (middle <= part.end)] = what
+    for part in by_hand(no_driving):
+        what = "lost" if part.words == LOST else part.why
+        state[(middle >= part.begin) & (middle <= part.end)] = what
     spans = tuple(
         TimeSpan(float(grid[begin]), float(grid[end]), state[begin])
         for begin, end in itertools.pairwise(_changes(state))

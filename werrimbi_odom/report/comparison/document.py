@@ -94,7 +94,11 @@ def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
     length = leg_words(comparison.median_length, comparison.main.leg)
     tables: list[Part] = [_motions(comparison.main, length), _lengths(comparison)]
     first = comparison.runs[0]
-    if len(comparison.runs) > 1 or math.isfinite(first.end_error_m) or by_hand(first.run):
+    if (
+        len(comparison.runs) > 1
+        or math.isfinite(first.end_error_m)
+        or by_hand(first.run.no_driving)
+    ):
         tables.append(_runs(comparison))
     said = list(dict.fromkeys(item.variable for item in verdict.depends))
     by_name = {item.name: item for item in comparison.variables}
