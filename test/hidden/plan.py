@@ -118,6 +118,26 @@ SAMPLE = Sizes(
 )
 """What two cores judge in less than an hour, with all that `make evidence` does beside."""
 
+HALF = Sizes(
+    effects=1,
+    clean=8,
+    outsiders=1,
+    calibration=1,
+    mistakes=1,
+    factors=2,
+    pairs=4,
+    pairs_with_calibration=1,
+    poorer=1,
+    poorer_effects=2,
+    poorer_clean=1,
+    other=1,
+    other_effects=3,
+    other_clean=1,
+    other_outsiders=1,
+    rivals=2,
+)
+"""The same for cores of half the speed; the intervals are wider."""
+
 
 def start_of(mark: str) -> int:
     """Where the seeds of the code with this mark begin; never where the old ones do."""

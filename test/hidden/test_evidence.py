@@ -22,7 +22,7 @@ pytestmark = pytest.mark.evidence
 @pytest.fixture(scope="module")
 def lines() -> Sequence[Judged]:
     """All results; what is not there yet is made now."""
-    extent, start, workers = extent_wanted(False), plan.start_of(mark()), os.cpu_count() or 1
+    extent, start, workers = extent_wanted(), plan.start_of(mark()), os.cpu_count() or 1
     wanted = plan.plan(start, extent.sizes)
     for _ in make_all(wanted, workers):
         pass
@@ -47,7 +47,7 @@ def test_rule(lines: Sequence[Judged], rule: Rule) -> None:
 @pytest.mark.parametrize("part", ["field", "scans"])
 def test_rules_of_ordinary_recordings(part: str) -> None:
     """Bags by a gyro, a localiser, both, positions alone and scans; others by scans alone."""
-    work = works([], plan.start_of(mark()), extent_wanted(False))[part]
+    work = works([], plan.start_of(mark()), extent_wanted())[part]
     for _ in done(results_of(part), work.tasks, work.by, os.cpu_count() or 1):
         pass
     there = {key: line for key, line in kept(results_of(part)).items() if key in work.tasks}
