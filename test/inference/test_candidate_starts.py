@@ -17,10 +17,15 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.free_parameters import START_YAW, changed
+from werrimbi_odom.inference.fitting.free_parameters import (
+    START_YAW,
+    changed,
+    parameters_to_fit,
+)
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, turns_over
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
@@ -89,6 +94,22 @@ def test_sizes_that_stood_in_for_a_lever_arm_do_not_stay() -> None:
     assert not fit.at_bound
     assert effect.values["x"] == pytest.approx(0.36, abs=2e-3)
     assert effect.values["y"] == pytest.approx(0.0, abs=2e-3)
+
+
+def test_what_drives_do_not_determine_does_not_stay_where_its_score_sent_it() -> None:
+    """Lines and spins: a base 36 % larger was told, beside a sharpness that was not determined."""
+    speed, turning = np.tile(np.repeat([[0.3, 0.0, -0.3, 0.0], [0.0, 0.9, 0.0, -0.9]], 60, 1), 3)
+    runs = concatenated(match_for_fit([run_by(ROBOT, speed, turning)], ROBOT, 1.0))
+    begun = fit_calibration(runs, ROBOT)
+    model = begun.point.model
+    turns = find("turn_dependent_track").using(sharpness=-0.265, sense=0.0)
+    started = replace(
+        begun.point, model=replace(model, robot=replace(model.robot, effects=(turns,)))
+    )
+    fit = fitted(runs, started, [turns.name], parameters_to_fit(turns.effect), ROBOT)
+    (found,) = fit.point.model.robot.effects
+    assert found.values["sharpness"] == 0.0
+    assert fit.point.model.robot.wheel_separation_multiplier == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("point", [0.063 - 0.04j, -0.02 + 0.06j])

@@ -77,7 +77,9 @@ def test_the_rest_of_a_law_is_no_sign_of_an_effect_that_the_parts_do_not_show(
     assert diagnosis._chosen(this, RUNS) == (None, rest)
     monkeypatch.setattr(diagnosis, "misfit_of_held_law", lambda *_: None)
     assert diagnosis._chosen(this, RUNS) == (delay, None)
-    speaks = 0.02  # a floor that leans, in half of a room with a carpet; it doubled the fitted error
+    speaks = (
+        0.02  # a floor that leans, in half of a room with a carpet; it doubled the fitted error
+    )
     assert diagnosis._chosen(this, RUNS) == (None, rest)
 
 
