@@ -5,15 +5,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from test.inference.driven import run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
-from test.model.drives import ROBOT
+from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
@@ -32,6 +34,8 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
 
 
 @body_effect(size=Parameter("", null=0.0, typical=0.01, bounds=(-1.0, 1.0), says="of the trouble"))
@@ -169,3 +173,38 @@ def test_jitter_of_the_stamps_does_not_stand_in_for_a_delay() -> None:
     assert best.names == ("reference_delay",)
     (delay,) = best.point.model.robot.effects[-1].values.values()
     assert delay == pytest.approx(0.05, abs=0.02)
+
+
+COARSE = Robot(
+    wheel_separation=0.1,
+    wheel_radius=0.017,
+    left_ticks_per_revolution=20.0,
+    right_ticks_per_revolution=20.0,
+)
+
+
+def coarsely_counted(seed: int) -> Run:
+    """48 s of wheels with few counts a turn, by a reference that is 20 ms late."""
+    fine = replace(COARSE, left_ticks_per_revolution=2e4, right_ticks_per_revolution=2e4)
+    random = np.random.default_rng(seed)
+    speed = random.uniform(-0.08, 0.15, 40) * (random.random(40) > 0.2)
+    turning = random.uniform(-1.5, 1.5, 40) * (random.random(40) > 0.3)
+    smooth = np.ones(30) / 30.0
+    driven = [np.convolve(np.repeat(part, 120), smooth, "same") for part in (speed, turning)]
+    counts = read(COARSE, 100.0, *driven)
+    path = trajectory(fine, *read(fine, 100.0, *driven))
+    seen = slice(None, None, 2)
+    noise = random.normal(0.0, [[2e-4], [2e-4], [1.6e-3]], (3, path.x[seen].size))
+    x, y, yaw = np.array([path.x[seen], path.y[seen], path.yaw[seen]]) + noise
+    ticks = Ticks(counts.time, counts.left.astype(float), counts.right.astype(float), {})
+    reference = Reference(path.time[seen] + 0.02, x, y, yaw)
+    return Run(f"coarse_{seed}", Path(f"coarse_{seed}"), ticks, reference)
+
+
+@pytest.mark.parametrize("first", [0, 6])
+def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
+    """Twenty counts a turn: the score at null ended 4 ms from none, and slip was named instead."""
+    found = diagnose([coarsely_counted(first + number) for number in range(3)], COARSE, LIBRARY)
+    assert found.found == ("reference_delay",)
+    (late,) = found.model.robot.effects
+    assert late.values["delay"] == pytest.approx(0.02, abs=0.006)  # a message takes 10 ms
