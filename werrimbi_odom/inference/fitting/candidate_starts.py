@@ -97,12 +97,12 @@ def _whitened_squares(runs: Concatenated, point: Point) -> float:
 
 
 def _is_a_delay(score: Score) -> bool:
-    """Whether all that an effect does is that the reference, or its heading, is late."""
+    """Whether all that an effect does is that the reference's stamps are late."""
     effect = score.candidate.effect
     if effect.stage != "reference":
         return False
     view = usual_view(effect)
-    return view != View() and view._replace(delay=0.0, heading_delay=0.0) == View()
+    return view != View() and view._replace(delay=0.0) == View()
 
 
 def _is_of_a_point(score: Score) -> bool:
