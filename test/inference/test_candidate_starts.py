@@ -5,28 +5,37 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from test.inference.driven import run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
-from test.model.drives import ROBOT
+from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with, with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.free_parameters import START_YAW, changed
+from werrimbi_odom.inference.fitting.free_parameters import (
+    START_YAW,
+    changed,
+    parameters_to_fit,
+)
 from werrimbi_odom.inference.fitting.prediction import predicted_legs, turns_over
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
 
 
 @body_effect(size=Parameter("", null=0.0, typical=0.01, bounds=(-1.0, 1.0), says="of the trouble"))
@@ -91,6 +100,22 @@ def test_sizes_that_stood_in_for_a_lever_arm_do_not_stay() -> None:
     assert effect.values["y"] == pytest.approx(0.0, abs=2e-3)
 
 
+def test_what_drives_do_not_determine_does_not_stay_where_its_score_sent_it() -> None:
+    """Lines and spins: a base 36 % larger was told, beside a sharpness that was not determined."""
+    speed, turning = np.tile(np.repeat([[0.3, 0.0, -0.3, 0.0], [0.0, 0.9, 0.0, -0.9]], 60, 1), 3)
+    runs = concatenated(match_for_fit([run_by(ROBOT, speed, turning)], ROBOT, 1.0))
+    begun = fit_calibration(runs, ROBOT)
+    model = begun.point.model
+    turns = find("turn_dependent_track").using(sharpness=-0.265, sense=0.0)
+    started = replace(
+        begun.point, model=replace(model, robot=replace(model.robot, effects=(turns,)))
+    )
+    fit = fitted(runs, started, [turns.name], parameters_to_fit(turns.effect), ROBOT)
+    (found,) = fit.point.model.robot.effects
+    assert found.values["sharpness"] == 0.0
+    assert fit.point.model.robot.wheel_separation_multiplier == pytest.approx(1.0, abs=0.01)
+
+
 @pytest.mark.parametrize("point", [0.063 - 0.04j, -0.02 + 0.06j])
 def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: complex) -> None:
     circle = positions_of_a_point("circle", [0.3] * 5, [0.3] * 5, point)
@@ -148,3 +173,38 @@ def test_jitter_of_the_stamps_does_not_stand_in_for_a_delay() -> None:
     assert best.names == ("reference_delay",)
     (delay,) = best.point.model.robot.effects[-1].values.values()
     assert delay == pytest.approx(0.05, abs=0.02)
+
+
+COARSE = Robot(
+    wheel_separation=0.1,
+    wheel_radius=0.017,
+    left_ticks_per_revolution=20.0,
+    right_ticks_per_revolution=20.0,
+)
+
+
+def coarsely_counted(seed: int) -> Run:
+    """48 s of wheels with few counts a turn, by a reference that is 20 ms late."""
+    fine = replace(COARSE, left_ticks_per_revolution=2e4, right_ticks_per_revolution=2e4)
+    random = np.random.default_rng(seed)
+    speed = random.uniform(-0.08, 0.15, 40) * (random.random(40) > 0.2)
+    turning = random.uniform(-1.5, 1.5, 40) * (random.random(40) > 0.3)
+    smooth = np.ones(30) / 30.0
+    driven = [np.convolve(np.repeat(part, 120), smooth, "same") for part in (speed, turning)]
+    counts = read(COARSE, 100.0, *driven)
+    path = trajectory(fine, *read(fine, 100.0, *driven))
+    seen = slice(None, None, 2)
+    noise = random.normal(0.0, [[2e-4], [2e-4], [1.6e-3]], (3, path.x[seen].size))
+    x, y, yaw = np.array([path.x[seen], path.y[seen], path.yaw[seen]]) + noise
+    ticks = Ticks(counts.time, counts.left.astype(float), counts.right.astype(float), {})
+    reference = Reference(path.time[seen] + 0.02, x, y, yaw)
+    return Run(f"coarse_{seed}", Path(f"coarse_{seed}"), ticks, reference)
+
+
+@pytest.mark.parametrize("first", [0, 6])
+def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
+    """Twenty counts a turn: the score at null ended 4 ms from none, and slip was named instead."""
+    found = diagnose([coarsely_counted(first + number) for number in range(3)], COARSE, LIBRARY)
+    assert found.found == ("reference_delay",)
+    (late,) = found.model.robot.effects
+    assert late.values["delay"] == pytest.approx(0.02, abs=0.006)  # a message takes 10 ms

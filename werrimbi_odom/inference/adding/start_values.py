@@ -20,7 +20,7 @@ from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidate_starts import in_place_of_jitter, started_with
+from werrimbi_odom.inference.fitting.candidate_starts import looked_for_delay, started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import (
@@ -148,7 +148,7 @@ def starts(
 
     Where not all of the calibration is determined, it may stand in for the effect, and a fit that
     starts with it stays with it. Then there is also a start at the given robot's sizes, and where
-    jitter of the stamps may stand in for a delay one with that delay, as in a diagnosis.
+    a score is no guide to a delay one with the best of some, as in a diagnosis.
     """
     begun = [(before, (*CALIBRATION, *numbers))]
     if before.sizes_held:
@@ -160,7 +160,7 @@ def starts(
         for score in _best_shapes(scored(drives, at, [effect], beside)):
             start = start_at(drives.laid, at, score, numbers)
             found.append(start)
-            if (instead := in_place_of_jitter(drives.laid, at.point, score)) is not None:
+            if (instead := looked_for_delay(drives.laid, at.point, score)) is not None:
                 found.append(replace(start, point=instead))
     return tuple(found)
 

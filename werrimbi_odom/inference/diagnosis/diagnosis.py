@@ -38,7 +38,7 @@ from werrimbi_odom.inference.diagnosis.forward_selection import (
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting
+from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect, lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -195,14 +195,16 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
 
     Few parts of the drives may show an effect: of a late clock on one long circle, those with
     starts and stops. So few cannot prove it alone, even if they agree. But if a dependence lasts,
-    something is missing, and the effect competes for it. What a law of the model leaves in its own
-    variables is no such sign.
+    something is missing, and the effect competes for it, if the parts speak for it at all. What a
+    law of the model leaves in its own variables is no such sign.
     """
     best = _significant(this)
     if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < rules.SURE:
         return best, _beyond_the_library(this, best, runs)
     lasts = _beyond_the_library(this, None, runs)
     if lasts is None or best is None or disagreeing(best, best.names[-1]):
+        return None, lasts
+    if homogeneity_of_effect(runs, best, best.names[-1]) > rules.SURE_WHEN_ASKED:
         return None, lasts
     rest = misfit_of_held_law(this, None, lasts, runs)
     if rest is not None and rest.effect is not None:

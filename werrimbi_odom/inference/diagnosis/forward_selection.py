@@ -12,11 +12,12 @@ from typing import Any
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.candidate_starts import (
-    in_place_of_jitter,
     looked_for,
+    looked_for_delay,
     started_with,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -153,9 +154,10 @@ def search_round(
 
     tried = []
     chosen = worth_fitting(ordered)
+    any_seen = any(chance_of_score(score, before, len(looked_at)) < rules.SURE for score in ordered)
     for score in ordered:
         looked = [] if score in chosen else [looked_for(runs, point, score)]
-        for start in (*looked, in_place_of_jitter(runs, point, score)):
+        for start in (*looked, looked_for_delay(runs, point, score, any_seen=any_seen)):
             fit = None if start is None else fitted_from(runs, start, score)
             tried += [fit] if fit is not None and fit.determined else []
     works: list[Callable[[Concatenated], Any]] = [partial(best_fit, score) for score in chosen]

@@ -31,6 +31,8 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,
     NUISANCES,
     FreeParameter,
+    Model,
+    changed,
     own_of,
     shared_of,
 )
@@ -158,7 +160,8 @@ def fitted(
 ) -> Fitted:
     """Fit a model with its calibration, and select the calibration effects that it needs."""
     every = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
-    result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
+    nothing = _without_sizes(point.model, given)
+    result = fit_model(runs, point, every, given=nothing, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
     ways = determined(design, result.robot, result.held)
     penalty, scatter = penalty_of_one(runs), scatter_of(runs, design)
@@ -212,6 +215,23 @@ def fitted(
         design,
         ways.held,
     )
+
+
+def _without_sizes(model: Model, given: Robot) -> Model:
+    """A model with the sizes of all effects beyond the given robot's at null.
+
+    A score of drives that do not determine a size suggests a start far away: on lines and spins
+    alone a base that grows with sharpness, beside a base that makes up for it.
+    """
+    own = {item.name for item in given.effects}
+    nulls = {
+        f"{item.name}.{name}": declared.null
+        for item in model.robot.effects
+        if item.name not in own
+        for name, declared in item.effect.parameters.items()
+        if not (declared.tries or name in (item.effect.quadrature or ())[1:])
+    }
+    return Model(changed(model.robot, nulls), model.own)
 
 
 def covariance_of(design: Design, ways: Directions) -> Floats:

@@ -60,25 +60,40 @@ def looked_for(runs: Concatenated, point: Point, score: Score) -> Point | None:
     )
 
 
-def in_place_of_jitter(runs: Concatenated, point: Point, score: Score) -> Point | None:
-    """Start with the delay that stands behind a large jitter of the stamps; None where none may.
+def looked_for_delay(
+    runs: Concatenated, point: Point, score: Score, *, any_seen: bool = True
+) -> Point | None:
+    """Start with the best of some delays, where a score at null is no guide to it; or None.
 
-    The noise of the stamps is then typical, and the delay the best of some.
+    Noise that was fitted without the delay has taken most of it, and between the steps of a coarse
+    counter the likelihood has minima of its own. So where `any_seen` effect might be named instead,
+    it is looked for. Where the jitter of the stamps was found to be large, the delay may stand
+    behind it: the jitter is then typical.
     """
     jitter = math.sqrt(float(point.variances.stamp.max()))
-    if not (runs.has_stamp_noise and jitter > rules.MOST_STAMP_NOISE and _is_a_delay(score)):
+    behind_jitter = runs.has_stamp_noise and jitter > rules.MOST_STAMP_NOISE
+    if not (_is_a_delay(score) and (any_seen or behind_jitter)):
         return None
+    if behind_jitter:
+        usual = np.full_like(point.variances.stamp, rules.TYPICAL_STAMP_NOISE**2)
+        point = replace(point, variances=replace(point.variances, stamp=usual))
     (item,) = score.candidate.effect.parameters.values()
-    usual = np.full_like(point.variances.stamp, rules.TYPICAL_STAMP_NOISE**2)
-    point = replace(point, variances=replace(point.variances, stamp=usual))
+    tried = rules.DELAYS_TRIED[:: 1 if runs.has_coarse_counters else 2]
     starts = []
-    either = np.concatenate([-rules.DELAYS_TRIED, rules.DELAYS_TRIED])
-    for delay in jitter * either / (STEP * item.scale):
+    for delay in np.concatenate([-tried, tried]) / (STEP * item.scale):
         model = with_candidate(point.model, replace(score, coefficients=np.array([delay])))
         start = replace(point, model=model)
-        white = unexpected(runs, start, predict_all(model, runs)).whitened()
-        starts.append((float(np.sum(white**2)), start))
-    return min(starts, key=lambda start: start[0])[1]
+        starts.append((_whitened_squares(runs, start), start))
+    squares, best = min(starts, key=lambda start: start[0])
+    if behind_jitter:
+        return best
+    told = min(_whitened_squares(runs, each) for each in (point, started_with(runs, point, score)))
+    return best if squares < told - rules.RIVAL else None
+
+
+def _whitened_squares(runs: Concatenated, point: Point) -> float:
+    white = unexpected(runs, point, predict_all(point.model, runs)).whitened()
+    return float(np.sum(white**2))
 
 
 def _is_a_delay(score: Score) -> bool:

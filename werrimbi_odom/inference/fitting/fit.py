@@ -105,6 +105,7 @@ def fit_model(
     point: Point,
     numbers: Sequence[FreeParameter] = CALIBRATION,
     *,
+    given: Model | None = None,
     find_jumps: bool = True,
     rounds: int = 3,
 ) -> ModelFit:
@@ -118,13 +119,15 @@ def fit_model(
         Start of the fit.
     numbers : sequence of FreeParameter
         Parameters that may change, including per-run ones.
+    given : Model, optional
+        Values of what the driving does not determine. Those of the start, if not given.
     find_jumps : bool
         Find the legs on which the reference jumped. Do this once for a set of runs: fits that are
         compared must exclude the same legs.
     rounds : int
         Largest number of alternations between noise and model parameters.
     """
-    given = point.model
+    given = given or point.model
     if find_jumps:
         noise = point.variances
         point = _robustly(runs, point, numbers)

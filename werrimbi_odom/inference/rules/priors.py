@@ -27,9 +27,10 @@ MOST_STAMP_NOISE = 0.02
 intervals of 100 Hz. Weighed by it, the legs that would show the delay hardly count, so that a fit
 of the delay begins with the typical jitter instead."""
 
-DELAYS_TRIED = np.array([0.5, 1.0, 1.5, 2.0, 3.0])
-"""Delays, over that jitter, from which the best is the start, of either sign: a delay makes errors
-of the size of a jitter as large where a robot starts and stops, and smaller ones elsewhere."""
+DELAYS_TRIED = 0.005 * 2.0 ** (0.5 * np.arange(13))
+"""Delays [s] from which the best is a start, of either sign: a fit finds the rest, from below what
+a message takes to where the set-up's search of clocks begins. Each second one is enough but for
+coarse counters, between whose steps the likelihood has minima of its own."""
 
 STRANGE_NOISE = 0.01
 """Wheel noise [m^0.5] above which it is no rolling wheel's: 1 cm after 1 m, three times that of the
