@@ -43,7 +43,7 @@ def stray_poses(measured: Reference, gap: NDArray[np.bool_]) -> NDArray[np.bool_
         rows = np.arange(off.shape[1])
         wrong = spanned[rows + count + 1] == spanned[rows]
         for number, (away, square) in enumerate(zip(off, took, strict=True), start=1):
-            wrong &= (away > least[rows + number]) & (2.0 * away > rules.JOLT * square)
+            wrong &= (away > least[rows + number]) & (away > 0.5 * rules.JOLT * square)
             wrong &= np.abs(chord - (count + 1) * step[rows]) < rules.JUMP_LASTS * away
         for number in range(1, count + 1):
             found[rows[wrong] + number] = True
