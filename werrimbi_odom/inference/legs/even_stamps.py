@@ -136,8 +136,7 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
 
 def _lost_scans(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     """Count missing scans: holes in which the robot moves several times a neighbouring step."""
-    interval, step = np.diff(time), _steps(left, right)
-    times = _times_those_beside(step, 0.5 * float(np.median(step)))
+    interval, times = np.diff(time), _steps_in_one(left, right)
     holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
     return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
 
@@ -151,7 +150,7 @@ def _lost_messages(time: Floats, left: Counts, right: Counts) -> NDArray[np.intp
     """
     interval = np.diff(time)
     period, lost = float(np.median(interval)), np.zeros(interval.size, dtype=np.intp)
-    times = _times_those_beside(_steps(left, right), rules.FEW_COUNTS)
+    times = _steps_in_one(left, right)
     twice = (interval > rules.EVEN_LONG * period) & ~(times < rules.EVEN_LONG)
     wide = np.flatnonzero(twice & (period > 0.0))
     reach = rules.EVEN_BESIDE
@@ -165,18 +164,13 @@ def _lost_messages(time: Floats, left: Counts, right: Counts) -> NDArray[np.intp
     return lost
 
 
-def _steps(left: Counts, right: Counts) -> Floats:
-    """How far the wheels turn in each interval, on average, (n - 1,)."""
-    return np.asarray(0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right))))
-
-
-def _times_those_beside(step: Floats, least: float) -> Floats:
-    """Each step relative to those beside it; nan where these are not more than `least`."""
+def _steps_in_one(left: Counts, right: Counts) -> Floats:
+    """How many of the steps beside it each step is; nan where wheels hardly turn; (n - 1,)."""
+    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
     wide = np.pad(step, 2, mode="edge")
     beside = 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
-    found = np.full(step.size, np.nan)
-    np.divide(step, beside, out=found, where=beside > least)
-    return found
+    drives = beside > 0.5 * float(np.nanmedian(step))
+    return np.asarray(np.divide(step, beside, out=np.full(step.size, np.nan), where=drives))
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
