@@ -100,19 +100,6 @@ def test_a_message_told_twice_was_read_once() -> None:
     assert scatter(found - read[twice]) < 0.3 * scatter(came - read)
 
 
-@pytest.mark.parametrize("share", [0.005, 0.02])
-def test_lost_messages_are_counted(share: float) -> None:
-    """Without them each stamp beside a hole was put right by half a period too much."""
-    random = np.random.default_rng(6)
-    read = PERIOD * np.arange(4000)
-    read = read[random.random(4000) >= share]
-    came = read + random.normal(0.0, 0.15 * PERIOD, read.size)
-    counts = driven(read)
-    found = with_even_stamps(came, *counts)
-    assert found is not came
-    assert scatter(found - read) < 0.4 * scatter(came - read)
-
-
 def by_scans(seen: np.ndarray, stamps: np.ndarray, *, matched: bool = True) -> Reference:
     """Poses of a robot that drives curves at changing speed, to 2 mm and 2 mrad."""
     noise = np.random.default_rng(7).normal(0.0, 2e-3, (3, seen.size))

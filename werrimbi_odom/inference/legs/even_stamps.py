@@ -38,7 +38,7 @@ def with_even_stamps(
     left, right : ndarray, shape (n,)
         Cumulative counts.
     lost : ndarray, shape (n - 1,), optional
-        Number of missing messages between neighbours; by default what stamps and counts say.
+        Number of missing messages between neighbours; none by default.
     least : float
         Stamps are corrected only if the correction exceeds this share of the message interval.
 
@@ -51,15 +51,10 @@ def with_even_stamps(
         return time
     first = ~_told_again(time, left, right)
     row = np.cumsum(first) - 1
-    stamps, sides = time[first], (left[first], right[first])
-    if stamps.size <= rules.EVEN_WINDOW:
-        return time
-    number = np.arange(float(stamps.size))
-    if lost is None:
-        number[1:] += np.cumsum(_lost_messages(stamps, *sides))
-    else:
+    stamps, number = time[first], np.arange(float(row[-1] + 1))
+    if lost is not None:
         number[1:] += np.cumsum(lost)[first[1:]]
-    if not _by_timer(stamps, number, *sides):
+    if stamps.size <= rules.EVEN_WINDOW or not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
     tenth = 0.1 * period * number  # keeps readings in order
@@ -128,49 +123,22 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
     time = np.asarray(reference.time, dtype=np.float64)
     if time.size < rules.EVEN_MESSAGES:
         return reference
-    even = with_even_stamps(time, left, right, _lost_scans(time, left, right))
+    even = with_even_stamps(time, left, right, _lost(time, left, right))
     # A larger correction means the numbering is wrong: too many scans are missing.
     late = float(np.std(even - time)) > rules.EVEN_MOST * float(np.median(np.diff(time)))
     return reference if even is time or late else replace(reference, time=even)
 
 
-def _lost_scans(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
+def _lost(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     """Count missing scans: holes in which the robot moves several times a neighbouring step."""
-    interval, times = np.diff(time), _steps_in_one(left, right)
-    holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
-    return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
-
-
-def _lost_messages(time: Floats, left: Counts, right: Counts) -> NDArray[np.intp]:
-    """Count lost messages in each interval: all that follow come later by as many; (n - 1,).
-
-    A message that waited is late alone, and wheels that turn on do not turn further in it. Without
-    the lost ones the numbers of messages fall behind, and an even timer seems to err by half a
-    period beside each hole.
-    """
     interval = np.diff(time)
-    period, lost = float(np.median(interval)), np.zeros(interval.size, dtype=np.intp)
-    times = _steps_in_one(left, right)
-    twice = (interval > rules.EVEN_LONG * period) & ~(times < rules.EVEN_LONG)
-    wide = np.flatnonzero(twice & (period > 0.0))
-    reach = rules.EVEN_BESIDE
-    for hole in wide[np.argsort(-interval[wide], kind="stable")].tolist():
-        first, after = max(hole + 1 - reach, 0), hole + 1
-        last = min(after + reach, time.size)
-        number = np.concatenate([[0], np.cumsum(1 + lost[first : last - 1])])
-        late = time[first:last] - period * number
-        more = np.median(late[after - first :]) - np.median(late[: after - first])
-        lost[hole] = int(max(more / period + rules.EVEN_UNSURE, 0.0))
-    return lost
-
-
-def _steps_in_one(left: Counts, right: Counts) -> Floats:
-    """How many of the steps beside it each step is; nan where wheels hardly turn; (n - 1,)."""
     step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
     wide = np.pad(step, 2, mode="edge")
     beside = 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
-    drives = beside > 0.5 * float(np.nanmedian(step))
-    return np.asarray(np.divide(step, beside, out=np.full(step.size, np.nan), where=drives))
+    drives = beside > 0.5 * float(np.median(step))
+    times = np.divide(step, beside, out=np.ones_like(step), where=drives)
+    holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
+    return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:

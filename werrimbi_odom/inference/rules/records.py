@@ -162,15 +162,6 @@ EVEN_HOLE = 1.7
 """Travel of a step relative to its neighbour, above which a scan is missing in between: nearer to
 two than to one, and more than noise of some millimetres and a start make of one."""
 
-EVEN_LONG = 1.5
-"""Interval of messages in periods, and travel in it relative to its neighbours, above which some
-may be lost in it: half way between none and one."""
-
-EVEN_BESIDE, EVEN_UNSURE = 5, 0.25
-"""Messages to either side of a hole whose stamps, by their medians, tell how many were lost in it:
-two that waited do not matter. And the share of a period by which a lost one may come short: two
-deviations of such a difference, where stamps scatter by 0.15 of a period."""
-
 EVEN_MOST = 0.4
 """Largest correction of scan stamps (rms), as a share of a turn of the lidar. A delay that is
 uniform over a turn has 0.29; if scans are missing by the dozen, without a report, it is 0.45."""
