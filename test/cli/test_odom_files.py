@@ -39,7 +39,7 @@ def test_an_existing_file_is_replaced_and_parts_are_gone(place: Path) -> None:
         ),
         (
             lambda p: (p / "robot.yaml").write_text(ROBOT[: ROBOT.index("    left_ticks")]),
-            "robot.yaml: odom_node must also give left_ticks_per_revolution (ticks), right_ticks_",
+            "run/ticks.csv holds counts, and {place}/robot.yaml does not say how many there are in",
         ),
     ],
 )
@@ -49,7 +49,7 @@ def test_bad_input_is_one_line_and_writes_nothing(
     spoil(place)
     before = sorted(path.name for path in place.iterdir())
     told = complaint(*command(place, "--json", place / "figures.json"))
-    assert told.startswith(f"werrimbi odom: {place}/{said}")
+    assert told.startswith(f"werrimbi odom: {place}/{said.format(place=place)}")
     assert sorted(path.name for path in place.iterdir()) == before
 
 

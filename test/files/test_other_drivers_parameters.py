@@ -68,6 +68,14 @@ diff_drive_controller:
       publish_tf: true
 """
 
+OWN = """\
+odom_node:
+  ros__parameters:
+    wheel_separation: 0.35
+    wheel_radius: 0.05
+"""
+"""A file of ours that says no more than a ruler does."""
+
 
 def refused(path: Path, text: str) -> str:
     path.write_text(text)
@@ -91,7 +99,7 @@ def test_a_controllers_file_is_read_and_it_is_said_what_is_not_needed(tmp_path: 
     assert "publish_rate: 50.0" in out.read_text()
 
 
-@pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT])
+@pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT, OWN])
 def test_without_ticks_positions_in_radians_are_read_and_counts_refused(
     tmp_path: Path, text: str
 ) -> None:

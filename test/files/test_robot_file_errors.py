@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from pathlib import Path
 
@@ -158,9 +159,17 @@ def complaint(path: Path, text: str | bytes) -> str:
         (_with("effects: lateral_slip"), ", line 7: effects must be a list of names, [] for none"),
         (_with("wheel_radius: 0.06"), ', line 7: this is not YAML: found duplicate key "wheel_rad'),
         (
-            "odom_node:\n  ros__parameters:\n    wheel_radius: 0.05\n",
+            "odom_node:\n  ros__parameters:\n    wheel_radius: 0.05\n    position_unit: ticks\n",
             ": odom_node must also give wheel_separation (m), left_ticks_per_revolution (ticks), "
             "right_ticks_per_revolution (ticks)",
+        ),
+        (
+            _with("encoder_bits: 16").replace("    left_ticks_per_revolution: 2000.0\n", ""),
+            ": odom_node must also give left_ticks_per_revolution (ticks)",
+        ),
+        (
+            re.sub(r".*_ticks_.*\n", "", _with("encoder_bits: 16")),
+            ", line 5: encoder_bits needs left_ticks_per_revolution and right_ticks_per_revolution",
         ),
         ("odom_node:\n  ros__parameters:\n", ": odom_node must also give wheel_separation (m)"),
         ("odom_node:\n  ros__parameters: 5\n", ", line 2: ros__parameters must hold lines of name"),

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import fields
 
 from werrimbi_odom.errors import InputError, nearest
@@ -58,7 +58,7 @@ PARAMETERS: tuple[NodeParameter, ...] = (
         "left_ticks_per_revolution",
         None,
         "Counts of the left encoder for one turn of its wheel, gear and edges included. "
-        "The node does without it when positions come in radians: then there is no quantisation.",
+        "Not needed where positions come in radians: then there is no quantisation.",
         unit="ticks",
         above=0.0,
     ),
@@ -242,6 +242,26 @@ def limits_of(values: Mapping[str, Value]) -> EncoderLimits:
     )
 
 
-def needs_no_ticks(values: Mapping[str, Value]) -> bool:
-    """Whether wheel positions are in radians, so that counts per turn are only their resolution."""
-    return values["input_type"] == "joint_state" and values["position_unit"] == "radians"
+def virtual_ticks(values: Mapping[str, Value], given: Container[str]) -> dict[str, Value]:
+    """Counts of a turn where none are given and none are needed, else nothing.
+
+    Where wheel positions are in radians, counts of a turn are only their resolution.
+
+    Parameters
+    ----------
+    values : mapping of str to Value
+        All parameters known so far, defaults included.
+    given : container of str
+        Names of the parameters that are given, well or badly.
+
+    Raises
+    ------
+    InputError
+        If positions are to be wrapped at a number of counts.
+    """
+    radians = values["input_type"] == "joint_state" and values["position_unit"] == "radians"
+    if not radians or any(name in given for name in TICKS):
+        return {}
+    if values["encoder_bits"]:
+        raise InputError(f"encoder_bits needs {' and '.join(TICKS)}")
+    return dict.fromkeys(TICKS, VIRTUAL_TICKS_PER_REVOLUTION)

@@ -38,9 +38,9 @@ from werrimbi_odom.files.parameters import (
     doubtful_sizes,
     find,
     limits_of,
-    needs_no_ticks,
     robot_of,
     tolerance_of,
+    virtual_ticks,
 )
 from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
 from werrimbi_odom.model.effect import AppliedEffect
@@ -163,14 +163,18 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
             wrong.append((error.line, str(error)))
         except InputError as error:
             wrong.append((line, str(error)))
+    values, ticks = {**defaults(), **given}, dict[str, Value]()
+    try:
+        ticks = virtual_ticks(values, block)
+        values.update(ticks)
+    except InputError as error:
+        wrong.append((line_of(block, "encoder_bits"), str(error)))
     told = [f"line {line}: {words}" for line, words in sorted(wrong)]
     remarks = [*remark_on(unused), *remark_on(of_turtlebot, "TurtleBot3's driver")]
     if taken:
         read = " and ".join(f"{own} {raw}" for own, raw in taken.items())
         remarks.append(f"wheels is of TurtleBot3's driver; read as {read}")
-    values = {**defaults(), **given}
-    if remarks and needs_no_ticks(values) and not any(name in block for name in TICKS):
-        values.update(dict.fromkeys(TICKS, VIRTUAL_TICKS_PER_REVOLUTION))
+    if ticks:
         remarks.append(
             f"{' and '.join(TICKS)} are not given: wheel positions must come in radians, and are "
             "taken as exact to a microradian"

@@ -160,11 +160,10 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
         except InputError as error:
             wrong.append(str(error))
     wrong += _without_channels(effects)
-    without_ticks = table.needs_no_ticks(values) and not any(name in given for name in table.TICKS)
-    if without_ticks:
-        values.update(dict.fromkeys(table.TICKS, table.VIRTUAL_TICKS_PER_REVOLUTION))
-        if values["encoder_bits"]:
-            wrong.append("encoder_bits needs " + " and ".join(table.TICKS))
+    try:
+        values.update(table.virtual_ticks(values, given))
+    except InputError as error:
+        wrong.append(str(error))
     missing = [
         f"{item.name} ({item.unit})"
         for item in table.PARAMETERS

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.comparison.residuals import Measure, measured_alike
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
-from werrimbi_odom.inference.legs.cutting import cut_for_fit, leg_ends
+from werrimbi_odom.inference.legs.cutting import cut_for_fit, ends_in
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
@@ -144,7 +144,7 @@ def _cut_to_lengths(
     counts: set[int] = set()
     for times in sorted(rules.LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
         found = [
-            [leg_ends(way, record.gap, times) for way, record in zip(*own, strict=True)]
+            [ends_in(record, way, times) for way, record in zip(*own, strict=True)]
             for own in zip(ways, records, strict=True)
         ]
         count = sum(

@@ -18,6 +18,7 @@ from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
+from werrimbi_odom.inference.legs.stray_poses import stray_poses
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -70,12 +71,14 @@ def record_of(
         )
     measured = poses_at(reference, rows)
     found = _silences(run, robot, counters, measured.time, taken_out, leg, turn)
+    gap = touched(measured.time, [*map(_surely_around, found), *taken_out])
     return AlignedRun(
         run.name,
         counters,
         measured,
         delay,
-        touched(measured.time, [*map(_surely_around, found), *taken_out]),
+        gap,
+        stray_poses(measured, gap),
         found,
         typical_sigma(reference.sigma_xy),
         typical_sigma(reference.sigma_yaw),

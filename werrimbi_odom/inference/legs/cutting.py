@@ -104,7 +104,17 @@ def rows_of_legs(record: AlignedRun, robot: Robot, leg: float, turn: float) -> N
     """Poses of a record at which legs begin and end."""
     counters = record.counters
     way = np.interp(record.measured.time, counters.time, counters.way(robot, leg, turn))
-    return leg_ends(way, record.gap)
+    return ends_in(record, way)
+
+
+def ends_in(record: AlignedRun, way: Floats, leg: float = 1.0) -> NDArray[np.intp]:
+    """Poses of a record at which legs begin and end, by the travel at each pose (`leg_ends`).
+
+    Where that pose is a stray one, the next that is none.
+    """
+    rows = np.where(record.stray, way.size, np.arange(way.size))
+    sound = np.minimum.accumulate(rows[::-1])[::-1]
+    return np.unique(sound[leg_ends(way, record.gap, leg)])
 
 
 def leg_ends(way: Floats, gap: NDArray[np.bool_], leg: float = 1.0) -> NDArray[np.intp]:

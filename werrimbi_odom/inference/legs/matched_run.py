@@ -38,6 +38,8 @@ class AlignedRun:
     [s]."""
     gap: NDArray[np.bool_]
     """Excluded intervals between poses, shape (r - 1,)."""
+    stray: NDArray[np.bool_]
+    """Poses that are wrong for themselves alone, at which no leg begins or ends; shape (r,)."""
     left_out: tuple[LeftOut, ...]
     sigma_xy: float | None
     """Stated standard deviation of the reference's position [m]."""

@@ -68,3 +68,7 @@ noise, and what lasts is found by itself once the model is right (an event)."""
 JUMP_OF_A_LEG = 40.0
 """Squared deviation of a leg, relative to the median of its run, above which the reference jumped:
 chi-squared with three degrees of freedom exceeds it in one leg of 10^8."""
+
+STRAY_AT_ONCE = 2
+"""Most wrong poses in a row at which no leg ends: single ones, and the few pairs that chance makes
+of them. What lasts longer is a jump, or an event."""
