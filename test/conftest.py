@@ -8,7 +8,7 @@ import fcntl
 import os
 import re
 import signal
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,9 @@ settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 NO_DEPENDENCY_OF_PACKAGE_XML = {"distributed", "mujoco", "nicegui", "plotly", "rosbags"}
 """What `pip install werrimbi_odom[all]` brings, and rosdep does not: `colcon test` does without."""
+
+DRIVES = ("train/square_ccw", "train/free_brisk", "train/eights_and_spins", "holdout/free_brisk")
+"""Those of `werrimbi simulate` that suffice to name what is hidden."""
 
 
 @pytest.hookimpl(hookwrapper=True)
@@ -57,19 +60,28 @@ def no_line_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
-    """Drives as `werrimbi simulate` writes them, made once for all tests: to be read alone."""
+    """Some drives of what `werrimbi simulate` writes, made once for all tests: to be read alone."""
     place = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         place = place.parent  # which all workers share
 
     def made(*words: str) -> Path:
+        from werrimbi_odom import simulation
         from werrimbi_odom.cli.main import main
+
+        def some(robot: Any, seed: int, *, hidden: Any) -> Iterator[tuple[str, Any]]:
+            for number, (name, each) in enumerate(simulation.drives(seed).items()):
+                if name in DRIVES:
+                    seeded = 1000 * seed + number
+                    yield name, simulation.record(robot, each, seed=seeded, hidden=hidden)
 
         folder = place / "_".join(("simulated", *words)).replace("--", "")
         with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not folder.exists():
-                assert main(["simulate", "--out", str(folder), *words]) == 0
+                with pytest.MonkeyPatch.context() as patch:
+                    patch.setattr(simulation, "session", some)
+                    assert main(["simulate", "--out", str(folder), *words]) == 0
         return folder
 
     return made

@@ -48,8 +48,8 @@ from werrimbi_odom.simulation.hidden.wheels import (
 )
 
 PER_TURN = 2e5
-BRISK = free(25.0, seed=5, speed=0.7, yaw_rate=2.0, acceleration=1.2, backwards=0.4)
-CALM = free(25.0, seed=6, speed=0.4, yaw_rate=1.0, backwards=0.4)
+BRISK = free(12.0, seed=5, speed=0.7, yaw_rate=2.0, acceleration=1.2, backwards=0.4)
+CALM = free(12.0, seed=6, speed=0.4, yaw_rate=1.0, backwards=0.4)
 
 
 def made(name: str, **values: float) -> AppliedEffect:

@@ -91,7 +91,9 @@ def test_sizes_that_stood_in_for_a_lever_arm_do_not_stay() -> None:
     assert effect.values["y"] == pytest.approx(0.0, abs=2e-3)
 
 
-@pytest.mark.parametrize("point", [0.063 - 0.04j, -0.02 + 0.06j])
+@pytest.mark.parametrize(
+    "point", [pytest.param(0.063 - 0.04j, marks=pytest.mark.evidence), -0.02 + 0.06j]
+)
 def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: complex) -> None:
     circle = positions_of_a_point("circle", [0.3] * 5, [0.3] * 5, point)
     found = diagnose([circle], ROBOT, LIBRARY)

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of, runs_of
+from test.inference.driven import COMMON, run_of, runs_of
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT
 from werrimbi_odom.api.drives import collection_of, read_robot
-from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
@@ -47,7 +47,7 @@ def runs() -> list[Run]:
 
 
 def diagnosed(fitted: Sequence[Run], held: Sequence[Run]) -> Diagnosis:
-    return diagnose(fitted, GIVEN, LIBRARY, holdout=held)
+    return diagnose(fitted, GIVEN, COMMON, holdout=held)
 
 
 @pytest.fixture(scope="module")
