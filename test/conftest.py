@@ -46,10 +46,25 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, A
         report.longrepr = (str(getattr(collector, "path", "")), 0, reason)
 
 
+LONGEST = (
+    *("test_diagnostics", "test_bad_input", "test_compare_node", "test_live_diagnosis"),
+    *("test_compare_faults", "test_simulated_robot", "test_demo", "test_compare_legs"),
+)
+"""Files with nodes that take longest by the clock, the longest first."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What talks to running nodes comes last: they answer in time where no other test computes."""
-    talks = {path: "rclpy" in path.read_text("utf-8") for path in {item.path for item in items}}
-    items.sort(key=lambda item: talks[item.path])
+    """What talks to running nodes comes last: they answer in time where no other test computes.
+
+    Of these files the longest begin first: else all workers but one wait for it at the end.
+    """
+
+    def place(path: Path) -> tuple[bool, int]:
+        long = LONGEST.index(path.stem) if path.stem in LONGEST else len(LONGEST)
+        return "rclpy" in path.read_text("utf-8"), long
+
+    places = {path: place(path) for path in {item.path for item in items}}
+    items.sort(key=lambda item: places[item.path])
 
 
 @pytest.fixture(autouse=True)
