@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ STILL = BodyMotion(0.0, 0.0, 0.0)
 UNKNOWN = BodyMotion(math.nan, math.nan, math.nan)
 
 
+@cache
 def legs_of(
     seed: int,
     noise: float = 1.0,
@@ -45,11 +47,12 @@ def legs_of(
     random = np.random.default_rng(seed)
     run: Any = drive(
         TRUE,
-        wandering(random, seconds),
+        wandering(random, seconds, 25.0),
         random,
         sigma_xy=sigmas[0],
         sigma_yaw=sigmas[1],
-        every=7,
+        every=3,
+        hertz=25.0,
     )
     counts = (part.astype(np.int64) for part in (run.ticks.left, run.ticks.right))
     path = trajectory(TRUE.entered(noise=noise), run.ticks.time, *counts)
