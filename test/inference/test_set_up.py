@@ -44,7 +44,7 @@ from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.simulation import ReferenceSensor, TrueRobot, drives, hide, record, write_run
+from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
 EVERY = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}
@@ -76,14 +76,7 @@ def recorded(folder: Path, *effects: str, names: Sequence[str] = NAMES) -> list[
     return [
         read_run_folder(
             write_run(
-                record(
-                    TrueRobot(),
-                    manoeuvres[name],
-                    seed=40 + number,
-                    reference=ReferenceSensor(rate_hz=10.0),
-                    ticks_rate_hz=20.0,
-                    hidden=hidden,
-                ),
+                record(TrueRobot(), manoeuvres[name], seed=40 + number, hidden=hidden),
                 folder / Path(name).name,
             )
         )
