@@ -52,7 +52,7 @@ def test_the_size_is_found_within_its_error(creep: Added) -> None:
 
 def test_a_radius_in_degrees_is_found_as_well_as_one_that_is_right() -> None:
     """Legs of 57 m, of the file's metre, would be a handful of a drive of 40 m."""
-    runs = runs_of(PLAIN, (1, 2), 60)
+    runs = runs_of(PLAIN, (1, 2))
     close, far = (
         add_effects([find("wheel_radius_scale")], runs, replace(PLAIN, wheel_radius=radius))
         for radius in (0.05, 0.05 * np.pi / 180.0)
