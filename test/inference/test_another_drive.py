@@ -160,7 +160,7 @@ LARGEST = 1e7
 """No number of the data above is larger: a reference of kilometres in mm."""
 
 
-@settings(max_examples=4, deadline=None, phases=[Phase.generate])
+@settings(max_examples=3, deadline=None, phases=[Phase.generate])
 @given(st.integers(0, 10**6), ANYTHING.filter(lambda kind: kind != "huge"), ANYTHING,
        st.sampled_from([poses, headings, positions]))  # fmt: skip
 def test_of_nonsense_no_size_is_told_that_did_not_occur(

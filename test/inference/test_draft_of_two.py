@@ -148,6 +148,7 @@ def test_what_acts_backwards_alone_is_drafted_with_its_gate() -> None:
     assert values_of(found) == {"gain": pytest.approx(sign * 0.01, rel=0.05)}
 
 
+@pytest.mark.evidence
 def test_lateral_slip_reads_as_a_product_where_no_library_has_it() -> None:
     """Of the yaw rate, in proportion to the way: one variable says it all."""
     (slip,) = (effect for effect in LIBRARY if effect.name == "lateral_slip")

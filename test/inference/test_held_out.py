@@ -113,7 +113,8 @@ def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
 FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
 
-@pytest.mark.parametrize("seed", [22, pytest.param(19, marks=pytest.mark.evidence)])
+@pytest.mark.evidence
+@pytest.mark.parametrize("seed", [22, 19])
 def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     """A clock off by 0.6 s, exchanged wheels and half a base, in 22 s of positions of 3 cm.
 
