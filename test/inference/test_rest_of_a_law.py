@@ -86,7 +86,7 @@ def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path:
     drives = []
     for number in range(5):
         speed = 0.25 + 0.05 * (number % 3)
-        hard = free(60.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=3 * speed)
+        hard = free(120.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=3 * speed)
         recording = record(true, hard, seed=100 + number, hidden=[slip])
         run = read_run(write_run(recording, tmp_path / str(number)), file)
         ticks = run.ticks
