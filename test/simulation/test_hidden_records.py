@@ -211,9 +211,10 @@ def test_everything_in_the_catalogue_can_be_hidden(entry: Entry) -> None:
     "entry", [e for e in sim.CATALOGUE if e.kind not in ("mistake", "robot")], ids=lambda e: e.name
 )
 def test_no_strength_is_no_effect(entry: Entry) -> None:
-    plain = plain_run(SHORT, sim.ReferenceSensor())
+    manoeuvre = DRIVE if entry.kind == "event" else SHORT  # in which what is not null would show
+    plain = plain_run(manoeuvre, sim.ReferenceSensor())
     odd = sim.hide(entry.name, entry.null, seed=3).peculiarity
-    run = sim.record(sim.TrueRobot(), SHORT, seed=1, hidden=[odd])
+    run = sim.record(sim.TrueRobot(), manoeuvre, seed=1, hidden=[odd])
     assert np.abs(run.left_ticks - plain.left_ticks).max() <= 1
     assert np.abs(run.right_ticks - plain.right_ticks).max() <= 1
     np.testing.assert_allclose(run.reference_x_m, plain.reference_x_m, atol=2e-5)
