@@ -47,12 +47,11 @@ def legs_of(
     random = np.random.default_rng(seed)
     run: Any = drive(
         TRUE,
-        wandering(random, seconds, 25.0),
+        wandering(random, seconds),
         random,
         sigma_xy=sigmas[0],
         sigma_yaw=sigmas[1],
-        every=3,
-        hertz=25.0,
+        every=7,
     )
     counts = (part.astype(np.int64) for part in (run.ticks.left, run.ticks.right))
     path = trajectory(TRUE.entered(noise=noise), run.ticks.time, *counts)
