@@ -83,7 +83,7 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
 
 
 def _tree(points: Floats) -> cKDTree:
-    """Its import is a third of a command's start, and most recordings hold no scans."""
+    """Its import is a sixth of a command's start, and most recordings hold no scans."""
     from scipy.spatial import cKDTree
 
     return cKDTree(points)
