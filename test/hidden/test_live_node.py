@@ -77,7 +77,7 @@ def live_error(launch: Callable[..., Launched], file: RobotFile, run: Run) -> fl
     node.until(lambda: node.node.count_publishers("odom") > 0, "publisher of odom")
     node.rest(0.5)
     ticks = run.ticks
-    columns = (part[::2].tolist() for part in (ticks.time.round(6), ticks.left, ticks.right))
+    columns = (ticks.time.round(6).tolist(), ticks.left.tolist(), ticks.right.tolist())
     for number, (time, left, right) in enumerate(zip(*columns, strict=True)):
         node.now = 100.0 + time
         node.ticks(left, right, node.now)
