@@ -11,7 +11,7 @@ unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 # Images of containers often set it; each of a thousand processes would then compile every module anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup demo test lint bench evidence peers recordings docs pictures lock clean
+.PHONY: help setup demo test lint mypy ruff imports bench evidence peers recordings docs pictures lock clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -63,10 +63,17 @@ demo: setup  ## ticks through the real node, then a robot that finds out what it
 test: setup lint  ## linters, then all tests but the long ones
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile --no-loadscope-reorder
 
+# mypy takes most of it, and does not wait for the others.
 lint: setup
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync mypy ruff imports
+
+mypy ruff imports: setup
+mypy:
+	$(BIN)/mypy
+ruff:
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
+imports:
 	$(BIN)/lint-imports
 
 bench: setup  ## how fast, as ratios measured side by side

@@ -8,7 +8,7 @@ import fcntl
 import os
 import re
 import signal
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,9 @@ settings.load_profile("ci" if os.environ.get("CI") else "here")
 NO_DEPENDENCY_OF_PACKAGE_XML = {"distributed", "mujoco", "nicegui", "plotly", "rosbags"}
 """What `pip install werrimbi_odom[all]` brings, and rosdep does not: `colcon test` does without."""
 
+DRIVES = ("train/square_ccw", "train/free_brisk", "train/eights_and_spins", "holdout/free_brisk")
+"""Those of `werrimbi simulate` that suffice to name what is hidden."""
+
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, Any, None]:
@@ -43,10 +46,25 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, A
         report.longrepr = (str(getattr(collector, "path", "")), 0, reason)
 
 
+LONGEST = (
+    *("test_diagnostics", "test_bad_input", "test_compare_node", "test_live_diagnosis"),
+    *("test_compare_faults", "test_simulated_robot", "test_demo", "test_compare_legs"),
+)
+"""Files with nodes that take longest by the clock, the longest first."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What talks to running nodes comes last: they answer in time where no other test computes."""
-    talks = {path: "rclpy" in path.read_text("utf-8") for path in {item.path for item in items}}
-    items.sort(key=lambda item: talks[item.path])
+    """What talks to running nodes comes last: they answer in time where no other test computes.
+
+    Of these files the longest begin first: else all workers but one wait for it at the end.
+    """
+
+    def place(path: Path) -> tuple[bool, int]:
+        long = LONGEST.index(path.stem) if path.stem in LONGEST else len(LONGEST)
+        return "rclpy" in path.read_text("utf-8"), long
+
+    places = {path: place(path) for path in {item.path for item in items}}
+    items.sort(key=lambda item: places[item.path])
 
 
 @pytest.fixture(autouse=True)
@@ -57,19 +75,28 @@ def no_line_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
-    """Drives as `werrimbi simulate` writes them, made once for all tests: to be read alone."""
+    """Some drives of what `werrimbi simulate` writes, made once for all tests: to be read alone."""
     place = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         place = place.parent  # which all workers share
 
     def made(*words: str) -> Path:
+        from werrimbi_odom import simulation
         from werrimbi_odom.cli.main import main
+
+        def some(robot: Any, seed: int, *, hidden: Any) -> Iterator[tuple[str, Any]]:
+            for number, (name, each) in enumerate(simulation.drives(seed).items()):
+                if name in DRIVES:
+                    seeded = 1000 * seed + number
+                    yield name, simulation.record(robot, each, seed=seeded, hidden=hidden)
 
         folder = place / "_".join(("simulated", *words)).replace("--", "")
         with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not folder.exists():
-                assert main(["simulate", "--out", str(folder), *words]) == 0
+                with pytest.MonkeyPatch.context() as patch:
+                    patch.setattr(simulation, "session", some)
+                    assert main(["simulate", "--out", str(folder), *words]) == 0
         return folder
 
     return made

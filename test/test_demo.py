@@ -45,6 +45,7 @@ def test_the_shipped_recording_ends_where_its_covariance_promised(tmp_path: Path
     assert (tmp_path / "path.html").stat().st_size > 1_000_000
 
 
+@pytest.mark.evidence
 def test_the_same_drive_from_its_bag(tmp_path: Path) -> None:
     bag = ROOT / "werrimbi_odom" / "recordings" / "square_bag"
     assert "all: 0.000 µm from offline" in demo(tmp_path, "--run", str(bag))

@@ -31,6 +31,7 @@ def texts(notebook: Any) -> list[str]:
     ]
 
 
+@pytest.mark.evidence
 def test_the_notebook_runs_and_what_it_shows_is_true(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -53,11 +53,11 @@ def written(
     truths: Sequence[Robot],
     channels: Sequence[Mapping[str, np.ndarray]] | None = None,
 ) -> Path:
-    """A run folder for each true robot, and the file of the plain one; returns the folder."""
+    """A minute for each true robot as a run folder, and the file of the plain one."""
     (folder / "robot.yaml").write_text(ROBOT_FILE)
     for seed, truth in enumerate(truths):
         measured = None if channels is None else channels[seed]
-        run = run_of(truth, seed, channels=measured)
+        run = run_of(truth, seed, 60, measured)
         write_run(folder / run.name, run)
     return folder
 

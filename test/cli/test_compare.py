@@ -107,7 +107,13 @@ def test_a_wrong_base_makes_it_worse_and_is_said(
 
 
 @with_recordings
-@pytest.mark.parametrize("name", OPTIONS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.evidence] * (name == "optitrack_robot"))
+        for name in OPTIONS
+    ],
+)
 def test_every_recorded_robot(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

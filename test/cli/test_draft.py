@@ -22,7 +22,7 @@ from werrimbi_odom.effects.contract import check_effect
 def loaded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     truth = replace(PLAIN, effects=(soft_tyres.using(softness=4e-3),))
     random = np.random.default_rng(5)
-    loads = [{"load_kg": np.repeat(random.uniform(0, 10, 20), 100)[:1801]} for _ in range(4)]
+    loads = [{"load_kg": np.repeat(random.uniform(0, 10, 20), 100)[:1201]} for _ in range(4)]
     return written(tmp_path_factory.mktemp("loaded"), [truth] * 4, loads)
 
 

@@ -9,7 +9,9 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import redirect_stderr, redirect_stdout
 from functools import cache
+from io import StringIO
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +19,7 @@ from typing import Any
 import pytest
 
 from test.cli.commands import RECORDING
-from test.command_line import ROOT, WERRIMBI, Werrimbi, ran
+from test.command_line import ROOT, WERRIMBI, Said, Werrimbi, ran
 from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import progress
 from werrimbi_odom.cli.options import EXAMPLES
@@ -27,36 +29,29 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 SQUARE = ROOT / "werrimbi_odom" / "recordings" / "square"
 
 
-def werrimbi(*words: str) -> subprocess.CompletedProcess[str]:
-    """The real command in a process of its own."""
-    return ran([*WERRIMBI, *words], timeout=60)
-
-
 @cache
-def help_of(words: str) -> subprocess.CompletedProcess[str]:
+def help_of(words: str) -> Said:
     """Asked for once in all tests."""
-    return werrimbi(*words.split(), "--help")
+    with redirect_stdout(StringIO()) as out, redirect_stderr(StringIO()) as err:
+        assert command.main([*words.split(), "--help"]) == 0
+    return Said(out.getvalue(), err.getvalue())
 
 
 def test_help_names_every_verb() -> None:
-    done = help_of("")
-    assert done.returncode == 0
-    assert done.stderr == ""
+    said = help_of("")
+    assert said.err == ""
     for verb in command.VERBS:
-        assert f"\n    {verb}" in done.stdout
+        assert f"\n    {verb}" in said.out
 
 
 @pytest.mark.parametrize("verb", command.VERBS)
 def test_every_verb_has_help(verb: str) -> None:
-    done = help_of(verb)
-    assert done.returncode == 0
-    assert done.stdout.startswith(f"usage: werrimbi {verb}")
+    assert help_of(verb).out.startswith(f"usage: werrimbi {verb}")
 
 
 @pytest.mark.parametrize("of", EXAMPLES)
 def test_every_help_ends_with_examples_that_are_right(of: str) -> None:
-    done = help_of(of)
-    given = done.stdout.split("example:\n")[1].splitlines()
+    given = help_of(of).out.split("example:\n")[1].splitlines()
     assert given == [f"  werrimbi {words}" for words in EXAMPLES[of]]
     for example in EXAMPLES[of]:
         words = example.split()
@@ -65,7 +60,7 @@ def test_every_help_ends_with_examples_that_are_right(of: str) -> None:
 
 def test_help_says_what_a_leg_is() -> None:
     for verb in ("compare", "diagnose", "add", "draft", "workbench"):
-        text = " ".join(help_of(verb).stdout.split())
+        text = help_of(verb).words
         assert "drives are cut into legs of so much path" in text
 
 
@@ -81,11 +76,11 @@ def test_help_is_quick_and_imports_nothing_heavy() -> None:
 
 def test_the_package_runs_as_the_command() -> None:
     done = ran([sys.executable, "-m", "werrimbi_odom", "--help"], timeout=60)
-    assert done.stdout == help_of("").stdout
+    assert done.stdout == help_of("").out
 
 
 def test_version() -> None:
-    done = werrimbi("--version")
+    done = ran([*WERRIMBI, "--version"], timeout=60)
     assert done.returncode == 0
     assert done.stdout.startswith("werrimbi_odom ")
 
@@ -105,12 +100,13 @@ def test_version() -> None:
         ),
     ],
 )
-def test_bad_use_is_one_line_and_exit_2(words: tuple[str, ...], said: str) -> None:
-    done = werrimbi(*words)
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert done.stderr.startswith(said)
-    assert done.stderr.count("\n") == 1
+def test_bad_use_is_one_line_and_exit_2(
+    words: tuple[str, ...], said: str, werrimbi: Werrimbi
+) -> None:
+    out, err = werrimbi(*words, code=2)
+    assert out == ""
+    assert err.startswith(said)
+    assert err.count("\n") == 1
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, error: BaseException | None) -> None:

@@ -48,8 +48,12 @@ from werrimbi_odom.simulation.hidden.wheels import (
 )
 
 PER_TURN = 2e5
-BRISK = free(25.0, seed=5, speed=0.7, yaw_rate=2.0, acceleration=1.2, backwards=0.4)
-CALM = free(25.0, seed=6, speed=0.4, yaw_rate=1.0, backwards=0.4)
+BRISK, LONG = (
+    free(seconds, seed=5, speed=0.7, yaw_rate=2.0, acceleration=1.2, backwards=0.4)
+    for seconds in (12.0, 25.0)
+)
+"""The long one for what grows with time, and with the turns of a wheel."""
+CALM = free(12.0, seed=6, speed=0.4, yaw_rate=1.0, backwards=0.4)
 
 
 def made(name: str, **values: float) -> AppliedEffect:
@@ -103,7 +107,8 @@ def recorded(odd: Peculiarity | None, brisk: bool, *, keeps_zero: bool = False) 
         right_ticks_per_revolution=PER_TURN,
         counters_keep_zero=keeps_zero,
     )
-    manoeuvre = BRISK if brisk else CALM
+    brisk_one = LONG if keeps_zero or isinstance(odd, RadiusDrift) else BRISK
+    manoeuvre = brisk_one if brisk else CALM
     return record(robot, manoeuvre, seed=1, hidden=[odd] if odd else [])
 
 

@@ -53,7 +53,7 @@ def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> 
     np.testing.assert_allclose(np.array(live), flat(recorded), rtol=1e-12, atol=1e-12)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(1, 700),

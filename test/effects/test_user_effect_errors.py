@@ -92,8 +92,16 @@ def test_any_result_that_is_none_is_one_line(
     assert RESULTS[result] in said.err
 
 
-@pytest.mark.parametrize("law", ["raise Dumb", "sys.exit(0)", "return 1.0 / 0.0", "return nowhere"])
-@pytest.mark.parametrize("verb", ["diagnose", "add track_width", "draft", "calibrate fit"])
+@pytest.mark.parametrize(
+    ("verb", "law"),
+    [
+        pytest.param(verb, law, marks=[pytest.mark.evidence] * (bool(row) and bool(column)))
+        for row, verb in enumerate(["diagnose", "add track_width", "draft", "calibrate fit"])
+        for column, law in enumerate(
+            ["sys.exit(0)", "raise Dumb", "return 1.0 / 0.0", "return nowhere"]
+        )
+    ],
+)
 def test_no_verb_ends_as_if_all_were_well(
     tmp_path: Path, verb: str, law: str, werrimbi: Werrimbi
 ) -> None:

@@ -289,7 +289,7 @@ def test_a_brace_in_a_name_is_quoted_in_a_list(commented: RobotFile, tmp_path: P
 
 
 @settings(
-    max_examples=75,
+    max_examples=30,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

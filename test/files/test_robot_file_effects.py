@@ -249,7 +249,7 @@ def test_a_phase_of_zero_is_written_where_the_file_left_it_open(tmp_path: Path) 
 
 
 @settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(first=SETS, second=SETS, layout=st.sampled_from(LAYOUTS))
 def test_any_effects_are_read_back_by_us_and_by_yaml_1_1(

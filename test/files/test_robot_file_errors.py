@@ -236,7 +236,7 @@ def test_a_device_without_end_is_not_read_to_its_end() -> None:
 
 
 @settings(
-    max_examples=300,
+    max_examples=100,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

@@ -244,7 +244,7 @@ ROWS = st.lists(st.tuples(TIMES, INT64, FINITE, st.one_of(st.none(), FINITE)), m
 
 
 @settings(
-    max_examples=200,
+    max_examples=80,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
@@ -268,7 +268,7 @@ def test_any_finite_numbers_are_read_back_exactly(
 
 
 @settings(
-    max_examples=200,
+    max_examples=80,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

@@ -48,6 +48,7 @@ def running(words: list[str], place: Path) -> Iterator[None]:
             process.wait(60.0)
 
 
+@pytest.mark.evidence
 def test_the_commands_run(tmp_path: Path) -> None:
     pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
     with socket.socket() as free:

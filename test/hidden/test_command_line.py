@@ -43,12 +43,13 @@ def told(file: Path) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.evidence
 def test_a_random_hidden_effect_is_found_added_and_gone(
     tmp_path: Path, simulated: Callable[..., Path]
 ) -> None:
     day, better = simulated("--hide", "random", "--seed", SEED), tmp_path / "better.yaml"
     robot = day / "robot.yaml"
-    train, holdout = runs_of(day, "train")[:3], runs_of(day, "holdout")[:1]  # enough to tell
+    train, holdout = runs_of(day, "train"), runs_of(day, "holdout")
     werrimbi("compare", "--robot", robot, *holdout, "--json", tmp_path / "before.json")
     apart = ["--holdout", *holdout]
     words = ["--robot", robot, *train, *apart, "--json", tmp_path / "diagnosis.json"]

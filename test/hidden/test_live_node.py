@@ -37,6 +37,7 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
     yield from launcher(tmp_path)
 
 
+@pytest.mark.evidence
 def test_the_node_with_the_added_effect_errs_less(
     launch: Callable[..., Launched], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

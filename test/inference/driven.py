@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from test.model.drives import ROBOT, read
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.calibration.recorded_square import SquareRecording
 from werrimbi_odom.model.robot import Robot
@@ -20,6 +21,17 @@ if TYPE_CHECKING:
     from werrimbi_odom.simulation import Recording
 
 NOISE_XY, NOISE_YAW = 1e-3, 2e-3
+
+COMMON = tuple(
+    find(name)
+    for name in (
+        *("track_width", "unequal_wheel_radii", "wheel_radius_scale", "lateral_slip"),
+        *("castor_kick", "left_backlash", "turn_dependent_track", "load_transfer"),
+        *("reference_delay", "reference_lever_arm", "reference_yaw_offset"),
+    )
+)
+"""Effects for tests that ask something else than which of the library it is: that takes twice as
+long."""
 
 
 def runs_of(truth: Robot, seeds: Sequence[int], seconds: int = 90) -> list[Run]:

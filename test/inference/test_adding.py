@@ -34,7 +34,7 @@ PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noi
 
 
 def added(name: str, truth: Robot, given: Robot = PLAIN) -> Added:
-    runs = runs_of(truth, (1, 2, 3, 4))
+    runs = runs_of(truth, (1, 2, 3, 4), 60)
     return add_effects([find(name)], runs[:3], given, holdout=runs[3:])
 
 
@@ -156,7 +156,7 @@ def test_a_phase_of_each_drive_is_not_written() -> None:
         replace(PLAIN, effects=(find("eccentric_left_wheel").using(amplitude=2e-3, phase=phase),))
         for phase in (0.3, 1.9, -2.0, 3.0)
     ]
-    runs = [runs_of(robot, (seed,))[0] for seed, robot in enumerate(truth)]
+    runs = [runs_of(robot, (seed,), 60)[0] for seed, robot in enumerate(truth)]
     found = add_effects([find("eccentric_left_wheel")], runs[:3], PLAIN, holdout=runs[3:])
     assert found.robot.effects[0].unknown == ("phase",)
     assert found.parameters["amplitude"].value == pytest.approx(2e-3, abs=2e-4)
@@ -211,7 +211,7 @@ def test_a_chance_that_nobody_worked_out_is_none() -> None:
 
 def test_a_reference_in_millimetres_is_to_be_converted_and_nothing_else() -> None:
     runs = []
-    for run in runs_of(PLAIN, (1, 2, 3, 4)):
+    for run in runs_of(PLAIN, (1, 2, 3, 4), 60):
         assert run.reference is not None
         seen = replace(run.reference, x=1e3 * run.reference.x, y=1e3 * run.reference.y)
         runs.append(replace(run, reference=seen))
@@ -230,7 +230,7 @@ def test_headings_alone_are_judged_by_headings_beside_the_gyros_drift() -> None:
     """A gyro that drifts by a third of a degree a second, and a base 2 % wider than entered."""
     truth = replace(PLAIN, wheel_separation_multiplier=1.02)
     runs = []
-    for number, run in enumerate(runs_of(truth, (1, 2, 3, 4))):
+    for number, run in enumerate(runs_of(truth, (1, 2, 3, 4), 60)):
         assert run.reference is not None
         time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
         yaw = run.reference.yaw + (0.006 - 0.003 * number) * (time - time[0])

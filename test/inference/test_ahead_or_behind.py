@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import COMMON
 from test.model.drives import ROBOT, read
-from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
@@ -48,7 +49,7 @@ def driven(parts: list[tuple[float, float]], seed: int) -> Run:
 
 
 def diagnosed(drives: tuple[list[tuple[float, float]], ...]) -> Diagnosis:
-    return diagnose([driven(parts, seed) for seed, parts in enumerate(drives)], ROBOT, LIBRARY)
+    return diagnose([driven(parts, seed) for seed, parts in enumerate(drives)], ROBOT, COMMON)
 
 
 def ahead(found: Diagnosis) -> float:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import COMMON
 from test.recorded_robots import ROBOTS
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.library import LIBRARY
@@ -143,7 +144,7 @@ def session(change: float, count: int = 6, seconds: float = 40.0) -> list[Run]:
 
 
 def told_of(runs: list[Run]) -> tuple[ParameterChange, ...]:
-    return changes_between(diagnose(runs, BUILT.entered(), LIBRARY), LIBRARY)
+    return changes_between(diagnose(runs, BUILT.entered(), COMMON), COMMON)
 
 
 def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from test.command_line import Printed
-from test.inference.driven import runs_of
+from test.inference.driven import COMMON, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.cli import explain
-from werrimbi_odom.effects import LIBRARY, find, load_file
+from werrimbi_odom.effects import find, load_file
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.rivals import possible_twins
@@ -86,8 +86,7 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     assert "So hang a plumb line from the mast's top" in said
 
     truth = replace(ROBOT, effects=(find("sideways_drift").using(angle=-0.02),))
-    others = [effect for effect in LIBRARY if effect.name != "sideways_drift"]
-    found = diagnose(runs_of(truth, (1, 2, 3, 4), 60), ROBOT, [*others, mast])
+    found = diagnose(runs_of(truth, (1, 2, 3, 4), 60), ROBOT, [*COMMON, mast])
     assert found.verdict == "ambiguous"
     assert set(found.rivals) == {"leaning_mast", "reference_yaw_offset"}
     proposed = next_manoeuvre(found)

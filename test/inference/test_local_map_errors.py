@@ -52,12 +52,19 @@ def localised(
     return replace(run, reference=seen)
 
 
-def session(seeds: range, robot: WhiteNoiseRobot = TRUE, jumps: int = 1) -> list[Run]:
+def session(
+    seeds: range, robot: WhiteNoiseRobot = TRUE, jumps: int = 1, seconds: float = 100.0
+) -> list[Run]:
     found = []
     for seed in seeds:
         random = np.random.default_rng([seed, 4])
         run = drive(
-            robot, wandering(random, 100.0), random, sigma_xy=WHITE[0], sigma_yaw=WHITE[1], every=5
+            robot,
+            wandering(random, seconds),
+            random,
+            sigma_xy=WHITE[0],
+            sigma_yaw=WHITE[1],
+            every=5,
         )
         found.append(localised(replace(run, name=f"run_{seed}"), random, jumps))
     return found

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from test.hidden.sets import HiddenSet, make, runs_of
+from test.inference.driven import COMMON
 from test.inference.driven import runs_of as driven
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
@@ -162,7 +163,7 @@ def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     runs = driven(truth, (1, 2, 3, 4, 5), seconds=60)
     line = _law(1)
     robot = add_effects([line], runs[:4], PLAIN, holdout=runs[4:]).robot
-    found = diagnose(runs[:4], robot, [*WITHOUT_SQUASH, line], holdout=runs[4:])
+    found = diagnose(runs[:4], robot, [*COMMON, line], holdout=runs[4:])
     assert found.verdict == "none"
     assert found.misfit is not None
     assert found.misfit.effect == "soft_tyres"

@@ -211,9 +211,9 @@ def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path)
     (tmp_path / "squash.py").write_text(SQUASH)
     (squash,) = load_file(tmp_path / "squash.py")
     truth = replace(ROBOT, effects=(squash.using(growth=-0.08),))
-    runs = runs_of(truth, [1, 2, 3, 4])
+    runs = runs_of(truth, [1, 2, 3, 4], 60)
     library = [effect for effect in LIBRARY if effect.name != "tyre_squash"]
-    found = draft_effect(diagnose(runs, ROBOT, library, holdout=[run_of(truth, 5)]))
+    found = draft_effect(diagnose(runs, ROBOT, library, holdout=[run_of(truth, 5, 60)]))
     claim = found.claim
     assert (claim.variable, found.form, claim.amount.per) == ("wheel_speed", "square", "travel")
     applied = found.fit.point.model.robot.effects[-1]

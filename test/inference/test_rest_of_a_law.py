@@ -90,7 +90,7 @@ def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path:
     file = read_robot_file(write_robot_file(true, tmp_path / "robot.yaml"))
     slip = hide("coulomb_slip", 0.08, seed=3).peculiarity
     drives = []
-    for number in range(8):
+    for number in range(5):
         speed = 0.25 + 0.05 * (number % 3)
         hard = free(120.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=3 * speed)
         recording = record(true, hard, seed=100 + number, hidden=[slip])
@@ -98,6 +98,6 @@ def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path:
         ticks = run.ticks
         rare = Ticks(ticks.time[::5], ticks.left[::5], ticks.right[::5])
         drives.append(replace(run, ticks=rare))
-    found = diagnosis.diagnose(drives[:6], file.robot, STARTS, holdout=drives[6:])
+    found = diagnosis.diagnose(drives[:4], file.robot, STARTS, holdout=drives[4:])
     assert (found.verdict, found.found) == ("named", ("coulomb_slip",))
     assert found.robot.effects[-1].values["coefficient"] == pytest.approx(0.08, rel=0.15)

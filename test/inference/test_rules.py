@@ -7,6 +7,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -144,11 +145,14 @@ BARE = {
 """Numbers in comparisons that decide nothing."""
 
 
-def modules() -> Iterator[tuple[str, ast.Module]]:
+@cache
+def modules() -> list[tuple[str, ast.Module]]:
     """All of inference but the rules."""
-    for path in sorted(INFERENCE.rglob("*.py")):
-        if RULES not in path.parents:
-            yield path.relative_to(INFERENCE).as_posix(), ast.parse(path.read_text("utf-8"))
+    return [
+        (path.relative_to(INFERENCE).as_posix(), ast.parse(path.read_text("utf-8")))
+        for path in sorted(INFERENCE.rglob("*.py"))
+        if RULES not in path.parents
+    ]
 
 
 def assigned(body: list[ast.stmt]) -> Iterator[tuple[str, ast.expr, ast.stmt | None]]:
@@ -181,6 +185,7 @@ def is_numeric(value: ast.expr) -> bool:
     )
 
 
+@cache
 def of_rules() -> dict[str, tuple[str, ast.stmt | None]]:
     """File of each rule, and the statement that follows it."""
     found: dict[str, tuple[str, ast.stmt | None]] = {}
@@ -268,7 +273,7 @@ def test_every_rule_has_its_reason_and_is_used(name: str) -> None:
     assert isinstance(after.value.value, str)
     assert len(after.value.value.split()) >= 8, f"{name}: that is no reason"
     assert hasattr(rules, name)
-    assert name in USED, f"{name} is used by nobody"
+    assert name in used(), f"{name} is used by nobody"
 
 
 @pytest.mark.parametrize(
@@ -285,6 +290,7 @@ def test_what_decides_on_the_robot_has_its_reason_where_it_stands(file: str) -> 
         assert len(str(after.value.value).split()) >= 8, f"{file}: {name}: that is no reason"
 
 
+@cache
 def used() -> set[str]:
     """Rules that some module reads as rules.NAME, or that another rule is made of."""
     found = set()
@@ -302,9 +308,6 @@ def used() -> set[str]:
             if isinstance(part, ast.Attribute) and getattr(part.value, "id", "") == "rules"
         }
     return found
-
-
-USED = used()
 
 
 def test_the_figures_in_the_reasons_hold() -> None:

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.effects import LIBRARY, find
+from test.inference.driven import COMMON
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
@@ -46,7 +47,7 @@ def drive(number: int, *, headings_alone: bool = False) -> Run:
 @cache
 def diagnosed(robot: Robot, *, headings_alone: bool = False) -> Diagnosis:
     runs = [drive(number, headings_alone=headings_alone) for number in (1, 2, 3)]
-    return diagnose(runs[:2], robot, LIBRARY, holdout=runs[2:])
+    return diagnose(runs[:2], robot, (*COMMON, find("skid_steer")), holdout=runs[2:])
 
 
 def said(diagnosis: Diagnosis) -> str:

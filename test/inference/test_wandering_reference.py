@@ -25,7 +25,9 @@ EFFECTS = [find(name) for name in (*NAMES, "unequal_wheel_radii", "wheel_radius_
 
 
 def seen_by_a_localiser(robot: Robot) -> Diagnosis:
-    return diagnose(session(range(40, 44), jumps=0), robot, EFFECTS, EvaluationOptions())
+    return diagnose(
+        session(range(40, 43), jumps=0, seconds=60.0), robot, EFFECTS, EvaluationOptions()
+    )
 
 
 @pytest.fixture(scope="module")

@@ -104,7 +104,7 @@ def not_zero(size: np.ndarray) -> np.ndarray:
 # Splitting: the paper's point.
 
 
-@settings(max_examples=500)
+@settings(max_examples=150)
 @given(pieces(), st.lists(st.floats(0.01, 1.0), min_size=2, max_size=40), yaws)
 def test_splitting_a_piece_anywhere_any_number_of_times_changes_nothing(
     piece: Piece, cuts: list[float], yaw: float
@@ -204,7 +204,7 @@ def test_a_slightly_larger_turn_changes_the_covariance_slightly(
 # A covariance is a covariance.
 
 
-@settings(max_examples=500)
+@settings(max_examples=150)
 @given(
     left=up_to(1e4),
     right=up_to(1e4),

@@ -376,7 +376,7 @@ def test_without_a_top_speed_nothing_but_a_fall_to_zero_is_doubted() -> None:
 # The books.
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(records())
 def test_every_message_has_one_fate(record: Record) -> None:
     robot, limits, ticks = record
@@ -391,7 +391,7 @@ def test_every_message_has_one_fate(record: Record) -> None:
     assert tally.as_dict()["messages"] == tally.messages
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(records(), st.integers(1, 4))
 def test_a_long_record_with_faults_here_and_there_is_read_as_row_by_row(
     record: Record, copies: int

@@ -104,7 +104,7 @@ def test_a_fast_drive_is_forgotten_after_some_thousand_messages() -> None:
     assert encoder.pace.fastest == pytest.approx(400 / 2000 / PERIOD)
 
 
-@settings(max_examples=75, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     records(),
     st.lists(st.sampled_from([0.0, 1e-12, 1e-9, 2e-5, 1e-3, 0.02, 3.0]), min_size=1, max_size=40),
@@ -142,7 +142,7 @@ def test_whatever_came_before_a_later_reset_is_seen(
     assert_sound(recorded.covariance.matrix())
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     st.lists(
         st.tuples(

@@ -106,7 +106,7 @@ def has_a_row(ticks: Ticks) -> bool:
     )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(records(), st.sampled_from([1, 3, 20, None]))
 def test_live_and_recorded_agree_whatever_the_counters_do(
     record: Record, together: int | None
@@ -142,7 +142,7 @@ def rows_together(count: int | None) -> Iterator[None]:
         yield
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(records(faults=False))
 def test_live_and_recorded_agree_on_exact_moments(record: Record) -> None:
     """Exact moments are differences of squares of displacements, and round as these do."""
@@ -153,7 +153,7 @@ def test_live_and_recorded_agree_on_exact_moments(record: Record) -> None:
     assert_one_odometry(Odometer(robot, limits=limits), ticks, recorded, rounding=1e-15 * far)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     st.integers(0, 1000),
     st.sampled_from([(0.003, 0.01), (0.0003, 0.001), (0.03, 0.1), (0.0, 0.0)]),
@@ -217,7 +217,7 @@ def test_set_pose_ends_the_piece_and_goes_on_from_there() -> None:
     assert_same_covariances(after.covariance, np.stack(recorded.covariance, axis=-1)[1:])
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(records(faults=False), st.integers(1, 2**20))
 def test_the_first_message_and_the_counters_zero_move_nothing(record: Record, zero: int) -> None:
     """Odometry starts where it is told to, wherever the counters happen to stand."""

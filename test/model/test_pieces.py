@@ -129,7 +129,7 @@ def speed_profiles(draw: st.DrawFn) -> np.ndarray:
     return travel[travel <= 20.0]
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(
     curvature=st.sampled_from(sorted(CURVATURES.values())) | st.tuples(shares, shares),
     travel=speed_profiles(),

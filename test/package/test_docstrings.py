@@ -8,15 +8,21 @@ import ast
 import re
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2] / "werrimbi_odom"
-TREES = {path: ast.parse(path.read_text()) for path in sorted(PACKAGE.rglob("*.py"))}
 COMMANDS = {"werrimbi", "add", "calibrate", "compare", "diagnose", "draft"}
 NO_MODULES = {
     *("amount", "effect", "found", "scans.time"),  # of parameters and attributes
     *("eccentric_left_wheel", "numpy", "odom.csv", "figure.js"),  # an effect, a library, files
 }
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """Of every file of the package, when a test asks: every worker imports this file."""
+    return {path: ast.parse(path.read_text("utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
 
 
 def of_module(path: Path) -> str:
@@ -34,7 +40,10 @@ def defined(tree: ast.Module) -> set[str]:
     }
 
 
-DEFINED = {of_module(path): defined(tree) for path, tree in TREES.items()}
+@cache
+def names_of_modules() -> dict[str, set[str]]:
+    """What each module defines."""
+    return {of_module(path): defined(tree) for path, tree in trees().items()}
 
 
 def named(tree: ast.Module) -> Iterator[str]:
@@ -52,7 +61,7 @@ def is_there(dotted: str) -> bool:
         end = "." + ".".join(parts[:count])
         if any(
             f".{module}".endswith(end) and names.issuperset(parts[count:])
-            for module, names in DEFINED.items()
+            for module, names in names_of_modules().items()
         ):
             return True
     return False
@@ -62,7 +71,7 @@ def test_modules_that_docstrings_name_are_there() -> None:
     """`module.name` has the module and the name; those of classes are not looked at."""
     wrong = [
         f"{path.relative_to(PACKAGE)}: {name}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for name in named(tree)
         if "." in name and name[0].islower()
         if not {name, name.partition(".")[0]} & (NO_MODULES | sys.stdlib_module_names)
@@ -74,14 +83,14 @@ def test_modules_that_docstrings_name_are_there() -> None:
 def test_a_folder_describes_what_it_holds() -> None:
     """A name in the docstring of a folder is a file, folder or definition in it."""
     wrong = []
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         if path.name == "__init__.py":
-            inside = [each for each in TREES if path.parent in each.parents]
+            inside = [each for each in trees() if path.parent in each.parents]
             held = {each.stem for each in inside} | {each.parent.name for each in inside}
             for each in inside:
                 held |= {
                     node.name
-                    for node in TREES[each].body
+                    for node in trees()[each].body
                     if isinstance(node, ast.FunctionDef | ast.ClassDef)
                 }
             names = {name for name in named(tree) if "." not in name} - COMMANDS

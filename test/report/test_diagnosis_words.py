@@ -216,7 +216,7 @@ def test_drives_that_no_mount_fits_are_not_said_to_be_lost(tmp_path: Path) -> No
     (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
     places = []
     for number, angle in enumerate((1.57, 1.57, -1.57, -1.57)):
-        run = run_of(ROBOT, number, 60)
+        run = run_of(ROBOT, number, 30)
         assert run.reference is not None
         turned = replace(run.reference, yaw=run.reference.yaw + angle)
         places.append(tmp_path / f"run_{number}")

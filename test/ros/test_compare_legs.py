@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ STILL = BodyMotion(0.0, 0.0, 0.0)
 UNKNOWN = BodyMotion(math.nan, math.nan, math.nan)
 
 
+@cache
 def legs_of(
     seed: int,
     noise: float = 1.0,

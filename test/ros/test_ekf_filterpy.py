@@ -226,6 +226,7 @@ def test_with_a_constant_covariance_it_is_not() -> None:
     assert inside(TUNED, "fast") < 0.2
 
 
+@pytest.mark.evidence
 def test_the_docs_show_these_figures() -> None:
     page = (ROOT / "docs" / "robot.md").read_text(encoding="utf-8")
     numbers = re.compile(r"\d+(?:\.\d+)?")

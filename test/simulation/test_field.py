@@ -136,7 +136,9 @@ def test_the_positions_of_the_localiser_are_proposed_with_the_headings_of_the_gy
     assert "It is taken." in " ".join(alone.split())
 
 
-@pytest.mark.parametrize("factor", [0.0, -1.0, 57.3])
+@pytest.mark.parametrize(
+    "factor", [*(pytest.param(each, marks=pytest.mark.evidence) for each in (0.0, 57.3)), -1.0]
+)
 def test_a_gyro_that_contradicts_the_localiser_is_not_proposed(
     tmp_path: Path, factor: float
 ) -> None:

@@ -8,13 +8,15 @@ residuals underestimate the noise by about half. A line through all echoes nearb
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from werrimbi_odom.model.pose import Floats
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 CELL = 0.05
 """Grid cell with one element each [m]."""
@@ -77,12 +79,19 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
     along = 0.5 * np.arctan2(2.0 * xy, xx - yy)[flat]
     centres = np.column_stack([x, y])[flat] + origin
     normals = np.column_stack([-np.sin(along), np.cos(along)])
-    return Elements(centres, normals, reach[flat], cKDTree(middles[flat] + origin))
+    return Elements(centres, normals, reach[flat], _tree(middles[flat] + origin))
+
+
+def _tree(points: Floats) -> cKDTree:
+    """Its import is a sixth of a command's start, and most recordings hold no scans."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(points)
 
 
 def _about(middles: Floats, reach: Floats, sums: Floats) -> Floats:
     """Sums over all cells within reach of each cell, shape (6, m)."""
-    pairs = cKDTree(middles).query_pairs(float(reach.max()), output_type="ndarray")
+    pairs = _tree(middles).query_pairs(float(reach.max()), output_type="ndarray")
     one, other = pairs.T
     apart = np.hypot(*(middles[one] - middles[other]).T)
     to: NDArray[np.intp] = np.concatenate([one[apart <= reach[one]], other[apart <= reach[other]]])
