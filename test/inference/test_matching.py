@@ -17,8 +17,10 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.legs import count_interpolation
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, match
+from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
@@ -36,6 +38,21 @@ def travelled(run: MatchedRun) -> Floats:
     """Counts of the left wheel from the first reference pose to each [1]."""
     sums = np.concatenate([[0.0], np.cumsum(run.left)])[run.ends]
     return np.asarray(sums - sums[0])
+
+
+def test_the_counters_of_a_run_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Run] = []
+    work = count_interpolation._counted
+    monkeypatch.setattr(
+        count_interpolation, "_counted", lambda run, *rest: made.append(run) or work(run, *rest)
+    )
+    time, seen = np.arange(0.0, 4.0, 0.02), np.arange(0.05, 3.8, 0.01)
+    ticks, nowhere = Ticks(time, 100.0 * time, 100.0 * time, {}), np.zeros(seen.size)
+    run = with_no_driving(Run("run", Path("run"), ticks, Reference(seen, *[nowhere] * 3)), ROBOT)
+    record_of(run, ROBOT)
+    assert len(made) == 1
+    record_of(run, replace(ROBOT, wheel_separation_multiplier=1.1))
+    assert len(made) == 2
 
 
 @pytest.mark.parametrize("hertz", [10.0, 20.0, 50.0])

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeVar
-from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +44,7 @@ class Ticks:
     """The same for the right wheel."""
     channels: Mapping[str, Floats] = field(default_factory=dict)
     """Other measured columns by name; NaN where not measured."""
-    _latest: list[tuple[object, ref[Any]]] = field(default_factory=list, init=False, repr=False)
+    _latest: list[tuple[object, Any]] = field(default_factory=list, init=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle without the cache."""
@@ -57,12 +56,10 @@ class Ticks:
         return int(self.time.size)
 
     def latest(self, by: object, work: Callable[[], Made]) -> Made:
-        """Result of `work`, cached for the last key `by` while it is referenced elsewhere."""
-        last, held = self._latest[0] if self._latest else (None, None)
-        made: Made | None = held() if held is not None and last == by else None
-        if made is None:
-            made = work()
-            self._latest[:] = [(by, ref(made))]
+        """Result of `work`, cached for the last key `by`."""
+        if not self._latest or self._latest[0][0] != by:
+            self._latest[:] = [(by, work())]
+        made: Made = self._latest[0][1]
         return made
 
 

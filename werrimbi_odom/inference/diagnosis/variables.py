@@ -207,8 +207,10 @@ def curve_knots(values: Floats) -> Floats:
 
 def hats(values: Floats, knots: Floats) -> Floats:
     """Hat functions (linear B-splines): 1 at a knot, 0 at all others; (n, knots)."""
-    unit = np.eye(knots.size)
-    return np.stack([np.interp(values, knots, row) for row in unit], axis=-1)
+    numbers = np.arange(knots.size, dtype=np.float64)
+    found = np.subtract.outer(np.interp(values, knots, numbers), numbers)
+    np.subtract(1.0, np.abs(found, out=found), out=found)
+    return np.maximum(found, 0.0, out=found)
 
 
 def floor_cells(x: Floats, y: Floats) -> Floats:
