@@ -31,7 +31,6 @@ def texts(notebook: Any) -> list[str]:
     ]
 
 
-@pytest.mark.evidence
 def test_the_notebook_runs_and_what_it_shows_is_true(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -94,8 +94,9 @@ def diagnosis_of(
     after = judge.of(model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)
-    if further and not of_set_up.to(after).fell and far_above_noise(judge.train, model):
-        # It suits the fitted drives alone, and what is left there is no noise.
+    fell = of_set_up.to(after).fell and after.quiet[0] < of_set_up.quiet[0]
+    if further and not fell and far_above_noise(judge.train, model):
+        # It suits a part of the drives alone, and what is left there is no noise.
         answer = answer._replace(found=mistakes) if mistakes else _Answer("unknown")
         model = _as_told(rounds[0].before if mistakes else final, mended, answer.found, laid)
         after = judge.of(model)
