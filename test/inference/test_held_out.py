@@ -118,8 +118,8 @@ def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     """A clock off by 0.6 s, exchanged wheels and half a base, in 22 s of positions of 3 cm.
 
     Too little to find them: a ratio of the radii was "beyond any chance", with 305 mm left on a leg
-    and no less than before on the part put aside; or a wheel of 0.36 of the other, with more left on
-    the fitted part.
+    and no less than before on the part put aside; or a wheel of 0.36 of the other, with more left
+    on the fitted part.
     """
     run = without_yaw(run_of(ROBOT, seed, 22))
     assert run.reference is not None
