@@ -185,23 +185,21 @@ def tell(key: str, line: Line, part: str, count: str) -> None:
     print(f"{part} {count} {key}{words}", flush=True)
 
 
-def all_tables(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> list[Table]:
-    """Of what was done; results of tasks that are no longer wanted are left out."""
+def all_tables(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> dict[str, list[Table]]:
+    """By part, of what was done; results of tasks that are no longer wanted are left out."""
     lines = judged_lines(wanted)
     own = {name: _own(name, part) for name, part in there.items()}
     scores = coverage.scores(lines, wanted, own["coverage"])
-    made = [
-        *evidence_tables.tables(lines),
-        *field_table.tables(own["field"]),
-        *field_table.tables_by_scans(own["scans"]),
-        *survive.tables(lines, own["survive"]),
-        coverage.table(scores),
-        coverage.rank_table(scores),
-        smallest.table(own["smallest"]),
-        *margins.tables(lines, own["gaps"]),
-        margins.table(lines, own["margins"]),
-    ]
-    return [each for each in made if each.rows]
+    return {
+        "judge": evidence_tables.tables(lines),
+        "field": field_table.tables(own["field"]),
+        "scans": field_table.tables_by_scans(own["scans"]),
+        "survive": survive.tables(lines, own["survive"]),
+        "coverage": [coverage.table(scores), coverage.rank_table(scores)],
+        "smallest": [smallest.table(own["smallest"])],
+        "gaps": margins.tables(lines, own["gaps"]),
+        "margins": [margins.table(lines, own["margins"])],
+    }
 
 
 def _own(name: str, part: Work) -> dict[str, Line]:
@@ -273,8 +271,9 @@ def write(
     """Tables on the terminal; where all that was planned is wanted, the page and its history."""
     from rich.console import Console
 
-    made = all_tables(wanted, there)
-    show(made, Console(width=200).print)
+    by_part = all_tables(wanted, there)
+    made = [table for tables in by_part.values() for table in tables]
+    show([table for table in made if table.rows], Console(width=200).print)
     lines = judged_lines(wanted)
     if not whole or not lines:
         return
@@ -294,6 +293,13 @@ def write(
         commit=entry["commit"],
         digest=mark(),
         fresh=bool(start),
+        before=docs.read_text(encoding="utf-8") if docs.exists() else "",
+        not_run=[
+            table.title
+            for part, tables in by_part.items()
+            for table in tables
+            if not _own(part, there[part])
+        ],
     )
     docs.write_text(text, encoding="utf-8")
 

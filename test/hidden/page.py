@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from test.hidden.coverage import RANKS, Scores, ranks
@@ -49,14 +50,43 @@ def page(
     commit: str,
     digest: str,
     fresh: bool,
+    before: str = "",
+    not_run: Collection[str] = (),
 ) -> str:
-    """The text; pictures are (file in docs/pictures, what it shows)."""
+    """The text; pictures are (file in docs/pictures, what it shows).
+
+    Of tables that were `not_run`, what the page has `before` stays, with the code that it is of.
+    """
     known = "" if fresh else ", on seeds that were judged many times before"
     head = HEAD.format(
         how=how, judged=judged, planned=planned, commit=commit, digest=digest, known=known
     )
-    shown = [f"![{says}](pictures/{name})\n\n*{says}*\n" for name, says in pictures]
-    return "\n".join([head, *(table.markdown() for table in tables if table.rows), *shown])
+    texts = [
+        table.markdown() if table.rows else _kept(before, table.title)
+        for table in tables
+        if table.rows or table.title in not_run
+    ]
+    drawn = [name for name, _ in pictures]
+    kept = [
+        (name, _dated(says, before))
+        for says, name in re.findall(r"^!\[(.*)\]\(pictures/(.*)\)$", before, flags=re.M)
+        if name not in drawn
+    ]
+    shown = [f"![{says}](pictures/{name})\n\n*{says}*\n" for name, says in (*pictures, *kept)]
+    return "\n".join([head, *filter(None, texts), *shown])
+
+
+def _kept(before: str, title: str) -> str:
+    """A section of the page as it was, with the code that it is of; empty if it has none."""
+    heading = rf"{re.escape(title)}(?: \(code `\w+`\))?"
+    found = re.search(rf"^## ({heading})\n(.*?)(?=^## |^!\[|\Z)", before, re.M | re.S)
+    return f"## {_dated(found[1], before)}\n{found[2]}" if found else ""
+
+
+def _dated(title: str, before: str) -> str:
+    """A title with the code that it is of: that of the page it stood on, unless it says so."""
+    code = re.search(r"with the code of `(\w+)", before)
+    return title if title.endswith("`)") or not code else f"{title} (code `{code[1]}`)"
 
 
 def draw(

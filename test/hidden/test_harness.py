@@ -568,6 +568,37 @@ def test_the_page_holds_every_rule_with_its_interval_and_what_went_astray() -> N
     assert "![Ranks](pictures/evidence_ranks.png)" in text
 
 
+def test_what_was_not_run_stays_on_the_page_with_the_code_that_it_is_of() -> None:
+    def written(code: str, before: str, *tables: Table, **picture: str) -> str:
+        not_run = [table.title for table in tables if not table.rows and table is not RIGHT]
+        return page(
+            tables,
+            list(picture.items()),
+            how="",
+            judged=1,
+            planned=1,
+            commit=code,
+            digest="def",
+            fresh=True,
+            before=before,
+            not_run=not_run,
+        )
+
+    limits, none = (Table("Limits", ("effect",), rows) for rows in ((("slip",),), ()))
+    wrong = Table("Wrong", ("set",), (("slip 7",),))
+    first = written("aaa", "", limits, wrong, limits="How small")
+    second = written("bbb", first, none, RIGHT)
+    third = written("ccc", second, none, RIGHT)
+    for text in (second, third):
+        assert "## Limits (code `aaa`)\n\n| effect |\n| --- |\n| slip |\n" in text
+        assert "![How small (code `aaa`)](pictures/limits)" in text
+        assert "slip 7" not in text, "the part was run, and nothing was wrong"
+    assert written("ddd", third, limits).count("## Limits\n") == 1
+
+
+RIGHT = Table("Wrong", ("set",), ())
+
+
 def test_a_line_of_the_results_is_what_was_judged() -> None:
     assert Judged.of(json.loads(json.dumps(LINE.line()))) == LINE
     assert HiddenSet("effect", ("castor_kick",), 1).name == LINE.name
