@@ -77,10 +77,15 @@ def page(
 
 
 def _kept(before: str, title: str) -> str:
-    """A section of the page as it was, with the code that it is of; empty if it has none."""
-    heading = rf"{re.escape(title)}(?: \(code `\w+`\))?"
-    found = re.search(rf"^## ({heading})\n(.*?)(?=^## |^!\[|\Z)", before, re.M | re.S)
-    return f"## {_dated(found[1], before)}\n{found[2]}" if found else ""
+    """A section of the page as it was, with the code that it is of; empty if it has none.
+
+    Its title stays, since other pages link to it.
+    """
+    found = re.search(rf"^## {re.escape(title)}\n\n(.*?)(?=^## |^!\[|\Z)", before, re.M | re.S)
+    if found is None:
+        return ""
+    old = found[1].startswith("*Not run anew")
+    return f"## {title}\n\n" + ("" if old else f"*{_dated('Not run anew', before)}*\n\n") + found[1]
 
 
 def _dated(title: str, before: str) -> str:

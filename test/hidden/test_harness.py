@@ -590,10 +590,11 @@ def test_what_was_not_run_stays_on_the_page_with_the_code_that_it_is_of() -> Non
     second = written("bbb", first, none, RIGHT)
     third = written("ccc", second, none, RIGHT)
     for text in (second, third):
-        assert "## Limits (code `aaa`)\n\n| effect |\n| --- |\n| slip |\n" in text
+        told = "*Not run anew (code `aaa`)*\n\n| effect |\n| --- |\n| slip |\n"
+        assert f"## Limits\n\n{told}" in text
         assert "![How small (code `aaa`)](pictures/limits)" in text
         assert "slip 7" not in text, "the part was run, and nothing was wrong"
-    assert written("ddd", third, limits).count("## Limits\n") == 1
+    assert "Not run anew" not in written("ddd", third, limits)
 
 
 RIGHT = Table("Wrong", ("set",), ())
