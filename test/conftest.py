@@ -8,7 +8,8 @@ import fcntl
 import os
 import re
 import signal
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -84,18 +85,12 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
         from werrimbi_odom import simulation
         from werrimbi_odom.cli.main import main
 
-        def some(robot: Any, seed: int, *, hidden: Any) -> Iterator[tuple[str, Any]]:
-            for number, (name, each) in enumerate(simulation.drives(seed).items()):
-                if name in DRIVES:
-                    seeded = 1000 * seed + number
-                    yield name, simulation.record(robot, each, seed=seeded, hidden=hidden)
-
         folder = place / "_".join(("simulated", *words)).replace("--", "")
         with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not folder.exists():
                 with pytest.MonkeyPatch.context() as patch:
-                    patch.setattr(simulation, "session", some)
+                    patch.setattr(simulation, "session", partial(simulation.session, only=DRIVES))
                     assert main(["simulate", "--out", str(folder), *words]) == 0
         return folder
 

@@ -56,6 +56,8 @@ PARTS = (
 class Extent:
     """How much of everything."""
 
+    option: str
+    """By which it is asked for."""
     sizes: Sizes
     survive: int
     """Sets."""
@@ -74,6 +76,7 @@ class Extent:
 
 
 EVERYTHING = Extent(
+    " --all",
     ALL,
     survive=100,
     fits=200,
@@ -84,6 +87,7 @@ EVERYTHING = Extent(
     scans=(2, 12, len(plan.EFFECTS)),
 )
 PART_OF_IT = Extent(
+    "",
     SAMPLE,
     survive=12,
     fits=64,  # with five numbers each 400 intervals in all
@@ -95,6 +99,7 @@ PART_OF_IT = Extent(
 )
 
 HALF_OF_IT = Extent(
+    " --half",
     HALF,
     survive=6,
     fits=32,
@@ -262,11 +267,17 @@ def main() -> None:
             for number, (key, line) in enumerate(results, start=1):
                 tell(key, line, name, f"{number}/{len(part.tasks)}")
     if "table" in parts:
-        write(wanted, there, start, arguments.docs, whole=not arguments.only)
+        write(wanted, there, start, arguments.docs, whole=not arguments.only, how=extent.option)
 
 
 def write(
-    wanted: Sequence[HiddenSet], there: Mapping[str, Work], start: int, docs: Path, *, whole: bool
+    wanted: Sequence[HiddenSet],
+    there: Mapping[str, Work],
+    start: int,
+    docs: Path,
+    *,
+    whole: bool,
+    how: str,
 ) -> None:
     """Tables on the terminal; where all that was planned is wanted, the page and its history."""
     from rich.console import Console
@@ -285,9 +296,7 @@ def write(
     text = page(
         [*made, history.table(entries)],
         pictures(wanted, there, docs.parent / "pictures"),
-        how={len(plan.plan(start, ALL)): " --all", len(plan.plan(start, HALF)): " --half"}.get(
-            len(wanted), ""
-        ),
+        how=how,
         judged=len(lines),
         planned=len(wanted),
         commit=entry["commit"],

@@ -109,9 +109,7 @@ def numbers(effect: Effect, name: str) -> str:
 
 def absent_at(effect: Effect, name: str) -> str:
     """Value of a parameter without the effect; "any" if that depends on other parameters."""
-    item = effect.parameters[name]
-    is_phase = effect.quadrature is not None and name == effect.quadrature[1]
-    return "any" if item.tries or is_phase else f"{item.null:g}"
+    return f"{effect.parameters[name].null:g}" if effect.has_null(name) else "any"
 
 
 def as_json(effect: Effect) -> dict[str, Any]:

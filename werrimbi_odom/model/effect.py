@@ -117,6 +117,10 @@ class Effect:
         """Values at which it is absent."""
         return {name: item.null for name, item in self.parameters.items()}
 
+    def has_null(self, name: str) -> bool:
+        """Whether a parameter has a value at which it does nothing: not a shape, not a phase."""
+        return not self.parameters[name].tries and name not in (self.quadrature or ())[1:]
+
     @property
     def is_mistake(self) -> bool:
         """Whether it is a set-up mistake: present or absent, nothing in between."""

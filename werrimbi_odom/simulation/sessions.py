@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 from .hidden.hidden_effect import Peculiarity
 from .manoeuvres import (
@@ -77,7 +77,11 @@ def _slalom(pace: MoveLimits) -> Manoeuvre:
 
 
 def session(
-    robot: TrueRobot, seed: int, *, hidden: Sequence[Peculiarity] = ()
+    robot: TrueRobot,
+    seed: int,
+    *,
+    hidden: Sequence[Peculiarity] = (),
+    only: Container[str] | None = None,
 ) -> Iterator[tuple[str, Recording]]:
     """Record the drives of the session, one after the other.
 
@@ -87,6 +91,8 @@ def session(
         Seed of the session; the seeds of the runs follow from it.
     hidden : sequence of Peculiarity
         Peculiarities, the same in all runs.
+    only : container of str, optional
+        Names of the drives to record, each as in the whole session; all if None.
 
     Yields
     ------
@@ -94,4 +100,5 @@ def session(
         Name of the run folder, as in `drives`.
     """
     for number, (name, manoeuvre) in enumerate(drives(seed).items()):
-        yield name, record(robot, manoeuvre, seed=1000 * seed + number, hidden=hidden)
+        if only is None or name in only:
+            yield name, record(robot, manoeuvre, seed=1000 * seed + number, hidden=hidden)

@@ -225,11 +225,11 @@ def _without_sizes(model: Model, given: Robot) -> Model:
     """
     own = {item.name for item in given.effects}
     nulls = {
-        f"{item.name}.{name}": declared.null
+        f"{item.name}.{name}": null
         for item in model.robot.effects
         if item.name not in own
-        for name, declared in item.effect.parameters.items()
-        if not (declared.tries or name in (item.effect.quadrature or ())[1:])
+        for name, null in item.effect.nulls.items()
+        if item.effect.has_null(name)
     }
     return Model(changed(model.robot, nulls), model.own)
 
@@ -265,11 +265,10 @@ def wald_statistic(name: str, design: Design, covariance: Floats, point: Point) 
         if effect != name:
             continue
         applied = next(item for item in point.model.robot.effects if item.name == name)
-        declared = applied.effect.parameters[parameter]
-        if declared.tries or parameter in (applied.effect.quadrature or ())[1:]:
-            continue  # a shape, or a phase: it has no null
+        if not applied.effect.has_null(parameter):
+            continue
         chosen.append(index)
-        away.append(point.model.value(number, max(run, 0)) - declared.null)
+        away.append(point.model.value(number, max(run, 0)) - applied.effect.nulls[parameter])
     if not chosen:
         return 0.0
     spread = covariance[np.ix_(chosen, chosen)]

@@ -17,10 +17,11 @@ from werrimbi_odom.inference.fitting.prediction import predict_all, turns_over
 from werrimbi_odom.inference.fitting.score_tests import Score
 from werrimbi_odom.inference.fitting.start_headings import (
     ALL_ROUND,
+    squares_of_runs,
     starts_unmeasured,
     turned_to_the_first_legs,
 )
-from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
+from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.reference_view import View
@@ -83,17 +84,13 @@ def looked_for_delay(
     for delay in np.concatenate([-tried, tried]) / (STEP * item.scale):
         model = with_candidate(point.model, replace(score, coefficients=np.array([delay])))
         start = replace(point, model=model)
-        starts.append((_whitened_squares(runs, start), start))
+        starts.append((np.sum(squares_of_runs(runs, start)), start))
     squares, best = min(starts, key=lambda start: start[0])
     if behind_jitter:
         return best
-    told = min(_whitened_squares(runs, each) for each in (point, started_with(runs, point, score)))
-    return best if squares < told - rules.RIVAL else None
-
-
-def _whitened_squares(runs: Concatenated, point: Point) -> float:
-    white = unexpected(runs, point, predict_all(point.model, runs)).whitened()
-    return float(np.sum(white**2))
+    told = (point, started_with(runs, point, score))
+    least = min(np.sum(squares_of_runs(runs, each)) for each in told)
+    return best if squares < least - rules.RIVAL else None
 
 
 def _is_a_delay(score: Score) -> bool:

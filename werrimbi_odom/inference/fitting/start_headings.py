@@ -70,13 +70,13 @@ def _cheapest(
 ) -> tuple[Point, float]:
     """Choose the start heading of each run among its own and some others, by the run's cost."""
     chosen = point.model.own
-    least = _squares_of_runs(runs, point)
+    least = squares_of_runs(runs, point)
     for tried in headings:
         own = tuple(
             dict(mine) if at is None else {**mine, START_YAW: at}
             for mine, at in zip(point.model.own, tried, strict=True)
         )
-        squares = _squares_of_runs(runs, replace(point, model=Model(point.model.robot, own)))
+        squares = squares_of_runs(runs, replace(point, model=Model(point.model.robot, own)))
         better = squares < least
         least = np.where(better, squares, least)
         chosen = tuple(
@@ -90,7 +90,7 @@ def starts_unmeasured(model: Model) -> bool:
     return any(START_YAW in mine for mine in model.own)
 
 
-def _squares_of_runs(runs: Concatenated, point: Point) -> Floats:
+def squares_of_runs(runs: Concatenated, point: Point) -> Floats:
     """Sum of the squared whitened innovations of each run, shape (runs,)."""
     of_legs = np.sum(unexpected(runs, point).whitened() ** 2, axis=-1)
     return np.asarray(np.add.reduceat(of_legs, runs.legs[:-1]))
