@@ -65,6 +65,20 @@ def _itself(value: Any) -> Any:
     return value
 
 
+def mirrored(drive: Drive[Floats]) -> DriveOfRun:
+    """The drive of the same robot seen in a mirror: left is right, and it turns the other way."""
+    other_side = {"left": "right", "right": "left"}
+
+    def work(name: str) -> Any:
+        side, _, what = name.partition("_")
+        if side in other_side:
+            return getattr(drive, f"{other_side[side]}_{what}")
+        value = getattr(drive, name)
+        return Span(-value.start, -value.end) if name in ("yaw_rate", "heading", "y") else value
+
+    return DriveOfRun.by({name: partial(work, name) for name in QUANTITIES})
+
+
 def drive_of_run(
     duration: Floats,
     left: Floats,

@@ -13,7 +13,8 @@ from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidate import Candidate, usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.drive_of_run import mirrored
+from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.effects_over_run import watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Floats
@@ -29,6 +30,8 @@ class Support(NamedTuple):
     """Quantities of `Drive`, and extra channels, that the law reads."""
     outputs: frozenset[str]
     """Error channels that it can explain: left, right, along, sideways, heading."""
+    even: bool = False
+    """Whether it is the same law for a robot seen in a mirror."""
 
 
 def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
@@ -51,6 +54,27 @@ def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
             names = ("along", "sideways", "heading")
             outputs |= {name for name, is_so in zip(names, changed, strict=True) if is_so}
     return Support(frozenset(seen.asked), frozenset(outputs))
+
+
+def is_even(law: AppliedEffect, drive: Drive[Floats]) -> bool:
+    """Whether a law of wheels or body does the mirror image to a robot seen in a mirror."""
+    if law.effect.stage not in ("wheels", "body"):
+        return False
+    one = np.ones_like(drive.duration)
+    of_wheels = law.effect.stage == "wheels"
+    before: Any = WheelTravel(one, 2.0 * one) if of_wheels else BodyMotion(one, one, one)
+
+    def seen_in_mirror(moved: Any) -> Any:
+        if of_wheels:
+            return WheelTravel(moved.right, moved.left)
+        return BodyMotion(moved.along, -moved.sideways, -moved.turn)
+
+    after = law.effect.apply(before, drive, **law.values)
+    other = law.effect.apply(seen_in_mirror(before), mirrored(drive), **law.values)
+    changed, its = (
+        np.subtract(now, was) for now, was in ((after, before), (seen_in_mirror(other), before))
+    )
+    return bool(np.allclose(changed, its, rtol=0.0, atol=1e-6 * np.max(np.abs(changed))))
 
 
 def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:

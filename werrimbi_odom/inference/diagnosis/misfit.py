@@ -20,7 +20,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.diagnosis.effect_support import ACCELERATIONS, Support, support_of
+from werrimbi_odom.inference.diagnosis.effect_support import (
+    ACCELERATIONS,
+    Support,
+    is_even,
+    support_of,
+)
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
@@ -130,14 +135,21 @@ def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Supp
         parameters = applied.effect.parameters
         shape = {name: applied.values[name] for name, item in parameters.items() if item.tries}
         support = support_of(Candidate(applied.effect, shape), drive)
+        support = support._replace(even=is_even(applied, drive))
         explained = wald_statistic(applied.name, fit.design, fit.by_noise, fit.point)
         if support.outputs and explained > 0.0:
             yield applied, support, explained
 
 
 def _shares(support: Support, cell: Dependence) -> bool:
-    """Whether a dependence is on an input of the law and in one of its output channels."""
-    return cell.channel in support.outputs and bool(support.inputs & set(cell.variable.looks_at))
+    """Whether a dependence is on an input of the law and in one of its output channels.
+
+    A law that treats left and right alike leaves no error of one side that goes with what has no
+    side: how a robot turns as it speeds up is no form of a slip of both tyres.
+    """
+    one_sided = cell.variable.even and not cell.amount.even
+    known = support.inputs & set(cell.variable.looks_at)
+    return cell.channel in support.outputs and bool(known) and not (support.even and one_sided)
 
 
 def _gain_beside(

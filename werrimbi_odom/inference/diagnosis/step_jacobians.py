@@ -44,6 +44,12 @@ class Amount:
         """Whether the error is a separate one of each wheel."""
         return self.channel in OF_WHEELS and self.per != "turn"
 
+    @property
+    def even(self) -> bool:
+        """Whether a robot seen in a mirror has the same error; not one of one wheel."""
+        aside = self.channel in ("sideways", "heading")
+        return self.channel not in ("left", "right") and aside == (self.per == "turn")
+
 
 AMOUNTS = (
     Amount("left", "travel"),

@@ -49,6 +49,8 @@ class Variable:
     """Whether its zero differs between runs (a wheel's angle)."""
     harmonic: int = 1
     """Harmonic of an angle."""
+    even: bool = False
+    """Whether a robot seen in a mirror has the same."""
 
     @property
     def shared(self) -> bool:
@@ -68,12 +70,12 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
         return Variable(name, unit, left, right, looks_at=fields)
 
     def robots(name: str, unit: str, values: Floats, *fields: str) -> Variable:
-        return Variable(name, unit, values, values, looks_at=fields)
+        return Variable(name, unit, values, values, looks_at=fields, even=name != "yaw_rate")
 
     acceleration = drive.speed.change / drive.duration
     ones = np.ones(heading.size)
     found = [
-        Variable(CONSTANT, "", ones, ones, "constant"),
+        Variable(CONSTANT, "", ones, ones, "constant", even=True),
         robots("speed", "m/s", np.abs(drive.speed.end), "speed", "left_speed", "right_speed"),
         own(
             "wheel_speed",
