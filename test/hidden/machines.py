@@ -77,7 +77,8 @@ def machine(setup: str, seed: int) -> Machine:
 
     Parameters
     ----------
-    setup : "own", "short", "other", "one_speed_line", "one_speed_curves" or "drive:NAME"
+    setup : "own", "short", "other", "one_speed_line", "one_speed_curves" or "drive:NAME:MINUTES",
+        several with a + between them
     """
     if setup == "own":
         return Machine(drives(seed))
@@ -95,9 +96,13 @@ def machine(setup: str, seed: int) -> Machine:
             },
             steady=True,
         )
-    name = setup.removeprefix("drive:")
-    found = manoeuvre(name, seed)
-    return Machine({f"train/{name}_{number}": found for number in range(3)})
+    found = {}
+    for place, asked in enumerate(setup.removeprefix("drive:").split("+")):
+        name, minutes = asked.split(":")
+        drive = manoeuvre(name, seed)
+        times = math.ceil(60.0 * float(minutes) / drive.duration)
+        found |= {f"train/{place}_{name}_{number}": drive for number in range(times)}
+    return Machine(found)
 
 
 def _line() -> Manoeuvre:

@@ -48,6 +48,8 @@ class Judged:
     factor: str | None = None
     depends_on: tuple[tuple[str, str], ...] = ()
     next_manoeuvre: str | None = None
+    minutes: float = 0.0
+    """How long that is to be driven."""
     p_values: tuple[tuple[str, float | None], ...] = ()
     """Of the ranking."""
     before: float | None = None
@@ -79,7 +81,7 @@ class Judged:
     drafted: float | None = None
     """Of an outsider: with the draft [m]."""
     resolved: tuple[str, ...] = ()
-    """Of rivals by construction: verdict and names once the next manoeuvre was driven too."""
+    """Of rivals by construction: verdict and names once what was asked for was driven."""
     error: str = ""
 
     @property

@@ -141,7 +141,7 @@ RULES = (
         lambda line: judgement(line) == "ambiguous" and line.next_manoeuvre is not None,
     ),
     Rule(
-        "... and the proposed manoeuvre, driven, resolves them",
+        "... and the proposed manoeuvres, driven, resolve them",
         "resolved",
         1.0,
         of_group("rivals"),

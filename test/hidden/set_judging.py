@@ -25,6 +25,9 @@ from test.hidden.sets import HiddenSet, make, runs_of
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 
+DRIVEN_ON = 3
+"""Most manoeuvres that a user drives for one verdict."""
+
 
 def options_of(what: HiddenSet) -> list[str]:
     """What the user would pass with the drives."""
@@ -53,7 +56,7 @@ def judged(what: HiddenSet, *, floors: bool = True, options: Sequence[str] = ())
     if floors and not what.entered:
         figures = _floors(what, floor_of(what))
     if what.group == "rivals" and said.next_manoeuvre is not None:
-        figures["resolved"] = _resolved(what, said.next_manoeuvre)
+        figures["resolved"] = _resolved(what, said.next_manoeuvre, said.minutes)
     return replace(said, **figures)
 
 
@@ -94,6 +97,7 @@ def _said(what: HiddenSet, told: Followed) -> Judged:
         factor=factors[0] if factors else None,
         depends_on=tuple((cell["channel"], cell["variable"]) for cell in first["depends_on"][:3]),
         next_manoeuvre=None if move is None else move["name"],
+        minutes=0.0 if move is None else move["minutes"],
         p_values=tuple((item["effect"], item["p_value"]) for item in first["ranking"]),
         before=first["holdout"]["before"],
         after=first["holdout"]["after"],
@@ -133,23 +137,39 @@ def _fit(fit: Line) -> Line:
     }
 
 
-def _resolved(what: HiddenSet, name: str) -> tuple[str, ...]:
-    """What is said once the robot has driven what was asked for, three times."""
-    try:
-        driven = make(replace(what, setup=f"drive:{name}"))
-    except KeyError:
-        return (f"{name} cannot be driven",)
-    folder = make(what)
-    runs = [str(path) for place in (folder, driven) for path in runs_of(place, "train")]
+def _resolved(what: HiddenSet, name: str | None, minutes: float) -> tuple[str, ...]:
+    """What is said once the robot has driven what was asked for, for as long as was asked.
+
+    Where that leaves rivals, what is asked for next is driven too, up to `DRIVEN_ON` manoeuvres.
+    """
+    folder, asked = make(what), list[str]()
+    said: Line = {}
+    while name is not None and len(asked) < DRIVEN_ON:
+        asked.append(f"{name}:{minutes:g}")
+        try:
+            driven = make(replace(what, setup="drive:" + "+".join(asked)))
+        except KeyError:
+            return (f"{name} cannot be driven",)
+        runs = [str(path) for place in (folder, driven) for path in runs_of(place, "train")]
+        told = _diagnosed(what, folder, runs)
+        if isinstance(told, str):
+            return (told,)
+        said = told
+        move = said["next_manoeuvre"] or {"name": None, "minutes": 0.0}
+        name, minutes = move["name"], move["minutes"]
+    return (said["verdict"], *(said["rivals"] or (each["effect"] for each in said["found"])))
+
+
+def _diagnosed(what: HiddenSet, folder: Path, runs: Sequence[str]) -> Line | str:
+    """Diagnosis of drives with a set's robot file; the complaint, if it was refused."""
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "diagnosis.json"
         robot = ["--robot", str(folder / "robot.yaml")]
         done = run(["diagnose", *robot, *runs, *options_of(what), "--json", str(file)])
         if done.code != 0:
-            return (done.complained,)
-        said = json.loads(file.read_text(encoding="utf-8"))
-    found = [each["effect"] for each in said["found"]]
-    return (said["verdict"], *(said["rivals"] or found))
+            return done.complained
+        said: Line = json.loads(file.read_text(encoding="utf-8"))
+        return said
 
 
 def floor_of(what: HiddenSet) -> Floor:
