@@ -109,7 +109,7 @@ def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path:
 
 
 def test_a_law_of_both_tyres_alike_has_no_part_in_what_has_one_side(tmp_path: Path) -> None:
-    """A counter that is read late was held for the form of a slip, and errors stayed a fifth too high.
+    """A counter that is read late was held for the form of a slip; errors stayed a fifth too high.
 
     As the robot speeds up it turns to the side of the late counter.
     """
