@@ -62,6 +62,39 @@ def test_what_is_little_of_a_law_and_of_the_errors_is_put_down_to_the_law(
     assert left_beside(monkeypatch, 9e4, dependence(400.0)) is None, "it is much of the errors"
 
 
+@pytest.mark.parametrize(
+    ("both_even", "gains", "is_rest"),
+    [
+        (True, (148.0, 18.7), True),  # a slip 13 ms late, and a delay of 0.7 ms that was not there
+        (True, (30.0, 18.7), False),
+        (False, (148.0, 18.7), False),
+        (False, (148.0, 9.0), True),
+    ],
+)
+def test_what_a_law_itself_explains_better_is_no_other_effect(
+    monkeypatch: pytest.MonkeyPatch,
+    gains: tuple[float, float],
+    *,
+    both_even: bool,
+    is_rest: bool,
+) -> None:
+    support = Support(frozenset({"direction"}), frozenset({"sideways"}), even=False)
+    if both_even:
+        support = support._replace(inputs=frozenset({"left_speed"}), even=True)
+    law = SimpleNamespace(name="coulomb_slip")
+    monkeypatch.setattr(misfit, "_laws", lambda *_: iter([(law, support, 1e4)]))
+    monkeypatch.setattr(misfit, "_gains", lambda *_: gains)
+    monkeypatch.setattr(misfit, "_may_be_even", lambda *_: True)
+    cell = dependence(43.0, "left_speed" if both_even else "direction")
+    cell.variable.even = not both_even
+    delay: Any = SimpleNamespace(candidate=SimpleNamespace(name="reference_delay"), gain=27.4)
+    before = SimpleNamespace(point=None, numbers=())
+    this: Any = SimpleNamespace(before=before, scores=[delay], dependences=[cell])
+    best: Any = SimpleNamespace(names=("coulomb_slip", "reference_delay"))
+    found = misfit_of_held_law(this, best, None, RUNS)
+    assert (found is not None) == is_rest
+
+
 def test_the_rest_of_a_law_is_no_sign_of_an_effect_that_the_parts_do_not_show(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

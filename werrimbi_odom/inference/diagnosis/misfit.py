@@ -5,11 +5,12 @@
 An effect in the robot file (the library's, a user's, a draft) has a law of some form, and the true
 law may differ slightly. The remainder then depends on the effect's own variables and acts on the
 same channels. It is small against what the law explains, and a freer form of the law (a curve over
-one of its variables, or a law of the acceleration a little later) removes it. Some other effect may
-fit a part of it, but naming that one would mislead the user. Where a law's memory is wrong (a wheel
-that coasts through its play as it brakes), the remainder may show in anything that the drives have
-in common with it. If it is little of what the law explains, and of the errors, it is reported, and
-is no missing effect either.
+one of its variables, or a law of the acceleration a little later) removes it, or explains more than
+twice of what another effect still does beside it. Some other effect may fit a part of it, but
+naming that one would mislead the user. Where a law's memory is wrong (a wheel that coasts through
+its play as it brakes), the remainder may show in anything that the drives have in common with it.
+If it is little of what the law explains, and of the errors, it is reported, and is no missing
+effect either.
 """
 
 from __future__ import annotations
@@ -90,8 +91,10 @@ def misfit_of_held_law(
             continue
         numbers = (*CALIBRATION, *before.numbers)
         freer = (late(law),) if support.inputs & ACCELERATIONS else ()
-        left = _gain_beside(runs, before.point, numbers, score, cell, freer)
-        if left < (1.0 - rules.REST_EXPLAINED) * score.gain:
+        by_forms, left = _gains(runs, before.point, numbers, score, cell, freer)
+        both_even = support.even and _may_be_even(score.candidate, before, runs)
+        most = max(score.gain, by_forms) if both_even else score.gain
+        if left < (1.0 - rules.REST_EXPLAINED) * most:
             return Misfit(law.name, cell, share)
     return rest
 
@@ -152,23 +155,32 @@ def _shares(support: Support, cell: Dependence) -> bool:
     return cell.channel in support.outputs and bool(known) and not (support.even and one_sided)
 
 
-def _gain_beside(
+def _may_be_even(candidate: Candidate, before: Fitted, runs: Concatenated) -> bool:
+    """Whether a candidate treats left and right alike, as what the reference does to them may."""
+    if candidate.effect.stage == "reference":
+        return True
+    drive = runs.drive(before.point.model.laid_out(runs.steps))
+    return is_even(candidate.effect.using(**candidate.coordinates[0]), drive)
+
+
+def _gains(
     runs: Concatenated,
     point: Point,
     numbers: Sequence[FreeParameter],
     score: Score,
     cell: Dependence,
     freer: Sequence[Effect],
-) -> float:
-    """Score gain of a candidate with the cell's pattern, and freer forms, as further nuisances."""
+) -> tuple[float, float]:
+    """Score gains of the cell's pattern with freer forms, and of a candidate beside them."""
     prediction = predict_all(point.model, runs)
     turned, rest = residual_innovations(runs, point, numbers, prediction)
     tried = [score.candidate, *(Candidate(effect, {}) for effect in freer)]
     asked, *forms = signatures(runs, point, numbers, tried)[1]
     pattern = turned.residual(pattern_of(runs, point, cell))
     own = nuisance(np.hstack([pattern, *(form.free for form in forms)]))
-    found = score_test(asked.flat, own.residual(asked.free), own.residual(rest))
-    return 0.0 if found is None else found.gain
+    without = own.residual(rest)
+    found = score_test(asked.flat, own.residual(asked.free), without)
+    return float(rest @ rest - without @ without), 0.0 if found is None else found.gain
 
 
 def late(law: AppliedEffect) -> Effect:
