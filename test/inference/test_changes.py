@@ -157,6 +157,20 @@ def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
     assert moved.p_value < 1e-6
 
 
+def test_clocks_that_stand_otherwise_in_each_drive_are_told() -> None:
+    """Recordings that were begun by hand: 0, 30 and 60 ms came out as slip or as *unknown*."""
+    late = (0.0, 0.03, 0.06)
+    runs = []
+    for run, delay in zip(session(0.0, count=3), late, strict=True):
+        assert run.reference is not None
+        seen = replace(run.reference, time=run.reference.time + delay)
+        runs.append(replace(run, reference=seen))
+    moved = told_of(runs)
+    assert {each.group for each in moved} == {"reference_delay"}
+    levels = [moved[0].before, *(each.after for each in moved)]
+    assert levels == pytest.approx(late, abs=0.004)
+
+
 @pytest.mark.evidence
 def test_a_diagnosis_of_one_robot_tells_no_change() -> None:
     assert told_of(session(0.0)) == ()

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,3 +120,18 @@ def test_an_effect_that_another_beats_in_half_of_the_data_is_not_certain() -> No
     others = {"lateral_slip", "sideways_drift"} - {best.names[-1]}
     assert set(rivals_in_halves(runs, this, best)) == others
     assert diagnose(mixed, GIVEN, (LIBRARY[0], LIBRARY[2])).verdict != "named"
+
+
+@pytest.mark.parametrize(("also_found", "rivals"), [(False, ("a", "b")), (True, ())])
+def test_what_was_found_beside_an_effect_is_no_rival_of_it(
+    rivals: tuple[str, ...], *, also_found: bool
+) -> None:
+    """Slip along and creep aside gained as much in the first round, and both were found."""
+    tried = [
+        SimpleNamespace(names=(name,), at_bound=(), total=total, scatter=1.0)
+        for name, total in (("a", 900.0), ("b", 905.0))
+    ]
+    first: Any = SimpleNamespace(tried=tried)
+    beside: Any = SimpleNamespace(tried=[SimpleNamespace(names=("a", "b"), at_bound=())])
+    final: Any = SimpleNamespace(names=("a", "b") if also_found else ("a",))
+    assert rivals_of("a", (first, beside), final, ()) == rivals

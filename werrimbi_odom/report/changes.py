@@ -20,6 +20,7 @@ WHAT = {
     "both_wheels": "both wheels",
     "wheel_base": "the wheel base",
     "mount": "how the reference is mounted",
+    "reference_delay": "the reference's clock",
 }
 """Names of the changed parts."""
 
@@ -68,6 +69,8 @@ def _what(moves: Sequence[ParameterChange], robot: Robot) -> str:
     numbers = listed([_from_to(move) for move in moves])
     if group == "mount":
         return f"the reference {_verb(moves[0], group)} mounted otherwise: {numbers}"
+    if group == "reference_delay":
+        return f"{WHAT[group]} stood otherwise: {numbers}"
     return f"{group} took another size: {numbers}"
 
 

@@ -100,9 +100,14 @@ def _beside(
     ]
     if not steps:
         return ()
+    # What a change of an effect explains that the model lacks begins with what the effect does.
+    changed = {name.rpartition(".")[0] for step in steps for name in step.group.numbers}
+    tried = _scores_of(diagnosis, fit, effects)
+    level = sum(_worth_of([each], fit) for each in tried if each.candidate.name in changed)
+    others = _worth_of([each for each in tried if each.candidate.name not in changed], fit)
     worth = sum(step.gain - fit.penalty_of_one * (step.degrees + 1) for step in steps)
     least = rules.WORTH_OF_A_CHANGE * _worth_of(dependences, fit)
-    if worth < max(_worth_of_effects(diagnosis, fit, effects) + rules.RIVAL, least, rules.RIVAL):
+    if worth < rules.RIVAL or worth + level < max(others + rules.RIVAL, least):
         return ()
     more = [cell for cell in dependences if _worth_of([cell], fit) > worth]
     if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
@@ -188,15 +193,15 @@ def _stands_beside(
     )
 
 
-def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> float:
-    """Penalised gain of the best effect that is not in the model."""
+def _scores_of(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> Sequence[Score]:
+    """Scores of the effects that are not in the model."""
     this = next((each for each in diagnosis.rounds if each.before is fit), None)
     if this is not None:
-        return _worth_of(this.scores, fit)
+        return this.scores
     numbers = (*CALIBRATION, *fit.numbers, *fit.point.model.nuisance_parameters)
     known = {applied.name for applied in fit.point.model.robot.effects}
     tried = candidates(effects, known, diagnosis.runs.channels, len(diagnosis.runs.runs))
-    return _worth_of(scores(diagnosis.runs, fit.point, numbers, tried), fit)
+    return scores(diagnosis.runs, fit.point, numbers, tried)
 
 
 def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> float:

@@ -15,7 +15,7 @@ from werrimbi_odom.inference.changes.information_of_drives import (
     DriveNumbers,
     information_of_drives,
 )
-from werrimbi_odom.inference.changes.parameter_groups import MOUNT, numbers_of, value_at
+from werrimbi_odom.inference.changes.parameter_groups import DELAY, MOUNT, numbers_of, value_at
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import STEP, FreeParameter
@@ -70,11 +70,11 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
     white, flat = design.flat()
     columns = {number.name: flat[:, n] for n, (number, run) in enumerate(design.columns) if run < 0}
     own = flat[:, [n for n, (_, run) in enumerate(design.columns) if run >= 0]]
-    mounts = [find(name) for name in MOUNT if name not in held]
+    of_reference = [find(name) for name in (*MOUNT, DELAY) if name not in held]
     nulls = {}
     seen = []
-    if mounts:
-        _, each = signatures(runs, point, (), [Candidate(effect, {}) for effect in mounts])
+    if of_reference:
+        _, each = signatures(runs, point, (), [Candidate(effect, {}) for effect in of_reference])
         for signature in each:
             effect = signature.candidate.effect
             if not signature.flat.any():

@@ -21,12 +21,12 @@ from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-YAW, ARM = "reference_yaw_offset", "reference_lever_arm"
+YAW, ARM, DELAY = "reference_yaw_offset", "reference_lever_arm", "reference_delay"
 MOUNT = (YAW, ARM)
 """Effects of the reference's mount, which may be changed even if the file does not hold them."""
 
-PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", "mount")
-"""Groups that are sizes of parts, not parameters of an effect's law."""
+PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", "mount", DELAY)
+"""Groups that are sizes of parts, or how two clocks stand, not parameters of an effect's law."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[FreeParameter, .
     Parameters
     ----------
     mounts : sequence of Effect
-        Effects of `MOUNT` that the reference can show and the robot does not hold.
+        Effects of the reference that it can show and the robot does not hold.
     """
     held = [applied.effect for applied in robot.effects if not applied.effect.is_mistake]
     return (*CALIBRATION, *(number for effect in (*held, *mounts) for number in sizes_of(effect)))

@@ -50,11 +50,22 @@ def rivals_of(
         named += [item.effect for item in instead if item.total < limit]
         named = list(dict.fromkeys((*named, *_in_place_of_a_size(first, rounds, final))))
         return tuple(named) if len(named) > 1 else ()
-    for this in rounds:
-        if any(fit.names[-1] == first and not fit.at_bound for fit in this.tried):
-            near = _near(first, this)
-            return (first, *near) if near else ()
-    return ()
+    this = round_of(first, rounds, final)
+    # What was found beside it explains something else, however alike the gains are.
+    near = () if this is None else _near(first, this)
+    near = tuple(other for other in near if other not in final.names)
+    return (first, *near) if near else ()
+
+
+def round_of(name: str, rounds: Sequence[Round], final: Fitted) -> Round | None:
+    """The round that accepted an effect; of what was not accepted, the first that tried it."""
+    since = final.names.index(name) if name in final.names else 0
+    tried = (
+        this
+        for this in rounds[since:]
+        if any(fit.names[-1] == name and not fit.at_bound for fit in this.tried)
+    )
+    return next(tried, None)
 
 
 def rivals_of_others(

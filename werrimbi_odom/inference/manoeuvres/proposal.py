@@ -24,6 +24,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
+from werrimbi_odom.inference.diagnosis.rivals import round_of
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
@@ -129,7 +130,7 @@ def next_manoeuvre(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
 
 def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     """Expected evidence of each manoeuvre of the library about the rivals, the simplest first."""
-    this = _round_of(diagnosis)
+    this = round_of(diagnosis.rivals[0], diagnosis.rounds, diagnosis.final) or diagnosis.rounds[0]
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
     looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
@@ -234,15 +235,6 @@ def _size(apart: Floats) -> str:
     if heading > rules.APART_HEADING:
         parts.append(f"{heading:.2g}°")
     return (" and ".join(parts) or "little, again and again") + " on a short leg"
-
-
-def _round_of(diagnosis: Diagnosis) -> Round:
-    """The round in which the rivals stood against each other."""
-    first = diagnosis.rivals[0]
-    for this in diagnosis.rounds:
-        if any(fit.names[-1] == first for fit in this.tried):
-            return this
-    return diagnosis.rounds[0]
 
 
 def _candidate(name: str, this: Round, diagnosis: Diagnosis) -> Candidate:

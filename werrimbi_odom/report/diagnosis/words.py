@@ -84,12 +84,16 @@ def _changes(advised: AdvisedDiagnosis) -> list[str]:
     floor = (
         [] if advised.diagnosis.verdict == "unknown" else remarks.floor_not_asked(advised.diagnosis)
     )
+    what, one = "The robot", "one robot, the mean of both"
+    now = f"For what it is now, ask again with the drives from {drives[last]} on alone."
+    if all(change.group == "reference_delay" for change in advised.changes):
+        what, one = "The reference's clock", "one clock, the mean of all"
+        now = "Shift the reference of each drive by its own delay, or record both with one clock."
     return [
-        "The robot was not the same in all of these drives.",
+        f"{what} was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
         *(f"Or the floor is why. {words}" for words in floor),
-        "What follows takes them for one robot, the mean of both. For what it is now, ask again "
-        f"with the drives from {drives[last]} on alone."
+        f"What follows takes them for {one}. {now}"
         + (alone if advised.diagnosis.verdict == "unknown" else ""),
         "",
     ]
