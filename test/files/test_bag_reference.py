@@ -89,7 +89,7 @@ def test_of_poses_that_come_in_bursts_the_last_is_kept(
     assert run.reference is not None
     np.testing.assert_allclose(run.reference.time, 0.1 * np.arange(1, 11), atol=1e-6)
     np.testing.assert_allclose(run.reference.x, 0.1 * np.arange(1, 11) - 0.01)
-    assert any("they come 10 at a time, of which the last is kept" in note for note in run.notes)
+    assert any("all come 10 at a time, of which the last is kept" in note for note in run.notes)
 
 
 @pytest.mark.parametrize("stamps", [[1, 2, 3, 4], [1, 2, 60, 61, 62, 120, 121, 122]])

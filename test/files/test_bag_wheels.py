@@ -190,6 +190,22 @@ def test_odometry_that_is_set_back_to_its_origin_is_no_way(
     assert not any("set back" in note for note in run.notes)
 
 
+def test_messages_that_were_sent_once_more_are_no_stop(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """A driver that reads its wheels at 10 Hz, publishes at 20, and once hangs for a second."""
+    entries = []
+    for n in range(200):
+        read = 40 if 40 < n // 2 < 50 else n // 2
+        kind, message = ros.odometry(n * 50 * MS, 0.05 * read, 0.0, 0.0)
+        message.twist.twist.linear.x = 0.5
+        entries.append(("/odom", n * 50 * MS, (kind, message)))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.ticks.time.size == 91
+    assert (np.diff(run.ticks.left) > 0.0).all()
+    assert any(note.startswith("109 of 200 messages repeat the one before") for note in run.notes)
+
+
 def sideways(ros: Any, ahead: float, aside: float) -> list[Any]:
     """Odometry of 10 s, 0.3 m/s ahead and then as fast to the left, for so many seconds each."""
     entries = []

@@ -77,6 +77,7 @@ def test_what_waited_behind_a_pause_is_stamped_late() -> None:
         np.repeat(0.1 * np.arange(50.0), 2) + np.tile([0.0, 0.02], 50),  # two sensors in turn
         np.delete(0.1 * np.arange(200.0), [30, 31, 32, 90, 91]),  # some are lost
         np.sort(0.1 * np.arange(200.0) + np.random.default_rng(2).uniform(0.0, 0.09, 200)),
+        (0.005 * np.arange(1000.0).reshape(4, 250) + 60.0 * np.arange(4.0)[:, None]).ravel(),
     ],
 )
 def test_what_only_comes_unevenly_is_kept(time: np.ndarray) -> None:

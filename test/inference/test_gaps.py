@@ -51,6 +51,11 @@ def without_ticks(run: Run, spans: tuple[tuple[float, float], ...] = SPANS) -> R
     )
 
 
+def paused(run: Run) -> Run:
+    """The run without either."""
+    return silent(without_ticks(run))
+
+
 def parts(run: Run, which: str) -> Run:
     """With positions or headings alone."""
     reference = run.reference
@@ -65,8 +70,15 @@ def runs() -> list[Run]:
     return runs_of(ROBOT, range(40, 44))
 
 
-@pytest.mark.parametrize("lose", [silent, without_ticks])
-def test_every_gap_is_found_and_no_leg_spans_one(runs: list[Run], lose: object) -> None:
+@pytest.mark.parametrize(
+    ("lose", "who"),
+    [
+        (silent, "the reference is"),
+        (without_ticks, "the ticks are"),
+        (paused, "reference and ticks are"),
+    ],
+)
+def test_every_gap_is_found_and_no_leg_spans_one(runs: list[Run], lose: object, who: str) -> None:
     assert callable(lose)
     lost = [lose(run) for run in runs]
     found = compare(lost, ROBOT)
@@ -77,6 +89,7 @@ def test_every_gap_is_found_and_no_leg_spans_one(runs: list[Run], lose: object) 
             assert part.begin <= begin + 0.25
             assert part.end >= end - 0.25
             assert part.end - part.begin < end - begin + 0.6
+            assert part.words.startswith(f"{who} silent while the robot ")
         own = found.legs.run == index
         for begin, end in SPANS:
             spans = (found.legs.start_time[own] < end - 0.3) & (

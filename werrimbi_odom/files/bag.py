@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a bag (a rosbag2 folder, a single .mcap, .db3 or ROS 1 .bag) for reading, without ROS."""
+"""Opens a bag (a rosbag2 folder, a single .mcap, .db3 or ROS 1 .bag) for reading, without ROS.
+
+Topics that `rostopic echo -p` wrote as text are read as one.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.driver_messages import Types
+from werrimbi_odom.files.echoed_topics import Parsed, echoed_files, echoed_messages, echoed_topic
 from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
 
 ROS1 = ".bag"
@@ -53,7 +57,7 @@ class Bag:
     damage: tuple[str, ...]
     """Damage that was worked around, in words for the user."""
     _raw: Callable[[Sequence[str]], Iterator[Raw]]
-    _types: Types
+    _types: Types | Parsed
 
     def messages(self, topics: Sequence[str]) -> Iterator[BagMessage]:
         """Yield the messages of some topics, in order of recording.
@@ -101,6 +105,10 @@ def opened_bag(path: Path) -> Iterator[Bag]:
     InputError
         If rosbags is not installed, or the bag cannot be opened.
     """
+    echoed = [] if path.is_dir() and _files(path) else echoed_files(path)
+    if echoed:
+        yield _echoed(path, echoed)
+        return
     try:
         from rosbags.rosbag1 import Reader as Reader1
         from rosbags.rosbag2 import Reader as Reader2
@@ -139,6 +147,23 @@ def opened_bag(path: Path) -> Iterator[Bag]:
         yield Bag(path, topics, (), raw, Types(ros1, definitions))
     finally:
         reader.close()
+
+
+def _echoed(path: Path, files: Sequence[Path]) -> Bag:
+    """Topics that were written as text."""
+    found = [echoed_topic(file) for file in files]
+    damage = [
+        f"{each.file.name}: {each.broken} of {each.broken + each.messages} rows have not the "
+        "columns of its first line; left out"
+        for each in found
+        if each.broken
+    ]
+
+    def raw(names: Sequence[str]) -> Iterator[Raw]:
+        return echoed_messages([each for each in found if each.name in names])
+
+    topics = _topics((each.name, each.kind, each.messages) for each in found)
+    return Bag(path, topics, tuple(damage), raw, Parsed())
 
 
 def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:

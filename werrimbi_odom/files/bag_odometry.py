@@ -45,6 +45,10 @@ SET_BACK = (
     "{:.1f} s after its first message the odometry was set back to its origin: the robot is taken "
     "to have stood in that step"
 )
+REPEATED = (
+    "{} of {} messages repeat the one before to the last digit, while their twist says that the "
+    "robot moves: they are old, and left out"
+)
 FROM_TWIST = "its poses never change, so its twist was integrated"
 
 
@@ -72,6 +76,17 @@ class OdometryTurnedBack:
         self._poses.extend(planar(content.pose.pose.position, content.pose.pose.orientation))
         twist = content.twist.twist
         self._twists.extend((float(twist.linear.x), float(twist.angular.z)))
+
+    def _repeated(self, *columns: Floats) -> NDArray[np.bool_]:
+        """Messages that were sent once more, shape (n,), of pose, speed and turn rate.
+
+        A driver that publishes more often than it reads its wheels sends them, or one that hangs:
+        the robot would stand, and go twice as far in the next step.
+        """
+        again = np.all(np.diff(columns, axis=1) == 0.0, axis=0)
+        *_, speed, rate = columns
+        rolled = np.abs(speed) + 0.5 * self._robot.wheel_separation * np.abs(rate)
+        return np.append(False, again & (rolled[1:] > _SLOW * np.quantile(rolled, 0.9)))
 
     def _refuse_sideways(self, time: Floats, x: Floats, y: Floats, yaw: Floats) -> None:
         """Raise if the robot goes sideways, which two wheels on an axle cannot."""
@@ -120,7 +135,10 @@ class OdometryTurnedBack:
             along, turned = integrated(time, speed), integrated(time, rate)
             words.append(FROM_TWIST)
         else:
-            whole = np.isfinite(x + y + yaw)
+            repeated = self._repeated(x, y, yaw, speed, rate)
+            count = int(repeated.sum())
+            words += [REPEATED.format(count, time.size)] if count else []
+            whole = np.isfinite(x + y + yaw) & ~repeated
             time = time[whole]
             self._refuse_sideways(time, x[whole], y[whole], yaw[whole])
             poses = x[whole], y[whole], yaw[whole]

@@ -11,6 +11,7 @@ from typing import Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import SUFFIXES, named_files
+from werrimbi_odom.files.echoed_topics import echoed_files
 from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
@@ -35,7 +36,7 @@ FROM_TEXT = (
     f"a log of text is read from a folder of its own with {TICKS} ({','.join(TICKS_COLUMNS)}: "
     "seconds, and counts since the start) and, as far as it was measured, "
     f"{REFERENCE} ({','.join(REFERENCE_COLUMNS)}); docs/recordings.md says how speeds and metres "
-    "become counts"
+    "become counts. What `rostopic echo -p` wrote is read as it is"
 )
 
 
@@ -146,6 +147,8 @@ def _bag_in(folder: Path) -> Path:
         return files[0] if renamed else folder
     if files:  # the recorder was killed before it wrote the metadata
         return files[0] if len(files) == 1 else folder
+    if echoed_files(folder):
+        return folder
     hint = ""
     for below in (*sorted(folder.glob(f"*/{TICKS}")), *sorted(folder.glob("*/metadata.yaml"))):
         hint = f"; did you mean {below.parent}?"
@@ -156,7 +159,7 @@ def _bag_in(folder: Path) -> Path:
 
 
 def _bag_file(path: Path) -> Path:
-    if path.suffix in SUFFIXES:
+    if path.suffix in SUFFIXES or echoed_files(path):
         return path
     if path.name == TICKS:
         raise InputError(f"{path}: give the folder that holds it, {path.parent}")

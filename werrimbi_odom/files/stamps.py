@@ -42,6 +42,8 @@ _PAUSE = 0.5
 are always sent together have none."""
 _SLOW = 1.0
 """Usual interval from which on readings close together were taken so [s], by a person."""
+_SILENT = 3.0
+"""Interval, in medians, from which on messages that come less often than that are silent."""
 _LATE = 0.1
 """Delay beyond the usual one above which a message counts as late [s]."""
 _FEWEST = 3
@@ -129,8 +131,7 @@ def _judged(header: Floats, received: Floats) -> Stamps:
     has_header = bool(np.isfinite(header).all())
     told = np.diff(np.sort(header)) if has_header else gaps  # messages may overtake one another
     after = received - header
-    # The mean: where messages come in bursts, most intervals are next to nothing.
-    usual = float(np.ptp(header if has_header else received)) / max(told.size, 1)
+    usual = _mean_interval(told)
     return Stamps(
         messages=header.size,
         rate=1.0 / usual if usual > 0.0 else 0.0,
@@ -160,14 +161,14 @@ def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
     """
     gaps = np.abs(np.diff(time))
     keep = np.ones(time.size, dtype=np.bool_)
-    mean = float(np.ptp(time)) / max(gaps.size, 1) if time.size else 0.0
+    mean = _mean_interval(gaps)
     apart = gaps >= _BURST * mean
     if mean >= _SLOW or not gaps.size:
         return keep, ""
     if apart.mean() < 1.0 - _MOSTLY:
         keep[:-1] = apart
         together = keep.size / keep.sum()
-        return keep, f"they come {together:.0f} at a time, of which the last is kept"
+        return keep, f"all come {together:.0f} at a time, of which the last is kept"
     if gaps.size < _TELLING:
         return keep, ""
     usual = float(np.mean(gaps[gaps < _LOST * np.median(gaps[apart])]))
@@ -179,6 +180,17 @@ def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
     late = int(np.sum(~keep))
     told = f"{late} of {keep.size} waited and came at once, and are left out: they are stamped late"
     return keep, told if late > _TOLD * keep.size else ""
+
+
+def _mean_interval(intervals: Floats) -> float:
+    """Mean interval; the median would be next to nothing where messages come in bursts.
+
+    A silence (between two tests in one file) counts as no more than a pause does.
+    """
+    if not intervals.size:
+        return 0.0
+    pause = max(_SLOW, _SILENT * float(np.median(intervals)))
+    return float(np.mean(np.minimum(intervals, pause)))
 
 
 def _spread(intervals: Floats) -> float:

@@ -32,7 +32,8 @@ class Raw(NamedTuple):
     kind: str
     received: int
     """[ns]"""
-    data: bytes
+    data: Any
+    """Its bytes, or itself if it was written as text."""
     definition: str
     """Definition of its type; "" if the file has none."""
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 
 _RANK = 1e-6
 
@@ -28,18 +29,23 @@ def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
 
     Parameters that the other folds do not determine (the phase of a run that lies in one fold) are
     fitted to the fold itself, at a penalty of 2 each (Akaike): one for what the fit took from the
-    noise, one for what it would take from new noise. The same holds for a per-run parameter about
-    which the fold has more information than all others together: carried over from them it would
-    cost more than 2 by the noise alone (`FOLD_TELLS`). Directions that the fit did not move
-    stay: the runs do not determine them, and other folds would send them anywhere.
+    noise, one for what it would take from new noise. The same holds for a per-run parameter, or a
+    size (of a drive with one spin, the base), about which the fold has more information than all
+    others together: carried over from them it would cost more than 2 by the noise alone
+    (`FOLD_TELLS`). Directions that the fit did not move stay: the runs do not determine them, and
+    other folds would send them anywhere.
     """
     white, flat = fit.design.flat()
     slopes = flat @ fit.moves
     rows = np.repeat(fold_of_leg(runs), 3)
     size = np.sqrt(np.sum(slopes**2, axis=0))
     scaled = slopes[:, size > 0.0] / size[size > 0.0]
-    own_columns = np.array([run >= 0 for _, run in fit.design.columns])
-    of_run = np.any(fit.moves[own_columns], axis=0)[size > 0.0]
+    of_run = np.array([run >= 0 for _, run in fit.design.columns])
+    of_size = np.array([number.name in MULTIPLIERS for number, _ in fit.design.columns])
+    in_run, in_size, elsewhere = (
+        np.any(fit.moves[columns], axis=0) for columns in (of_run, of_size, ~(of_run | of_size))
+    )
+    of_fold = (in_run | (in_size & ~elsewhere))[size > 0.0]
     change = 0.0
     for fold in range(rules.FOLDS):
         here = rows == fold
@@ -47,7 +53,7 @@ def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
             continue
         learnt, seen = scaled[~here], scaled[here]
         told = np.sum(learnt**2, axis=0)
-        here_alone = (told <= _RANK**2) | (of_run & (told < 1.0 - rules.FOLD_TELLS))
+        here_alone = (told <= _RANK**2) | (of_fold & (told < 1.0 - rules.FOLD_TELLS))
         step = np.linalg.lstsq(learnt, -white[~here], rcond=_RANK)[0]
         left = white[here] + seen[:, ~here_alone] @ step[~here_alone]
         own = seen[:, here_alone]

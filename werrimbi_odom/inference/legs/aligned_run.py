@@ -110,17 +110,27 @@ def _silences(
 ) -> tuple[LeftOut, ...]:
     """Exclusions of a run: no driving, counter jumps, and gaps of ticks or reference."""
     way = counters.way(robot, leg, turn)
-    parts = [("the reference is", seen, np.interp(seen, counters.time, way))]
+    started = float(counters.time[0])
     inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
-    parts.append(("the ticks are", counters.time[inside], way[inside]))
-    found, started = [], float(counters.time[0])
-    for who, time, gone in parts:
-        unheard = gaps_in(time, gone) & ~touched(time, taken_out)
-        for index in np.flatnonzero(unheard).tolist():
-            begin, end = float(time[index]), float(time[index + 1])
-            driven = _driven(robot, counters, begin, end)
-            words = f"{who} silent while {driven}"
-            found.append(LeftOut(run.path, begin, end, "gap", words, started))
+
+    def unheard(time: Floats, gone: Floats) -> list[tuple[float, float]]:
+        silent = np.flatnonzero(gaps_in(time, gone) & ~touched(time, taken_out))
+        return [(float(time[index]), float(time[index + 1])) for index in silent]
+
+    gaps = _named(
+        unheard(seen, np.interp(seen, counters.time, way)),
+        unheard(counters.time[inside], way[inside]),
+    )
+    found = [
+        LeftOut(
+            run.path,
+            *ends,
+            "gap",
+            f"{who} silent while {_driven(robot, counters, *ends)}",
+            started,
+        )
+        for who, ends in gaps
+    ]
     others = [
         *(NoDriving(begin, end, "counter", words) for begin, end, words in counters.leaps),
         *(run.no_driving or ()),
@@ -131,6 +141,26 @@ def _silences(
         if part.end > seen[0] and part.begin < seen[-1]
     ]
     return tuple(sorted(found, key=lambda part: part.begin))
+
+
+def _named(
+    unseen: Sequence[tuple[float, float]], uncounted: Sequence[tuple[float, float]]
+) -> list[tuple[str, tuple[float, float]]]:
+    """Gaps of reference and ticks, and whose each is; a recorder that paused makes one of both."""
+
+    def alike(one: tuple[float, float], other: tuple[float, float]) -> bool:
+        return all(a[0] < 0.5 * sum(b) < a[1] for a, b in ((one, other), (other, one)))
+
+    found, of_both = [], set()
+    for one in unseen:
+        twin = next((other for other in uncounted if alike(one, other)), None)
+        if twin is None:
+            found.append(("the reference is", one))
+        else:
+            of_both.add(twin)
+            ends = min(one[0], twin[0]), max(one[1], twin[1])
+            found.append(("reference and ticks are", ends))
+    return found + [("the ticks are", gap) for gap in uncounted if gap not in of_both]
 
 
 def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:

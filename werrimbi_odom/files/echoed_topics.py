@@ -1,0 +1,164 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reads topics that were written as text: `rostopic echo -p /odom > odom.csv`, a file each.
+
+The first line names the fields of the message: `%time,field.header.seq,field.header.stamp,...`. The
+topic is named as its file, and its type is told by the fields.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from heapq import merge
+from operator import attrgetter
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.unfinished_bag import Raw
+
+SUFFIX = ".csv"
+_FIRST = "%time"
+_KINDS = {
+    "nav_msgs/msg/Odometry": ("pose.pose.position.x", "twist.twist.linear.x"),
+    "geometry_msgs/msg/PoseWithCovarianceStamped": ("pose.pose.position.x", "pose.covariance0"),
+    "geometry_msgs/msg/PoseStamped": ("header.stamp", "pose.position.x"),
+    "geometry_msgs/msg/TransformStamped": ("header.stamp", "transform.translation.x"),
+    "tf2_msgs/msg/TFMessage": ("transforms0.transform.translation.x",),
+    "geometry_msgs/msg/PointStamped": ("header.stamp", "point.x"),
+    "geometry_msgs/msg/Pose2D": ("x", "y", "theta"),
+    "sensor_msgs/msg/Imu": ("angular_velocity.z", "linear_acceleration.x"),
+    "sensor_msgs/msg/LaserScan": ("ranges0", "angle_increment"),
+    "sensor_msgs/msg/NavSatFix": ("latitude", "longitude", "status.status"),
+    "sensor_msgs/msg/JointState": ("header.stamp", "name0"),
+    "turtlebot3_msgs/msg/SensorState": ("left_encoder", "right_encoder", "torque"),
+    "kobuki_msgs/msg/SensorState": ("left_encoder", "right_encoder", "time_stamp"),
+    "irobot_create_msgs/msg/WheelTicks": ("ticks_left", "ticks_right"),
+    "duckietown_msgs/msg/WheelEncoderStamped": ("header.stamp", "data", "resolution"),
+    "std_msgs/msg/Int64": ("data",),
+}
+"""Fields by which a type is told; the first of which all are there."""
+_ARRAYS = ("position", "velocity", "effort")
+"""Arrays that may be empty, and then have no column."""
+
+
+class EchoedTopic(NamedTuple):
+    """A file of one topic."""
+
+    file: Path
+    name: str
+    kind: str
+    """Message type; "unknown" if its fields tell none."""
+    fields: tuple[tuple[str, ...], ...]
+    """Path of each column within the message."""
+    messages: int
+    broken: int
+    """Rows that do not have the columns of the first line."""
+
+
+def echoed_files(path: Path) -> list[Path]:
+    """Files of such topics: the path itself, or what it holds."""
+    files = sorted(path.iterdir()) if path.is_dir() else [path]
+    return [each for each in files if each.suffix == SUFFIX and _begins(each)]
+
+
+def _begins(file: Path) -> bool:
+    with file.open("rb") as opened:
+        return opened.read(len(_FIRST)) == _FIRST.encode()
+
+
+def echoed_topic(file: Path) -> EchoedTopic:
+    """Read the first line of a file, and count its rows."""
+    rows = _rows(file)
+    header = [each.strip().removeprefix("field.") for each in next(rows)[1:]]
+    counts = [len(row) == len(header) + 1 for row in rows]
+    names = set(header)
+    kind = next((kind for kind, own in _KINDS.items() if names.issuperset(own)), "unknown")
+    if kind == "std_msgs/msg/Int64" and len(header) > 1:
+        kind = "unknown"
+    fields = tuple(tuple(each.split(".")) for each in header)
+    return EchoedTopic(file, f"/{file.stem}", kind, fields, sum(counts), counts.count(False))
+
+
+def echoed_messages(topics: Sequence[EchoedTopic]) -> Iterator[Raw]:
+    """Yield the messages of some topics, in order of receipt; `data` is the message itself.
+
+    Raises
+    ------
+    InputError
+        At a time that is none.
+    """
+    return merge(*map(_messages, topics), key=attrgetter("received"))
+
+
+class Parsed:
+    """Stands for the types of a bag: these messages are read already."""
+
+    def read(self, data: Any, kind: str) -> Any:
+        """Return the message."""
+        return data
+
+
+def _rows(file: Path) -> Iterator[list[str]]:
+    with file.open(encoding="utf-8", errors="replace", newline="") as opened:
+        yield from (row for row in csv.reader(opened) if row)
+
+
+def _messages(topic: EchoedTopic) -> Iterator[Raw]:
+    rows = _rows(topic.file)
+    next(rows)
+    for row in rows:
+        if len(row) == len(topic.fields) + 1:
+            message = SimpleNamespace(**{name: [] for name in _ARRAYS})
+            for path, cell in zip(topic.fields, row[1:], strict=True):
+                _put(message, path, cell, topic.file)
+            yield Raw(topic.name, topic.kind, _nanoseconds(topic.file, _FIRST, row[0]), message, "")
+
+
+def _nanoseconds(file: Path, name: str, cell: str) -> int:
+    if not cell.strip().isdecimal():
+        raise InputError(f"{file}, column {name}: {cell!r} is no time in nanoseconds")
+    return int(cell)
+
+
+def _put(message: Any, path: Sequence[str], cell: str, file: Path) -> None:
+    """Set a field of a message; `covariance7` and `transforms0.header` are items of a list."""
+    *parts, last = path
+    for part in parts:
+        message = _within(message, part)
+    if last == "stamp":
+        seconds, rest = divmod(_nanoseconds(file, ".".join(path), cell), 10**9)
+        message.stamp = SimpleNamespace(sec=seconds, nanosec=rest)
+        return
+    array = last.rstrip("0123456789")
+    if array != last:
+        if not hasattr(message, array):
+            setattr(message, array, [])
+        getattr(message, array).append(_value(array, cell))
+    else:
+        setattr(message, last, _value(last, cell))
+
+
+def _within(message: Any, part: str) -> Any:
+    array = part.rstrip("0123456789")
+    if array == part:
+        if not hasattr(message, part):
+            setattr(message, part, SimpleNamespace())
+        return getattr(message, part)
+    if not hasattr(message, array):
+        setattr(message, array, [])
+    items = getattr(message, array)
+    if int(part[len(array) :]) == len(items):
+        items.append(SimpleNamespace())
+    return items[-1]
+
+
+def _value(name: str, cell: str) -> Any:
+    if name == "name" or name.endswith("frame_id"):
+        return cell
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
