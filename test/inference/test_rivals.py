@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 
 from test.inference.driven import runs_of
+from test.inference.test_gaps import parts
 from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY as ALL
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.effect_support import askable
 from werrimbi_odom.inference.diagnosis.forward_selection import Round, fit_calibration, search_round
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import halves, rivals_in_halves, rivals_of
@@ -43,6 +46,16 @@ def of_sizes(needed: tuple[str, ...], dearer: float, **what: object) -> tuple[st
     tried = replace(tried, calibrated=needed, cost=cost, **what)  # type: ignore[arg-type]
     this = replace(found, before=final, tried=(tried,))
     return rivals_of("unequal_wheel_radii", (this,), final, ())
+
+
+def test_a_reference_without_headings_has_none_that_are_late_or_drift() -> None:
+    """By positions alone a gyro that nobody has was a rival of the wheels' size."""
+    (run,) = runs_of(GIVEN, [1], seconds=20)
+    laid = [
+        concatenated(match_for_fit([each], GIVEN, 1.0)) for each in (run, parts(run, "positions"))
+    ]
+    known, unknown = ({each.name for each in askable(ALL, runs, GIVEN)} for runs in laid)
+    assert known - unknown == {"reference_heading_delay", "reference_gyro_drift"}
 
 
 @pytest.mark.parametrize("needed", [(), ("wheel_radius_scale",)])
