@@ -76,7 +76,7 @@ def test_where_parts_disagree_a_size_is_as_sure_as_they_are() -> None:
             by_noise = chi2_survival(importance, 1)
             by_parts = fisher_survival(importance, 1, fit.freedom[name])
             apart = fit.doubts[name] > 1.0
-            assert p_value_of_size(weighed, name) == (by_parts if apart else by_noise)
+            assert p_value_of_size(weighed, name, ROBOT, ROBOT) == (by_parts if apart else by_noise)
 
 
 def test_a_number_that_few_parts_show_is_known_by_few() -> None:

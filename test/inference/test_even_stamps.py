@@ -12,7 +12,12 @@ import pytest
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
-from werrimbi_odom.inference.legs.even_stamps import with_even_scan_stamps, with_even_stamps
+from werrimbi_odom.inference.legs.even_stamps import (
+    _lost_messages,
+    stamped_together,
+    with_even_scan_stamps,
+    with_even_stamps,
+)
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.robot import Robot
 
@@ -87,6 +92,44 @@ def test_a_pause_of_the_record_stays_where_it_was() -> None:
     found = with_even_stamps(came, *driven(PERIOD * np.arange(400)))
     assert found is not came
     assert np.abs(found - came).max() < 0.1
+
+
+@pytest.mark.parametrize("share", [0.005, 0.02, 0.1])
+@pytest.mark.parametrize("off", [0.05, 0.2])
+def test_lost_messages_are_counted(share: float, off: float) -> None:
+    """Without them the stamps beside each hole were put right by half a period too much."""
+    random = np.random.default_rng(6)
+    read = PERIOD * np.arange(4000)
+    read = read[random.random(4000) >= share]
+    came = np.sort(read + random.normal(0.0, off * PERIOD, read.size))
+    found = with_even_stamps(came, *driven(read))
+    assert found is not came
+    assert scatter(found - read) < 0.5 * scatter(came - read)
+
+
+def test_a_timer_that_loses_its_pace_loses_no_messages() -> None:
+    """It sleeps after each reading, and now and then for longer; no wheel turns further in that."""
+    random = np.random.default_rng(8)
+    waits = np.where(np.arange(4000) % 60 == 0, 0.6, 0.0)
+    came = PERIOD * (np.arange(4000) + np.cumsum(waits) + random.normal(0.0, 0.1, 4000))
+    assert not _lost_messages(came, *driven(PERIOD * np.arange(4000))).any()
+
+
+def test_a_gyro_that_comes_twice_as_often_in_the_same_packets_is_seen_to() -> None:
+    """As a Kobuki's does, stamped a third of a millisecond after the counters."""
+    random = np.random.default_rng(9)
+    read = 0.02 * np.arange(2000)
+    came = read + random.normal(0.0, 1e-3, 2000)
+    seen = np.sort(np.concatenate([came, came + 9.7e-3])) + 3e-4 + random.normal(0.0, 1e-4, 4000)
+    nothing = np.full(4000, np.nan)
+    wheels = Ticks(came, *driven(read))
+    assert stamped_together(
+        Run("a", Path("a"), wheels, Reference(np.sort(seen), nothing, nothing, 0.0 * seen))
+    )
+    alone = np.arange(0.0, 40.0, 0.01) + random.normal(0.0, 1e-3, 4000)
+    assert not stamped_together(
+        Run("a", Path("a"), wheels, Reference(np.sort(alone), nothing, nothing, 0.0 * seen))
+    )
 
 
 def test_a_message_told_twice_was_read_once() -> None:

@@ -52,9 +52,9 @@ def test_a_size_is_as_sure_as_few_data_know_their_noise() -> None:
     name, fit = "unequal_wheel_radii", SimpleNamespace(spare=14.0, importance={}, freedom={})
     fit.importance[name], fit.freedom[name], fit.doubts = 47.0, 5.0, {name: 1.0}
     of_few: Any = fit
-    assert p_value_of_size(of_few, name) == fisher_survival(47.0, 1, 14.0) > 1e-6
+    assert p_value_of_size(of_few, name, ROBOT, ROBOT) == fisher_survival(47.0, 1, 14.0) > 1e-6
     fit.doubts[name] = 1.5
-    assert p_value_of_size(of_few, name) == fisher_survival(47.0, 1, 5.0)
+    assert p_value_of_size(of_few, name, ROBOT, ROBOT) == fisher_survival(47.0, 1, 5.0)
 
 
 def test_what_was_not_fitted_is_no_surer_than_what_was() -> None:

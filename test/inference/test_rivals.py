@@ -13,16 +13,21 @@ import numpy as np
 import pytest
 
 from test.inference.driven import runs_of
+from test.inference.test_gaps import parts
 from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY as ALL
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.effect_support import askable
 from werrimbi_odom.inference.diagnosis.forward_selection import Round, fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import halves, rivals_in_halves, rivals_of
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.robot import Robot
 
+RADII = ("left_wheel_radius_multiplier", "right_wheel_radius_multiplier")
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
 
@@ -45,6 +50,25 @@ def of_sizes(needed: tuple[str, ...], dearer: float, **what: object) -> tuple[st
     tried = replace(tried, calibrated=needed, cost=cost, **what)  # type: ignore[arg-type]
     this = replace(found, before=final, tried=(tried,))
     return rivals_of("unequal_wheel_radii", (this,), final, ())
+
+
+def test_what_differs_from_a_rough_set_up_need_not_differ_from_the_file() -> None:
+    """Counts times four were found as a factor of 4.05, and sound wheels then as unequal."""
+    fit = replace(a_round().before, importance={"wheel_radius_scale": 300.0})
+    near = fit.point.model.robot.left_wheel_radius_multiplier
+    file, rough = (replace(GIVEN, **dict.fromkeys(RADII, near * by)) for by in (1.0, 1.01))
+    assert p_value_of_size(fit, "wheel_radius_scale", rough, rough) < rules.SURE
+    assert p_value_of_size(fit, "wheel_radius_scale", file, rough) > rules.SURE
+
+
+def test_a_reference_without_headings_has_none_that_are_late_or_drift() -> None:
+    """By positions alone a gyro that nobody has was a rival of the wheels' size."""
+    (run,) = runs_of(GIVEN, [1], seconds=20)
+    laid = [
+        concatenated(match_for_fit([each], GIVEN, 1.0)) for each in (run, parts(run, "positions"))
+    ]
+    known, unknown = ({each.name for each in askable(ALL, runs, GIVEN)} for runs in laid)
+    assert known - unknown == {"reference_heading_delay", "reference_gyro_drift"}
 
 
 @pytest.mark.parametrize("needed", [(), ("wheel_radius_scale",)])

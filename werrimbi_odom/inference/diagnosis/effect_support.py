@@ -91,11 +91,12 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
 
     The acceleration by a coarse counter is that of its steps. A scan tells place and heading of one
     instant: no gyro has a part in it, and its heading is not later than its place, unless a gyro's
-    headings were put in.
+    headings were put in. Where no heading was measured, none is late or drifts.
     """
     if runs.has_coarse_counters:
         effects = _without(effects, ACCELERATIONS, runs.drive(robot))
-    if not runs.own_axes or runs.has_gyro_headings:
+    of_places = runs.positions_alone or runs.own_axes
+    if not of_places or runs.has_gyro_headings:
         return tuple(effects)
     return tuple(each for each in effects if each.stage != "reference" or not _of_a_gyro(each))
 

@@ -4,15 +4,20 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.evidence import p_value_of_score
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.clusters import few_parts, parts_of_innovations
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.fitting.score_tests import Score
+from werrimbi_odom.model.robot import Robot
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
@@ -51,11 +56,26 @@ def disagreeing(fit: Fitted, name: str) -> bool:
     return bool(np.any(fit.widening[mine] > 1.0))
 
 
-def p_value_of_size(fit: Fitted, name: str) -> float:
-    """P-value of a calibration effect's importance.
+def p_value_of_size(fit: Fitted, name: str, given: Robot, start: Robot) -> float:
+    """P-value of a calibration effect: of its importance, and of its difference from the file.
 
     By Fisher's F. Where the parts disagree, with the degrees of freedom in which they tell their
-    scatter, as few parts estimate it poorly; else with those of the noise, as `chance`.
+    scatter, as few parts estimate it poorly; else with those of the noise, as `chance`. The
+    importance is beside the sizes from which the fit started. Where a search of the set-up found
+    these (a factor of 4.05), they are as rough as that search, and what differs from them need not
+    differ from the file.
     """
     freedom = fit.freedom[name] if fit.doubts[name] > 1.0 else fit.spare
-    return fisher_survival(fit.importance.get(name, 0.0), 1, freedom)
+    p_value = fisher_survival(fit.importance.get(name, 0.0), 1, freedom)
+    if all(getattr(start, size) == getattr(given, size) for size in MULTIPLIERS):
+        return p_value
+    away = deviations_from(given, fit, name)
+    return max(p_value, fisher_survival(away**2, 1, freedom))
+
+
+def deviations_from(given: Robot, fit: Fitted, name: str) -> float:
+    """By how many standard deviations a size differs from that of the file."""
+    robot = fit.point.model.robot
+    where = [fit.design.names.index(multiplier) for multiplier in MULTIPLIERS]
+    std = std_as_effect(name, robot, fit.covariance[np.ix_(where, where)])
+    return abs(math.log(sizes_of(robot).over(sizes_of(given)).as_effects[name])) / max(std, 1e-12)

@@ -22,6 +22,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.set_up.search import SetUp
+from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,7 @@ def ranking_of(
     judge: Judge,
     start: Errors,
     laid: Concatenated,
+    given: Robot,
 ) -> list[Ranked]:
     """All effects, those found first, with the figures of the round that accepted them.
 
@@ -70,7 +72,7 @@ def ranking_of(
     calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
-        p_value = bonferroni(rounds[0].number, p_value_of_size(final, name))
+        p_value = bonferroni(rounds[0].number, p_value_of_size(final, name, given, set_up.robot))
         untried = Ranked(name, p_value, None, None)
         worth = _worth(name, p_value, mended, calibrated) if importance else untried
         base = name_of_base(final.point.model.robot)

@@ -4,17 +4,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from typing import NamedTuple
-
-import numpy as np
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import (
     name_of_base,
-    sizes_of,
-    std_as_effect,
 )
 from werrimbi_odom.inference.comparison.another_drive import (
     of_another_drive,
@@ -28,7 +23,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun
-from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
+from werrimbi_odom.inference.diagnosis.p_values import deviations_from, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.ranking import ranking_of
@@ -104,7 +99,9 @@ def diagnosis_of(
         verdict=answer.verdict,
         effect=answer.found[0] if answer.found else None,
         found=answer.found,
-        ranking=tuple(ranking_of(answer.found, begun.set_up, rounds, final, judge, before, laid)),
+        ranking=tuple(
+            ranking_of(answer.found, begun.set_up, rounds, final, judge, before, laid, given)
+        ),
         rivals=answer.rivals,
         torn=answer.torn,
         set_up=begun.set_up,
@@ -149,7 +146,7 @@ def _answer(
     sizes = [
         name
         for name in final.calibrated
-        if _is_news(name, final, rounds[0].number) and _differs(name, final, given)
+        if _is_news(name, final, rounds[0].number, given, set_up.robot)
     ]
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     names = {"track_width": name_of_base(final.point.model.robot)}
@@ -183,24 +180,12 @@ def _nothing_in_common(train: PreparedRuns, given: Model) -> ReferenceRemark:
     return ReferenceRemark("another_drive", 0.0)
 
 
-def _is_news(name: str, final: Fitted, tried: int) -> bool:
+def _is_news(name: str, final: Fitted, tried: int, given: Robot, start: Robot) -> bool:
     """Whether a size is a finding: significant, with a gain well above its penalty."""
     worth = final.importance[name]
-    certain = bonferroni(tried, p_value_of_size(final, name)) < rules.SURE
-    return certain and worth > rules.CALIBRATION_WORTH * final.penalty_of_one
-
-
-def _differs(name: str, final: Fitted, given: Robot) -> bool:
-    """Whether a size differs significantly from the file's.
-
-    The set-up search may have started from sizes that differ from the file's.
-    """
-    robot = final.point.model.robot
-    columns = final.design.names
-    where = [columns.index(multiplier) for multiplier in MULTIPLIERS]
-    std = std_as_effect(name, robot, final.covariance[np.ix_(where, where)])
-    size = sizes_of(robot).over(sizes_of(given)).as_effects[name]
-    return abs(math.log(size)) > rules.SIGNIFICANT * std
+    certain = bonferroni(tried, p_value_of_size(final, name, given, start)) < rules.SURE
+    differs = deviations_from(given, final, name) > rules.SIGNIFICANT
+    return certain and differs and worth > rules.CALIBRATION_WORTH * final.penalty_of_one
 
 
 def _plain(fit: Fitted, given: Robot) -> Model:

@@ -89,6 +89,11 @@ class Concatenated:
         return not np.isfinite(self.finish[:, :2]).any()
 
     @property
+    def positions_alone(self) -> bool:
+        """Whether references measure no heading, as satellites and most cameras do."""
+        return not np.isfinite(self.finish[:, 2]).any()
+
+    @property
     def has_stamp_noise(self) -> bool:
         """Whether stamp noise is estimated: for gyros and for scans.
 

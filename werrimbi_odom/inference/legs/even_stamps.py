@@ -51,10 +51,14 @@ def with_even_stamps(
         return time
     first = ~_told_again(time, left, right)
     row = np.cumsum(first) - 1
-    stamps, number = time[first], np.arange(float(row[-1] + 1))
-    if lost is not None:
-        number[1:] += np.cumsum(lost)[first[1:]]
-    if stamps.size <= rules.EVEN_WINDOW or not _by_timer(stamps, number, left[first], right[first]):
+    stamps = time[first]
+    if stamps.size <= rules.EVEN_WINDOW:
+        return time
+    number = np.arange(float(stamps.size))
+    number[1:] += np.cumsum(
+        _lost_messages(stamps, left[first], right[first]) if lost is None else lost[first[1:]]
+    )
+    if not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
     tenth = 0.1 * period * number  # keeps readings in order
@@ -73,15 +77,24 @@ def stamped_together(run: Run) -> bool:
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     own = seen - _numbered(seen, np.arange(float(seen.size)))[0]
-    sent = _sent(seen, time)
-    after = np.clip(np.searchsorted(time, sent), 1, time.size - 1)
-    apart = np.minimum(np.abs(sent - time[after - 1]), np.abs(sent - time[after]))
-    if np.median(apart) < rules.EVEN_LEAST_TOGETHER * np.std(late):
+    seldom, often = (time, seen) if seen.size > time.size else (seen, time)
+    # What has nothing in common is a quarter of an interval from the nearest.
+    chance = min(np.std(late), 0.25 * np.median(np.diff(often)))
+    if _apart(seldom, often) < rules.EVEN_ONE_PACKET * chance:
         return True
     both = np.interp(seen, time, late), own
     if not all(part.any() for part in both):
         return False
     return bool(np.corrcoef(*both)[0, 1] > rules.EVEN_TOGETHER)
+
+
+def _apart(seldom: Floats, often: Floats) -> float:
+    """Typical distance of stamps from the nearest of others, but for a constant one [s]."""
+    sent = _sent(seldom, often)
+    after = np.clip(np.searchsorted(often, sent), 1, often.size - 1)
+    return float(
+        np.median(np.minimum(np.abs(sent - often[after - 1]), np.abs(sent - often[after])))
+    )
 
 
 def in_packets_of(run: Run, seen: Reference) -> Reference:
@@ -123,22 +136,59 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
     time = np.asarray(reference.time, dtype=np.float64)
     if time.size < rules.EVEN_MESSAGES:
         return reference
-    even = with_even_stamps(time, left, right, _lost(time, left, right))
+    even = with_even_stamps(time, left, right, _lost_scans(time, left, right))
     # A larger correction means the numbering is wrong: too many scans are missing.
     late = float(np.std(even - time)) > rules.EVEN_MOST * float(np.median(np.diff(time)))
     return reference if even is time or late else replace(reference, time=even)
 
 
-def _lost(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
+def _lost_scans(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     """Count missing scans: holes in which the robot moves several times a neighbouring step."""
     interval = np.diff(time)
-    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
-    wide = np.pad(step, 2, mode="edge")
-    beside = 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
+    step, beside = _steps(left, right)
     drives = beside > 0.5 * float(np.median(step))
     times = np.divide(step, beside, out=np.ones_like(step), where=drives)
     holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
     return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
+
+
+def _steps(left: Counts, right: Counts) -> tuple[Floats, Floats]:
+    """Travel of each step, and that of the steps beside it, (n - 1,) each."""
+    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
+    wide = np.pad(step, 2, mode="edge")
+    return step, 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
+
+
+def _lost_messages(stamps: Floats, left: Counts, right: Counts) -> NDArray[np.intp]:
+    """Count messages of a timer that are missing between neighbours, (n - 1,).
+
+    However many are missing, the rest come at whole periods of the timer. Without those that are
+    lost, an even timer would seem to err by half a period beside each hole. A message that waited
+    is a period late by itself, whereas all that follow a lost one are. A timer that loses its pace
+    now and then seems to lose messages too, but no travel is more in these intervals.
+    """
+    rows = np.arange(stamps.size)
+    usual = _numbered(stamps, rows.astype(np.float64))[1]
+    none = np.zeros(stamps.size - 1, dtype=np.intp)
+    count = stamps.size // rules.EVEN_WINDOW
+    if count < rules.EVEN_WINDOWS or usual <= 0.0:
+        return none
+    windows = stamps[: count * rules.EVEN_WINDOW].reshape(count, -1) - stamps[0]
+    finely = 0.25 / rules.EVEN_WINDOW
+    rates = np.arange(1.0 - 4.0 * finely, 1.0 + rules.EVEN_MOST_LOST, finely) / usual
+    # Mean resultant length of the stamps as angles of the timer: 1 if even, 0 if anywhere.
+    even = [np.abs(np.exp(2j * np.pi * rate * windows).mean(axis=1)).mean() for rate in rates]
+    if max(even) < rules.EVEN_KNOWN:
+        return none
+    turns = rates[np.argmax(even)] * (stamps - stamps[0])
+    phase = uniform_filter1d(np.exp(2j * np.pi * turns), rules.EVEN_WINDOW, mode="reflect")
+    number = np.rint(turns - np.unwrap(np.angle(phase)) / (2.0 * np.pi)).astype(np.intp)
+    missed = median_filter(number - rows, rules.EVEN_BESIDE, mode="nearest")
+    lost = np.asarray(np.diff(np.maximum.accumulate(missed)))
+    step, beside = _steps(left, right)
+    seen = (lost > 0) & np.isfinite(step) & np.isfinite(beside)
+    expected = float(np.sum((beside * (1 + lost))[seen]))
+    return none if float(np.sum(step[seen])) < rules.EVEN_TRAVEL * expected else lost
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:

@@ -144,6 +144,16 @@ wheels that were corrected alone would disagree with it; above this limit a whee
 of its travel. And the correlation of both stamps above which they come from one packet: half of the
 delay of one is in the other."""
 
+EVEN_TRAVEL = 0.75
+"""Travel in all intervals in which messages seem lost, as a share of what it is then, up to which
+none were: half way between all of it and that of single intervals, where one is lost at a time."""
+
+EVEN_ONE_PACKET = 0.25
+"""Distance of the stamps of wheels and reference from one another, as a share of what those of the
+wheels are off by, below which one packet brings both. The Kobuki's driver stamps its gyro 0.37 ms
+after its counters, to a tenth of what these are off by; of two timers that are alike it would be
+two thirds."""
+
 EVEN_MESSAGES, EVEN_WINDOW = 50, 51
 """Fewest messages for a decision whether stamps tell when counters were read, as chance decides
 with fewer; and window of the running median of their delays: a few seconds, in which two clocks
@@ -161,6 +171,17 @@ that travel and turn both count. Chosen; any robot's would do."""
 EVEN_HOLE = 1.7
 """Travel of a step relative to its neighbour, above which a scan is missing in between: nearer to
 two than to one, and more than noise of some millimetres and a start make of one."""
+
+EVEN_MOST_LOST = 0.12
+"""Share of a timer's messages that may be lost, and its period still be looked for. Chosen: of a
+recording that loses more, other things are wrong."""
+
+EVEN_KNOWN, EVEN_WINDOWS, EVEN_BESIDE = 0.25, 4, 5
+"""Mean resultant length of the stamps, as angles of the timer, from which on lost messages are
+counted by them: of stamps anywhere 51 make 0.12, of a normal scatter of a quarter of a period 0.3,
+and one such stamp in twenty is nearer to another period. Windows of stamps for which it is a mean:
+of four, chance does not reach 0.25. And messages of which the median tells the period: two that
+waited do not matter."""
 
 EVEN_MOST = 0.4
 """Largest correction of scan stamps (rms), as a share of a turn of the lidar. A delay that is
