@@ -11,10 +11,8 @@ LEAST_SHARE = 0.35
 rejected up to nine tenths of the good matches of a poor lidar (15 mm); one of 0.35 rejected none.
 Matches while a robot was carried stayed below it."""
 
-WEAK = 0.03
-"""Least ratio of the smaller to the larger eigenvalue of the position covariance. It is about a
-thousandth along a bare corridor, a tenth and more in rooms, a twentieth in corridors with cupboards
-and doors."""
+FEIGNED = 10.0
+"""xx"""
 
 LARGEST_SIGMA = 0.01
 """Largest standard deviation of a match [m, rad]. Matches in rooms have 1 to 4 mm, and a match with

@@ -35,6 +35,9 @@ FLAT = 0.25
 chair's leg or a person."""
 
 
+PSEUDO = 8.0
+
+
 class Elements(NamedTuple):
     """Line elements; m of them."""
 
@@ -42,6 +45,10 @@ class Elements(NamedTuple):
     """Shape (m, 2) [m]."""
     normals: Floats
     """Unit normals, shape (m, 2)."""
+    noise: Floats
+    """Standard deviation of its echoes across it, shape (m,) [m]."""
+    tilt: Floats
+    """Standard deviation of the direction of its normal, shape (m,) [rad]."""
     reach: Floats
     """Distance from its centre up to which an element is valid, shape (m,) [m]."""
     tree: cKDTree
@@ -79,7 +86,12 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
     along = 0.5 * np.arctan2(2.0 * xy, xx - yy)[flat]
     centres = np.column_stack([x, y])[flat] + origin
     normals = np.column_stack([-np.sin(along), np.cos(along)])
-    return Elements(centres, normals, reach[flat], _tree(middles[flat] + origin))
+    count, across = number[flat], np.maximum((half - gap)[flat], 0.0)
+    pooled = np.median(across)
+    noise = np.sqrt((count * across + PSEUDO * pooled) / (count - 2.0 + PSEUDO))
+    noise = np.maximum(noise, 1e-3)
+    tilt = noise / np.sqrt(count * (half + gap)[flat])
+    return Elements(centres, normals, noise, tilt, reach[flat], _tree(middles[flat] + origin))
 
 
 def _tree(points: Floats) -> cKDTree:

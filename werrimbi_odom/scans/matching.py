@@ -47,6 +47,7 @@ class Match:
     share: float
     """Their mean weight: 1 if all agree."""
     converged: bool
+    feigned: Floats
 
 
 def match(points: Floats, elements: Elements, guess: Floats) -> Match:
@@ -60,8 +61,8 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
         Initial pose. After convergence the result does not depend on it.
     """
     x, y, yaw = guess.tolist()
-    gate, noise, share, converged, used = GATES[0], LEAST_NOISE, 0.0, False, 0
-    information = np.zeros((3, 3))
+    gate, ratio, share, converged, used = np.inf, 1.0, 0.0, False, 0
+    usual, information = LEAST_NOISE, np.zeros((3, 3))
     for round_ in range(ROUNDS):
         cos, sin = np.cos(yaw), np.sin(yaw)
         turned = points @ np.array([[cos, sin], [-sin, cos]])
@@ -69,36 +70,55 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
         if round_ < PAIRED:
             distance, nearest = elements.tree.query(placed, distance_upper_bound=GATES[0])
             near = np.flatnonzero(distance < np.inf)
-            nearest = nearest[near]
-        normals = elements.normals[nearest]
-        residual = ((placed[near] - elements.centres[nearest]) * normals).sum(axis=1)
-        kept = np.abs(residual) <= gate
-        kept &= distance[near] <= np.maximum(gate, elements.reach[nearest])
+            nearest, distance = nearest[near], distance[near]
+            normals, noise = elements.normals[nearest], elements.noise[nearest]
+        away = ((placed[near] - elements.centres[nearest]) * normals).sum(axis=1)
+        limit = np.clip(gate * noise, GATES[1], GATES[0])
+        kept = (np.abs(away) <= limit) & (distance <= np.maximum(limit, elements.reach[nearest]))
         used = int(np.count_nonzero(kept))
         if used < 3:
             break
-        residual, normals, turned = residual[kept], normals[kept], turned[near[kept]]
+        pairs = nearest[kept]
+        sigma, arm = noise[kept], turned[near[kept]]
+        along = normals[kept]
+        usual = float(np.median(sigma))
+        residual = away[kept] / sigma
         size = np.abs(residual)
-        noise = max(MAD * float(np.partition(size, used // 2)[used // 2]), LEAST_NOISE)
-        weight = 1.0 / (1.0 + (residual / (CAUCHY * noise)) ** 2)
-        lever = turned[:, 0] * normals[:, 1] - turned[:, 1] * normals[:, 0]
-        design = np.column_stack([normals, lever])
+        ratio = max(MAD * float(np.partition(size, used // 2)[used // 2]), LEAST_NOISE / usual)
+        weight = 1.0 / (1.0 + (residual / (CAUCHY * ratio)) ** 2)
+        lever = arm[:, 0] * along[:, 1] - arm[:, 1] * along[:, 0]
+        design = np.column_stack([along, lever]) / sigma[:, None]
         weighted = design * weight[:, None]
         information = weighted.T @ design
         share = float(weight.mean())
-        if np.linalg.det(information) < 1e-9:
+        if np.linalg.det(usual**2 * information) < 1e-9:
             break  # the pose is not determined
         step = np.linalg.solve(information, weighted.T @ -residual)
         x, y, yaw = x + step[0], y + step[1], yaw + step[2]
-        gate = max(min(gate, SIGMAS * noise), GATES[1])
+        gate = min(gate, SIGMAS * ratio)
         if np.abs(step).max() < CONVERGED:
             converged = True
             break
-    scatter, covariance = noise, np.full((3, 3), np.inf)
+    feigned = np.zeros((2, 2))
+    scatter, covariance = ratio * usual, np.full((3, 3), np.inf)
     if used >= 3:
-        scatter = float(np.sqrt((weight * residual**2).sum() / max(weight.sum() - 3.0, 1.0)))
+        turn = elements.tilt[pairs] / sigma
+        aside = np.column_stack([-along[:, 1], along[:, 0]]) * turn[:, None]
+        feigned = usual**2 * (aside * weight[:, None]).T @ aside
+        scatter = usual * float(
+            np.sqrt((weight * residual**2).sum() / max(weight.sum() - 3.0, 1.0))
+        )
         covariance = _covariance(design, residual, weight)
-    return Match(np.array([x, y, yaw]), information, scatter, covariance, used, share, converged)
+    return Match(
+        np.array([x, y, yaw]),
+        usual**2 * information,
+        scatter,
+        covariance,
+        used,
+        share,
+        converged,
+        feigned,
+    )
 
 
 def _covariance(design: Floats, residual: Floats, weight: Floats) -> Floats:
