@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.line_features import Elements
+from werrimbi_odom.scans.line_features import LEAST_NOISE, Elements
 
 ROUNDS = 40
 PAIRED = 12
@@ -22,8 +22,6 @@ GATES = (0.3, 0.08)
 error of the predicted motion, the second the depth of a door's frame."""
 SIGMAS = 6.0
 """The gate shrinks to this many standard deviations."""
-LEAST_NOISE = 1e-3
-"""Least noise of ranges [m]: no lidar is better."""
 MAD = 1.4826
 CAUCHY = 2.0
 """Residual at which an echo has half weight, in standard deviations (Cauchy weights)."""
@@ -36,9 +34,11 @@ class Match:
     pose: Floats
     """x, y [m] and yaw [rad] of the lidar, shape (3,)."""
     information: Floats
-    """Information matrix of the pose for unit noise of ranges, shape (3, 3)."""
+    """Information matrix of the pose for unit noise of echoes on usual lines, shape (3, 3)."""
+    feigned: Floats
+    """What of that of the position the noise of the lines' directions feigns, shape (2, 2)."""
     noise: float
-    """Scatter of the echoes about the lines [m]."""
+    """Scatter of the echoes about the lines, of usual ones [m]."""
     covariance: Floats
     """Covariance of the pose given the map, shape (3, 3); infinite if a direction is
     undetermined."""
@@ -47,7 +47,6 @@ class Match:
     share: float
     """Their mean weight: 1 if all agree."""
     converged: bool
-    feigned: Floats
 
 
 def match(points: Floats, elements: Elements, guess: Floats) -> Match:
@@ -61,8 +60,8 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
         Initial pose. After convergence the result does not depend on it.
     """
     x, y, yaw = guess.tolist()
-    gate, ratio, share, converged, used = np.inf, 1.0, 0.0, False, 0
-    usual, information = LEAST_NOISE, np.zeros((3, 3))
+    gate, noise, share, converged, used = np.inf, LEAST_NOISE, 0.0, False, 0
+    information = np.zeros((3, 3))
     for round_ in range(ROUNDS):
         cos, sin = np.cos(yaw), np.sin(yaw)
         turned = points @ np.array([[cos, sin], [-sin, cos]])
@@ -70,55 +69,42 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
         if round_ < PAIRED:
             distance, nearest = elements.tree.query(placed, distance_upper_bound=GATES[0])
             near = np.flatnonzero(distance < np.inf)
-            nearest, distance = nearest[near], distance[near]
-            normals, noise = elements.normals[nearest], elements.noise[nearest]
-        away = ((placed[near] - elements.centres[nearest]) * normals).sum(axis=1)
-        limit = np.clip(gate * noise, GATES[1], GATES[0])
-        kept = (np.abs(away) <= limit) & (distance <= np.maximum(limit, elements.reach[nearest]))
+            nearest = nearest[near]
+        normals, worth = elements.normals[nearest], elements.worth[nearest]
+        residual = ((placed[near] - elements.centres[nearest]) * normals).sum(axis=1)
+        within = np.clip(gate / worth, GATES[1], GATES[0])
+        kept = np.abs(residual) <= within
+        kept &= distance[near] <= np.maximum(within, elements.reach[nearest])
         used = int(np.count_nonzero(kept))
         if used < 3:
             break
-        pairs = nearest[kept]
-        sigma, arm = noise[kept], turned[near[kept]]
-        along = normals[kept]
-        usual = float(np.median(sigma))
-        residual = away[kept] / sigma
+        # Each residual, and its row of the design, in units of what its line is worth.
+        worth, normals, turned = worth[kept], normals[kept], turned[near[kept]]
+        residual = worth * residual[kept]
         size = np.abs(residual)
-        ratio = max(MAD * float(np.partition(size, used // 2)[used // 2]), LEAST_NOISE / usual)
-        weight = 1.0 / (1.0 + (residual / (CAUCHY * ratio)) ** 2)
-        lever = arm[:, 0] * along[:, 1] - arm[:, 1] * along[:, 0]
-        design = np.column_stack([along, lever]) / sigma[:, None]
+        noise = max(MAD * float(np.partition(size, used // 2)[used // 2]), LEAST_NOISE)
+        weight = 1.0 / (1.0 + (residual / (CAUCHY * noise)) ** 2)
+        lever = turned[:, 0] * normals[:, 1] - turned[:, 1] * normals[:, 0]
+        design = np.column_stack([normals, lever]) * worth[:, None]
         weighted = design * weight[:, None]
         information = weighted.T @ design
         share = float(weight.mean())
-        if np.linalg.det(usual**2 * information) < 1e-9:
+        if np.linalg.det(information) < 1e-9:
             break  # the pose is not determined
         step = np.linalg.solve(information, weighted.T @ -residual)
         x, y, yaw = x + step[0], y + step[1], yaw + step[2]
-        gate = min(gate, SIGMAS * ratio)
+        gate = min(gate, SIGMAS * noise)
         if np.abs(step).max() < CONVERGED:
             converged = True
             break
-    feigned = np.zeros((2, 2))
-    scatter, covariance = ratio * usual, np.full((3, 3), np.inf)
+    scatter, covariance, feigned = noise, np.full((3, 3), np.inf), np.zeros((2, 2))
     if used >= 3:
-        turn = elements.tilt[pairs] / sigma
-        aside = np.column_stack([-along[:, 1], along[:, 0]]) * turn[:, None]
-        feigned = usual**2 * (aside * weight[:, None]).T @ aside
-        scatter = usual * float(
-            np.sqrt((weight * residual**2).sum() / max(weight.sum() - 3.0, 1.0))
-        )
+        scatter = float(np.sqrt((weight * residual**2).sum() / max(weight.sum() - 3.0, 1.0)))
         covariance = _covariance(design, residual, weight)
-    return Match(
-        np.array([x, y, yaw]),
-        usual**2 * information,
-        scatter,
-        covariance,
-        used,
-        share,
-        converged,
-        feigned,
-    )
+        aside = design[:, [1, 0]] * [-1.0, 1.0] * elements.tilt[nearest[kept], None]
+        feigned = (aside * weight[:, None]).T @ aside
+    pose = np.array([x, y, yaw])
+    return Match(pose, information, feigned, scatter, covariance, used, share, converged)
 
 
 def _covariance(design: Floats, residual: Floats, weight: Floats) -> Floats:

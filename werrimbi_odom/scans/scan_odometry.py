@@ -77,10 +77,12 @@ def _flag(found: Match, motion: Floats, duration: float) -> Flag:
         return "weak"
     # From the geometry of the lines alone: the scatter of few echoes says little of a direction.
     covariance = found.noise**2 * np.linalg.inv(found.information)
-    held, axes = np.linalg.eigh(covariance[:2, :2])
-    least = found.noise**2 / held[1]
-    feigned = axes[:, 1] @ found.feigned @ axes[:, 1]
-    if least < FEIGNED * feigned or np.sqrt(max(held[1], covariance[2, 2])) > LARGEST_SIGMA:
+    variance, axes = np.linalg.eigh(covariance[:2, :2])
+    weakest = axes[:, 1]
+    feigned = float(weakest @ found.feigned @ weakest)
+    if variance[1] * FEIGNED * feigned > found.noise**2:
+        return "weak"
+    if np.sqrt(max(variance[1], covariance[2, 2])) > LARGEST_SIGMA:
         return "weak"
     if found.share < LEAST_SHARE:
         return "disagree"
