@@ -37,10 +37,11 @@ covers a third of it, and the extrapolated motion the rest."""
 FEWEST_POSES = 20
 """Fewest poses of an unbroken section of the path: two seconds hold no leg."""
 
-FLOOR = 2e-4
-"""Least standard deviation of a match [m, rad]: walls are not straighter. Of the simulated rooms
-only a corridor's heading with 681 beams comes below it (docs/scans.md). Further errors of a real
-lidar are estimated from each drive (`two_pass_odometry.common_noise`)."""
+FLOOR = 1e-4
+"""Least standard deviation of a match [m, rad]: a millimetre in ten metres, walls are not
+straighter. Of the simulated rooms only a corridor's heading with 681 beams comes near it
+(docs/scans.md). Further errors of a real lidar are estimated from each drive
+(`two_pass_odometry.common_noise`)."""
 
 COMMON = 1.5
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above
