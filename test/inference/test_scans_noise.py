@@ -45,7 +45,7 @@ GOOD_WHEELS = WhiteNoiseRobot(left_noise=1e-4, right_noise=1e-4)
 
 
 def on_a_walking_map(seed: int) -> Run:
-    """A drive of the best wheels, by scans whose map walks, in a metre by a quarter of a pose's noise."""
+    """A drive of the best wheels, by scans whose map walks by a quarter of their noise a metre."""
     random = np.random.default_rng(seed)
     run = drive(GOOD_WHEELS, wandering(random, 60.0), random, sigma_xy=0.0, sigma_yaw=0.0, every=5)
     seen = run.reference
