@@ -184,6 +184,13 @@ def test_in_an_empty_hall_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> No
         read_run(bag, robot())
 
 
+def test_in_a_hall_beyond_its_reach_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
+    hall = Room(rooms.box(-60.0, -60.0, 60.0, 60.0))
+    bag = ros.write(tmp_path / "run", entries(ros, scanned(path(), hall, LIDAR, 1)))
+    with pytest.raises(InputError, match="in a hall with all walls farther away"):
+        read_run(bag, robot())
+
+
 def test_before_a_wall_at_10_cm_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
     """One that the lidar still measures."""
     near = replace(LIDAR, nearest=0.05)

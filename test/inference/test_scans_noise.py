@@ -45,7 +45,7 @@ GOOD_WHEELS = WhiteNoiseRobot(left_noise=1e-4, right_noise=1e-4)
 
 
 def on_a_walking_map(seed: int) -> Run:
-    """A drive of the best wheels, by scans whose map walks, in a metre by 0.3 of a pose's noise."""
+    """A drive of the best wheels, by scans whose map walks by a quarter of their noise a metre."""
     random = np.random.default_rng(seed)
     run = drive(GOOD_WHEELS, wandering(random, 60.0), random, sigma_xy=0.0, sigma_yaw=0.0, every=5)
     seen = run.reference
@@ -53,7 +53,7 @@ def on_a_walking_map(seed: int) -> Run:
     place, yaw = seen.x + 1j * seen.y, np.unwrap(seen.yaw)
     steps = np.diff(place)
     worth = np.abs(steps) + np.abs(np.diff(yaw)) / (0.5 * np.pi)
-    walk = 0.3 * np.sqrt(worth) * random.standard_normal((3, worth.size))
+    walk = 0.25 * np.sqrt(worth) * random.standard_normal((3, worth.size))
     turned = np.concatenate([[0.0], np.cumsum(NEAR[1] * walk[2])])
     steps = steps * np.exp(1j * turned[:-1]) + NEAR[0] * (walk[0] + 1j * walk[1])
     place = place[0] + np.concatenate([[0.0], np.cumsum(steps)])
@@ -65,7 +65,7 @@ def on_a_walking_map(seed: int) -> Run:
 
 
 def test_the_map_that_scans_are_matched_with_walks() -> None:
-    """With independent errors innovations were a fifth larger than stated, and correlated."""
+    """With independent errors innovations were a tenth larger than stated, and correlated."""
     robot = GOOD_WHEELS.entered()
     laid = concatenated([match(on_a_walking_map(seed), robot, leg=0.25) for seed in range(12)])
     options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)

@@ -60,6 +60,25 @@ def test_a_line_through_echoes_has_less_noise_than_they() -> None:
     assert np.abs(elements.normals[:, 1]).min() > 0.995
 
 
+def test_a_line_is_worth_what_its_echoes_scatter() -> None:
+    """A wall; one of thrice the noise; and a step of 4 cm, too flat for a corner."""
+    rng = np.random.default_rng(4)
+    x = rng.uniform(0.0, 6.0, 6000)
+    noise = np.where(x < 4.5, 0.004, 0.012) * rng.standard_normal(x.size)
+    points = np.column_stack([x, noise + np.where(x < 1.5, 0.0, 0.04)])
+    elements = line_elements(points, np.full(x.size, 0.02))
+    assert elements is not None
+    at = elements.centres[:, 0]
+    step, far = np.abs(at - 1.5) < 0.05, at > 4.7
+    near = (at < 1.2) | ((at > 1.8) & (at < 4.3))
+    usual = np.median(elements.worth[near])
+    assert np.median(elements.worth[far]) == pytest.approx(usual / 3.0, rel=0.1)
+    assert elements.worth[step].max() < 0.4 * usual
+    tilts = np.arctan2(-elements.normals[:, 0], elements.normals[:, 1])
+    seen = np.std((tilts + 0.5 * np.pi) % np.pi - 0.5 * np.pi, where=far)
+    assert seen == pytest.approx(np.median(elements.tilt[far]), rel=0.3)
+
+
 def test_a_corner_and_a_cloud_are_no_lines() -> None:
     rng = np.random.default_rng(2)
     cloud = rng.uniform(-0.1, 0.1, (300, 2))

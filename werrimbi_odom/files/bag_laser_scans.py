@@ -169,8 +169,9 @@ def _blind(found: ScanPath, reach: tuple[float, float]) -> str:
     return (
         f"the scans do not hold where the robot was: none of {found.scans} scans holds an echo "
         f"between {reach[0]:g} and {reach[1]:g} m, its range_min and range_max. A lidar that is "
-        "covered, or that looks at something nearer, sees so; or it does not measure, or its "
-        "limits are wrong. Mend that, or choose another reference"
+        "covered, that looks at something nearer, or that stands in a hall with all walls "
+        "farther away, sees so; or it does not measure, or its limits are wrong. Mend that, or "
+        "choose another reference"
     )
 
 

@@ -11,10 +11,12 @@ LEAST_SHARE = 0.35
 rejected up to nine tenths of the good matches of a poor lidar (15 mm); one of 0.35 rejected none.
 Matches while a robot was carried stayed below it."""
 
-WEAK = 0.03
-"""Least ratio of the smaller to the larger eigenvalue of the position covariance. It is about a
-thousandth along a bare corridor, a tenth and more in rooms, a twentieth in corridors with cupboards
-and doors."""
+FEIGNED = 10.0
+"""Least information on the position in its weakest direction, in units of what the noise of the
+lines' directions feigns there: a bare wall's lines point a little this way and that. Along bare
+corridors and beside a single wall it is 1 to 5 of these (also with a poor lidar of 15 mm, and 4 m
+wide), in corridors with cupboards and doors 10 to 180, in rooms hundreds. A least ratio to the
+strongest direction (0.03) rejected an eighth of the matches in corridors with cupboards."""
 
 LARGEST_SIGMA = 0.01
 """Largest standard deviation of a match [m, rad]. Matches in rooms have 1 to 4 mm, and a match with
@@ -35,14 +37,15 @@ covers a third of it, and the extrapolated motion the rest."""
 FEWEST_POSES = 20
 """Fewest poses of an unbroken section of the path: two seconds hold no leg."""
 
-FLOOR = 2e-4
-"""Least standard deviation of a match [m, rad]: walls are not straighter. Of the simulated rooms
-only a corridor's heading with 681 beams comes below it (docs/scans.md). Further errors of a real
-lidar are estimated from each drive (`two_pass_odometry.common_noise`)."""
+FLOOR = 1e-4
+"""Least standard deviation of a match [m, rad]: a millimetre in ten metres, walls are not
+straighter. Of the simulated rooms only a corridor's heading with 681 beams comes near it
+(docs/scans.md). Further errors of a real lidar are estimated from each drive
+(`two_pass_odometry.common_noise`)."""
 
 COMMON = 1.5
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above
-which a noise common to all echoes of a scan is assumed. Without such noise the ratio is 0.9 to 1.4
+which a noise common to all echoes of a scan is assumed. Without such noise the ratio is 0.6 to 1.7
 in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15."""
 
 CALM = 0.25

@@ -4,6 +4,8 @@
 
 The nearest neighbour in a raw cloud tends to be the point with similar noise, so point-to-point
 residuals underestimate the noise by about half. A line through all echoes nearby has no such bias.
+How far its own echoes scatter about it says what it is worth: those of a far wall scatter more, and
+so do those of an element that takes in both sides of a cupboard's edge.
 """
 
 from __future__ import annotations
@@ -33,6 +35,12 @@ FEWEST = 4
 FLAT = 0.25
 """Largest ratio of the standard deviations across and along an element: above it, it is a corner, a
 chair's leg or a person."""
+PRIOR = 10.0
+"""Echoes that the usual scatter counts as, in an element's own. By four echoes alone it is told to
+half. With 3 to 30 poses err alike, but with 3 those of a brisk robot by a tenth more than
+stated."""
+LEAST_NOISE = 1e-3
+"""Least noise of ranges [m]: no lidar is better."""
 
 
 class Elements(NamedTuple):
@@ -42,6 +50,10 @@ class Elements(NamedTuple):
     """Shape (m, 2) [m]."""
     normals: Floats
     """Unit normals, shape (m, 2)."""
+    worth: Floats
+    """Usual scatter of echoes about their elements over that of its own, shape (m,)."""
+    tilt: Floats
+    """Standard deviation of its direction, by the noise of its echoes, shape (m,) [rad]."""
     reach: Floats
     """Distance from its centre up to which an element is valid, shape (m,) [m]."""
     tree: cKDTree
@@ -79,7 +91,11 @@ def line_elements(points: Floats, spacing: Floats) -> Elements | None:
     along = 0.5 * np.arctan2(2.0 * xy, xx - yy)[flat]
     centres = np.column_stack([x, y])[flat] + origin
     normals = np.column_stack([-np.sin(along), np.cos(along)])
-    return Elements(centres, normals, reach[flat], _tree(middles[flat] + origin))
+    count, across = number[flat], np.maximum((half - gap)[flat], LEAST_NOISE**2)
+    usual = np.median(across)
+    across = (count * across + PRIOR * usual) / (count - 2.0 + PRIOR)
+    worth, tilt = np.sqrt(usual / across), np.sqrt(across / (count * (half + gap)[flat]))
+    return Elements(centres, normals, worth, tilt, reach[flat], _tree(middles[flat] + origin))
 
 
 def _tree(points: Floats) -> cKDTree:

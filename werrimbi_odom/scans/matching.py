@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.line_features import Elements
+from werrimbi_odom.scans.line_features import LEAST_NOISE, Elements
 
 ROUNDS = 40
 PAIRED = 12
@@ -22,8 +22,6 @@ GATES = (0.3, 0.08)
 error of the predicted motion, the second the depth of a door's frame."""
 SIGMAS = 6.0
 """The gate shrinks to this many standard deviations."""
-LEAST_NOISE = 1e-3
-"""Least noise of ranges [m]: no lidar is better."""
 MAD = 1.4826
 CAUCHY = 2.0
 """Residual at which an echo has half weight, in standard deviations (Cauchy weights)."""
@@ -36,9 +34,11 @@ class Match:
     pose: Floats
     """x, y [m] and yaw [rad] of the lidar, shape (3,)."""
     information: Floats
-    """Information matrix of the pose for unit noise of ranges, shape (3, 3)."""
+    """Information matrix of the pose for unit noise of echoes on usual lines, shape (3, 3)."""
+    feigned: Floats
+    """What of that of the position the noise of the lines' directions feigns, shape (2, 2)."""
     noise: float
-    """Scatter of the echoes about the lines [m]."""
+    """Scatter of the echoes about the lines, of usual ones [m]."""
     covariance: Floats
     """Covariance of the pose given the map, shape (3, 3); infinite if a direction is
     undetermined."""
@@ -60,7 +60,7 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
         Initial pose. After convergence the result does not depend on it.
     """
     x, y, yaw = guess.tolist()
-    gate, noise, share, converged, used = GATES[0], LEAST_NOISE, 0.0, False, 0
+    gate, noise, share, converged, used = np.inf, LEAST_NOISE, 0.0, False, 0
     information = np.zeros((3, 3))
     for round_ in range(ROUNDS):
         cos, sin = np.cos(yaw), np.sin(yaw)
@@ -70,19 +70,22 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
             distance, nearest = elements.tree.query(placed, distance_upper_bound=GATES[0])
             near = np.flatnonzero(distance < np.inf)
             nearest = nearest[near]
-        normals = elements.normals[nearest]
+        normals, worth = elements.normals[nearest], elements.worth[nearest]
         residual = ((placed[near] - elements.centres[nearest]) * normals).sum(axis=1)
-        kept = np.abs(residual) <= gate
-        kept &= distance[near] <= np.maximum(gate, elements.reach[nearest])
+        within = np.clip(gate / worth, GATES[1], GATES[0])
+        kept = np.abs(residual) <= within
+        kept &= distance[near] <= np.maximum(within, elements.reach[nearest])
         used = int(np.count_nonzero(kept))
         if used < 3:
             break
-        residual, normals, turned = residual[kept], normals[kept], turned[near[kept]]
+        # Each residual, and its row of the design, in units of what its line is worth.
+        worth, normals, turned = worth[kept], normals[kept], turned[near[kept]]
+        residual = worth * residual[kept]
         size = np.abs(residual)
         noise = max(MAD * float(np.partition(size, used // 2)[used // 2]), LEAST_NOISE)
         weight = 1.0 / (1.0 + (residual / (CAUCHY * noise)) ** 2)
         lever = turned[:, 0] * normals[:, 1] - turned[:, 1] * normals[:, 0]
-        design = np.column_stack([normals, lever])
+        design = np.column_stack([normals, lever]) * worth[:, None]
         weighted = design * weight[:, None]
         information = weighted.T @ design
         share = float(weight.mean())
@@ -90,15 +93,18 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
             break  # the pose is not determined
         step = np.linalg.solve(information, weighted.T @ -residual)
         x, y, yaw = x + step[0], y + step[1], yaw + step[2]
-        gate = max(min(gate, SIGMAS * noise), GATES[1])
+        gate = min(gate, SIGMAS * noise)
         if np.abs(step).max() < CONVERGED:
             converged = True
             break
-    scatter, covariance = noise, np.full((3, 3), np.inf)
+    scatter, covariance, feigned = noise, np.full((3, 3), np.inf), np.zeros((2, 2))
     if used >= 3:
         scatter = float(np.sqrt((weight * residual**2).sum() / max(weight.sum() - 3.0, 1.0)))
         covariance = _covariance(design, residual, weight)
-    return Match(np.array([x, y, yaw]), information, scatter, covariance, used, share, converged)
+        aside = design[:, [1, 0]] * [-1.0, 1.0] * elements.tilt[nearest[kept], None]
+        feigned = (aside * weight[:, None]).T @ aside
+    pose = np.array([x, y, yaw])
+    return Match(pose, information, feigned, scatter, covariance, used, share, converged)
 
 
 def _covariance(design: Floats, residual: Floats, weight: Floats) -> Floats:

@@ -12,11 +12,11 @@ from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.scans.limits import (
     FASTEST,
     FASTEST_TURN,
+    FEIGNED,
     FEWEST_POINTS,
     FLOOR,
     LARGEST_SIGMA,
     LEAST_SHARE,
-    WEAK,
 )
 from werrimbi_odom.scans.local_map import LocalMap
 from werrimbi_odom.scans.matching import Match, match
@@ -77,9 +77,12 @@ def _flag(found: Match, motion: Floats, duration: float) -> Flag:
         return "weak"
     # From the geometry of the lines alone: the scatter of few echoes says little of a direction.
     covariance = found.noise**2 * np.linalg.inv(found.information)
-    held = np.linalg.eigvalsh(covariance[:2, :2])
-    sigmas = np.sqrt([held[1], covariance[2, 2]])
-    if held[0] < WEAK * held[1] or sigmas.max() > LARGEST_SIGMA:
+    variance, axes = np.linalg.eigh(covariance[:2, :2])
+    weakest = axes[:, 1]
+    feigned = float(weakest @ found.feigned @ weakest)
+    if variance[1] * FEIGNED * feigned > found.noise**2:
+        return "weak"
+    if np.sqrt(max(variance[1], covariance[2, 2])) > LARGEST_SIGMA:
         return "weak"
     if found.share < LEAST_SHARE:
         return "disagree"
