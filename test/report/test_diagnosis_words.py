@@ -184,7 +184,8 @@ def test_by_scans_a_change_may_be_the_floor_s(
     monkeypatch.setattr(words, "changes_words", lambda *_: ["In arcs alone it was otherwise."])
     runs = SimpleNamespace(runs=(SimpleNamespace(name="arcs"),), own_axes=own_axes)
     diagnosis = SimpleNamespace(runs=runs, robot=ROBOT, verdict=verdict)
-    told: Any = SimpleNamespace(diagnosis=diagnosis, changes=(SimpleNamespace(surely_from="arcs"),))
+    change = SimpleNamespace(surely_from="arcs", group="mount")
+    told: Any = SimpleNamespace(diagnosis=diagnosis, changes=(change,))
     said = " ".join(words._changes(told))
     assert ("Or the floor is why. What lies on the floor" in said) == or_the_floor
 

@@ -124,7 +124,7 @@ def _nanoseconds(file: Path, name: str, cell: str) -> int:
 
 
 def _put(message: Any, path: Sequence[str], cell: str, file: Path) -> None:
-    """Set a field of a message; `covariance7` and `transforms0.header` are items of a list."""
+    """Set a field of a message; `covariance7` and `transforms0` are items of a list."""
     *parts, last = path
     for part in parts:
         message = _within(message, part)

@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.change_evidence import Evidence, evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
-from werrimbi_odom.inference.changes.parameter_groups import PARTS, groups_of
+from werrimbi_odom.inference.changes.parameter_groups import DELAY, PARTS, groups_of
 from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -100,14 +100,16 @@ def _beside(
     ]
     if not steps:
         return ()
-    # What a change of an effect explains that the model lacks begins with what the effect does.
-    changed = {name.rpartition(".")[0] for step in steps for name in step.group.numbers}
-    tried = _scores_of(diagnosis, fit, effects)
-    level = sum(_worth_of([each], fit) for each in tried if each.candidate.name in changed)
-    others = _worth_of([each for each in tried if each.candidate.name not in changed], fit)
+    tried = {each.candidate.name: each for each in _scores_of(diagnosis, fit, effects)}
+    of_clocks = any(step.group.what == DELAY for step in steps) and DELAY in tried
+    # Where clocks differ, one delay for all is their mean: a part of what they explain, no rival.
+    mean = [tried.pop(DELAY)] if of_clocks else []
     worth = sum(step.gain - fit.penalty_of_one * (step.degrees + 1) for step in steps)
-    least = rules.WORTH_OF_A_CHANGE * _worth_of(dependences, fit)
-    if worth < rules.RIVAL or worth + level < max(others + rules.RIVAL, least):
+    rest = max(
+        _worth_of([*tried.values()], fit) + rules.RIVAL,
+        rules.WORTH_OF_A_CHANGE * _worth_of(dependences, fit),
+    )
+    if worth < rules.RIVAL or worth + _worth_of(mean, fit) < rest:
         return ()
     more = [cell for cell in dependences if _worth_of([cell], fit) > worth]
     if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
