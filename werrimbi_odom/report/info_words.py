@@ -86,7 +86,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
 def _references(held: Held) -> Iterator[str]:
     assert held.contents is not None
     for each in held.contents.references:
-        taken = " It is taken." if each == held.reference else ""
+        taken = " It is taken." if each == held.reference and not held.problem else ""
         if held.beside is not None and each == held.reference:
             taken = " Its positions are taken."
         if held.beside is not None and each == held.beside:
