@@ -119,7 +119,8 @@ def _what_is_left(last: Step, judged: dict[str, Any]) -> Iterator[str]:
     yield ""
     yield f"- Verdict: *{last.answer['verdict']}*."
     if last.refused:
-        yield f"- `add` refuses what is named: {' '.join(last.refused.split())}"
+        why = " ".join(last.refused.rpartition("werrimbi add: ")[2].split())
+        yield f"- `add` refuses what is named: {why}"
     yield (
         f"- Errors are {math.sqrt(legs['nees']):.2g} times what model and reference promise "
         f"together (root of NEES; {legs['outliers']} outlying legs left out)."
@@ -185,8 +186,9 @@ def index() -> str:
         "",
         "Robots of [real_robots.md](../real_robots.md), those whose recordings were there when",
         "`python docs/case_book.py` wrote this. Each is followed by the commands that `werrimbi",
-        "diagnose` prints until it prints no `add` (where it says *unknown* it prints a `draft`,",
-        "which was not run), judged on drives that took no part in any fit, where there are such.",
+        "diagnose` prints until it prints no `add`; where `add` refuses an effect, by what it",
+        "prints instead (where `diagnose` says *unknown* it prints a `draft`, which was not run).",
+        "They are judged on drives that took no part in any fit, where there are such.",
         "*Left* is what the errors are times what model and reference promise together (root of",
         "NEES): 1 is nothing but noise; of few legs, or with wheels' noise as the file has it, it",
         "may be more where `diagnose`, which fits that noise, finds nothing.",

@@ -28,6 +28,8 @@ ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"
 MOST = 6
 """Rounds, at the most."""
 _ADD = re.compile(r"^ +werrimbi add (\S+)", re.MULTILINE)
+_WITHOUT = re.compile(r"without \w+: werrimbi add ([\w,]+) \.\.\.")
+"""What `add` says to add in place of what the held-out drives refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +115,10 @@ def followed(case: Case, folder: Path, *, as_printed: bool = False) -> list[Step
             return [*steps, Step(robot, done.stdout, answer, None)]
         effect = printed[1] if as_printed else answer["effect"] or printed[1]
         tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
+        without = _WITHOUT.search(" ".join(tried.stderr.split()))
+        if tried.returncode != 0 and without is not None:
+            effect = without[1]
+            tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
         if tried.returncode != 0:
             return [*steps, Step(robot, done.stdout, answer, None, tried.stderr or tried.stdout)]
         steps.append(Step(robot, done.stdout, answer, effect))
