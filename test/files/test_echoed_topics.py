@@ -124,3 +124,11 @@ def test_one_topic_alone_is_wheels_and_no_reference(tmp_path: Path, ros: Any, ro
     assert read_run(text, robot()).reference is not None
     with pytest.raises(InputError, match=r"other.csv is neither a run folder nor a bag"):
         read_run(text / "other.csv", robot())
+
+
+def test_a_folder_that_is_named_as_such_a_file_is_none(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    text = echoed(tmp_path / "text", drive(ros, 0))
+    (text / "plots.csv").mkdir()
+    assert read_run(text, robot()).reference is not None

@@ -61,7 +61,7 @@ class EchoedTopic(NamedTuple):
 def echoed_files(path: Path) -> list[Path]:
     """Files of such topics: the path itself, or what it holds."""
     files = sorted(path.iterdir()) if path.is_dir() else [path]
-    return [each for each in files if each.suffix == SUFFIX and _begins(each)]
+    return [each for each in files if each.suffix == SUFFIX and each.is_file() and _begins(each)]
 
 
 def _begins(file: Path) -> bool:
