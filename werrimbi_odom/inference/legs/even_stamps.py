@@ -173,11 +173,16 @@ def _lost_messages(stamps: Floats, left: Counts, right: Counts) -> NDArray[np.in
     count = stamps.size // rules.EVEN_WINDOW
     if count < rules.EVEN_WINDOWS or usual <= 0.0:
         return none
-    windows = stamps[: count * rules.EVEN_WINDOW].reshape(count, -1) - stamps[0]
+    windows = stamps[: count * rules.EVEN_WINDOW].reshape(count, -1)
+    since = windows - windows[:, :1]
     finely = 0.25 / rules.EVEN_WINDOW
     rates = np.arange(1.0 - 4.0 * finely, 1.0 + rules.EVEN_MOST_LOST, finely) / usual
     # Mean resultant length of the stamps as angles of the timer: 1 if even, 0 if anywhere.
-    even = [np.abs(np.exp(2j * np.pi * rate * windows).mean(axis=1)).mean() for rate in rates]
+    angle, further = (np.exp(2j * np.pi * rate * since) for rate in (rates[0], finely / usual))
+    even = []
+    for _ in rates:
+        even.append(np.abs(angle.mean(axis=1)).mean())
+        angle *= further
     if max(even) < rules.EVEN_KNOWN:
         return none
     turns = rates[np.argmax(even)] * (stamps - stamps[0])
