@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 
 import numpy as np
@@ -147,19 +148,17 @@ def _named(
     unseen: Sequence[tuple[float, float]], uncounted: Sequence[tuple[float, float]]
 ) -> list[tuple[str, tuple[float, float]]]:
     """Gaps of reference and ticks, and whose each is; a recorder that paused makes one of both."""
-
-    def alike(one: tuple[float, float], other: tuple[float, float]) -> bool:
-        return all(a[0] < 0.5 * sum(b) < a[1] for a, b in ((one, other), (other, one)))
-
+    begins = [begin for begin, _ in uncounted]
     found, of_both = [], set()
     for one in unseen:
-        twin = next((other for other in uncounted if alike(one, other)), None)
-        if twin is None:
-            found.append(("the reference is", one))
-        else:
+        at = bisect_left(begins, 0.5 * sum(one)) - 1
+        twin = uncounted[at] if at >= 0 else (one[0], one[0])
+        if 0.5 * sum(one) < twin[1] and one[0] < 0.5 * sum(twin) < one[1]:
             of_both.add(twin)
             ends = min(one[0], twin[0]), max(one[1], twin[1])
             found.append(("reference and ticks are", ends))
+        else:
+            found.append(("the reference is", one))
     return found + [("the ticks are", gap) for gap in uncounted if gap not in of_both]
 
 
