@@ -86,10 +86,10 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
 def _references(held: Held) -> Iterator[str]:
     assert held.contents is not None
     for each in held.contents.references:
-        taken = " It is taken." if each == held.reference and not held.problem else ""
-        if held.beside is not None and each == held.reference:
-            taken = " Its positions are taken."
-        if held.beside is not None and each == held.beside:
+        taken = ""
+        if each == held.reference and not held.problem:
+            taken = " It is taken." if held.beside is None else " Its positions are taken."
+        elif held.beside is not None and each == held.beside and not held.problem:
             taken = " Its headings are taken: they wander less."
         kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
         if each.independent:

@@ -8,9 +8,7 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.calibration_parametrisation import (
-    name_of_base,
-)
+from werrimbi_odom.inference.calibration_parametrisation import name_of_base
 from werrimbi_odom.inference.comparison.another_drive import (
     of_another_drive,
     turns_alike,
