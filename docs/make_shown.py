@@ -85,7 +85,7 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
             "alone can show is skipped without one).",
         ),
         by_tests(
-            "test/ros/test_odom_parameters.py test/ros/test_lifecycle.py test/ros/test_requests.py",
+            "test/ros/test_odom_parameters.py test/ros/test_lifecycle.py test/ros/test_reports.py",
             "Parameters changed while the node runs, its end by signals, `set_pose` and `~/reset`.",
         ),
         by_tests(
