@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Documents as text and on a page, what draws them with or without a browser, bad files."""
+"""Parts of a document as text and on a page, what draws it, and files that cannot be made."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import pytest
 from plotly.offline import get_plotlyjs_version
 
@@ -123,39 +122,3 @@ def test_it_is_of_the_version_that_plotly_makes_figures_for() -> None:
     found = re.search(r"plotly\.js \(cartesian - minified\) v([\d.]+)", head)
     assert found is not None, head
     assert found[1] == get_plotlyjs_version(), "see werrimbi_odom/report/plotly_js/README.md"
-
-
-pytest.importorskip("matplotlib")
-go = pytest.importorskip("plotly.graph_objects")
-
-from matplotlib.image import imread  # noqa: E402
-
-from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure  # noqa: E402
-from werrimbi_odom.report.path_figure import PathDrawing, path_figure  # noqa: E402
-from werrimbi_odom.report.save import save_simple_png  # noqa: E402
-from werrimbi_odom.report.style import BLUE, GREEN, ORANGE  # noqa: E402
-
-
-def share(path: Path, colour: str) -> float:
-    """Of the picture, that has a colour."""
-    wanted = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)]) / 255.0
-    pixels = imread(path)[:, :, :3]
-    return float((np.abs(pixels - wanted).max(axis=2) < 0.02).mean())
-
-
-def test_bars_are_as_high_as_their_numbers(tmp_path: Path) -> None:
-    found = []
-    for after in (0.002, 0.004):
-        steps = [ErrorOfModel("as given", 0.004, 0.004), ErrorOfModel("+ castor", 0.002, after)]
-        assert save_simple_png(error_falling_figure(steps, 0.002), tmp_path / "bars.png")
-        found.append(share(tmp_path / "bars.png", BLUE))
-    assert found[1] / found[0] == pytest.approx(8.0 / 6.0, rel=0.03)
-    assert share(tmp_path / "bars.png", GREEN) > 1e-3
-
-
-def test_a_path_and_its_ellipses(tmp_path: Path) -> None:
-    x = np.linspace(0.0, 2.0, 50)
-    drawing = PathDrawing(x, np.sin(9.0 * x), np.array([n * 1e-4 * np.eye(2) for n in range(50)]))
-    assert save_simple_png(path_figure(drawing), tmp_path / "path.png")
-    assert share(tmp_path / "path.png", BLUE) > 1e-3
-    assert share(tmp_path / "path.png", ORANGE) > 1e-3

@@ -93,12 +93,8 @@ def reckoning_of(
 ) -> Reckoning:
     """Results of a run that was dead reckoned from `start`.
 
-    Parameters
-    ----------
-    shown : ShownPath
-        Predicted output of the reference.
-    learnt : tuple of str
-        Remarks on what was estimated from the reference.
+    `shown` is the predicted output of the reference, and `learnt` are remarks on what was estimated
+    from the reference.
     """
     reference, remarks, end = run.reference, [*learnt], None
     if reference is not None:

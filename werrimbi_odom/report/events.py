@@ -53,14 +53,9 @@ def events_words(happened: Events, track: float) -> list[str]:
 
 
 def event_words(event: Event, track: float, *, either: bool) -> str:
-    """Description of one event, as the end of a sentence.
+    """Description of one event, as the end of a sentence; `track` is the wheel base [m].
 
-    Parameters
-    ----------
-    track : float
-        Wheel base of the robot [m].
-    either : bool
-        Whether steps of the robot and of the reference are indistinguishable.
+    `either`: whether steps of the robot and of the reference are indistinguishable.
     """
     size = _size(event)
     if event.channel == "reference":

@@ -140,11 +140,15 @@ def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[
 
 def document_of(fleet: Fleet) -> Document:
     """The complete report."""
-    return Document(title=_title(fleet), words=words_of(fleet), draw=lambda: _figures(fleet))
+    count = len(fleet.rows)
+    title = f"What {count} robots are missing" if count != 1 else "What one robot is missing"
+    return Document(title=title, words=words_of(fleet), draw=lambda: _figures(fleet))
 
 
 def _figures(fleet: Fleet) -> list[Shown]:
     figure = fleet_figure(fleet)
+    words = [at for at in range(1, len(HEADS)) if at not in _RIGHT]
+    table = Table("", HEADS, [cells(row, whole=True) for row in fleet.rows], words)
     shown = []
     if figure is not None:
         shown.append(
@@ -163,15 +167,10 @@ def _figures(fleet: Fleet) -> list[Shown]:
             "The robots",
             "What each of them is missing, how large that is (± one standard deviation), and what "
             "to do next.",
-            html=table_html(robots_table(fleet)),
+            html=table_html(table),
         )
     )
     return shown
-
-
-def _title(fleet: Fleet) -> str:
-    count = len(fleet.rows)
-    return f"What {count} robots are missing" if count != 1 else "What one robot is missing"
 
 
 HEADS = ("robot", "runs", "verdict", "what is missing", "held-out error [mm]", "next step")
@@ -210,19 +209,10 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
     return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
-def robots_table(fleet: Fleet) -> Table:
-    """The complete table for a page."""
-    words = [at for at in range(1, len(HEADS)) if at not in _RIGHT]
-    return Table("", HEADS, [cells(row, whole=True) for row in fleet.rows], words)
-
-
 def cells(row: Row, *, whole: bool = False) -> list[str]:
     """Cells of a robot; effects are separated by line breaks.
 
-    Parameters
-    ----------
-    whole : bool
-        Whether to include error messages, as on a page; the terminal prints them above the table.
+    With `whole`, error messages too, as on a page; the terminal prints them above the table.
     """
     missing = "\n".join(missing_words(row))
     error, then = error_words(row), next_words(row)

@@ -94,13 +94,7 @@ def variables_of(comparison: Comparison) -> list[str]:
 
 
 def error_against_figure(comparison: Comparison, variable: str) -> Figure:
-    """Leg errors over one variable: a dot for each leg, and bin means with error bars.
-
-    Parameters
-    ----------
-    variable : str
-        One of `variables_of`.
-    """
+    """Leg errors over one of `variables_of`: a dot for each leg, and bin means with error bars."""
     from plotly.subplots import make_subplots
 
     if variable in WHEEL_ANGLES:

@@ -38,13 +38,7 @@ _POLICY = (
 
 
 def write_page(page: Document, path: Path) -> None:
-    """Write a self-contained page.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written.
-    """
+    """Write a self-contained page; InputError if it cannot be written."""
     with replacing(path) as file:
         file.write(readable(page_html(page)))
 

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.style import (
     BLUE,
     GREEN,
@@ -22,11 +24,6 @@ from werrimbi_odom.report.style import (
     plot,
     styled,
 )
-
-Floats = NDArray[np.float64]
-
-CHI2_95_OF_2 = 5.991464547107979
-"""95 % quantile of chi-squared with two degrees of freedom: the squared radius in σ."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +47,7 @@ def ellipse(
 ) -> tuple[Floats, Floats]:
     """Outline of the 95 % ellipse about a point [m]."""
     variances, axes = np.linalg.eigh(covariance)
-    radii = magnified * np.sqrt(np.maximum(variances, 0.0) * CHI2_95_OF_2)
+    radii = magnified * np.sqrt(np.maximum(variances, 0.0) * CHI2_95[2])
     angle = np.linspace(0.0, 2.0 * np.pi, points)
     outline = axes @ (radii[:, None] * np.stack([np.cos(angle), np.sin(angle)]))
     return x + outline[0], y + outline[1]
@@ -66,7 +63,7 @@ def spread_along_path(x: Floats, y: Floats, count: int) -> NDArray[np.intp]:
 def magnification(drawing: PathDrawing) -> float:
     """Scale factor that makes ellipses visible: 1, 2, 5, 10, 20 or 50."""
     extent = max(float(np.ptp(drawing.x)), float(np.ptp(drawing.y)))
-    largest = np.sqrt(np.max(np.linalg.eigvalsh(drawing.covariance), initial=0.0) * CHI2_95_OF_2)
+    largest = np.sqrt(np.max(np.linalg.eigvalsh(drawing.covariance), initial=0.0) * CHI2_95[2])
     if not largest > 0.0:
         return 1.0
     wanted = 0.1 * extent / largest

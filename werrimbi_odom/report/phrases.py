@@ -86,12 +86,7 @@ _NAMES = dict(zip(MULTIPLIERS, ("wheel base", "left wheel", "right wheel"), stri
 def sizes_words(given: Robot, found: Mapping[str, tuple[float, float | None]]) -> str:
     """Changed sizes in a sentence without its full stop; "" if all are as in the given robot.
 
-    Parameters
-    ----------
-    given : Robot
-        Robot to compare with.
-    found : mapping of str to (float, float or None)
-        Multipliers by name, with their standard deviations if known.
+    `found` holds the multipliers by name, with their standard deviations if known.
     """
     moved = {name for name in MULTIPLIERS if found[name][0] != getattr(given, name)}
     if not moved:

@@ -7,6 +7,7 @@ Without one, matplotlib draws lines, marks and bars of a figure, but no heat map
 
 from __future__ import annotations
 
+import html
 import logging
 import re
 import shutil
@@ -222,5 +223,4 @@ def _line(line: Any) -> dict[str, Any]:
 
 def _said(text: str | None) -> str:
     """Text without plotly's markup."""
-    plain = re.sub(r"<[^>]*>", "", (text or "").replace("<br>", "\n"))
-    return plain.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+    return html.unescape(re.sub(r"<[^>]*>", "", (text or "").replace("<br>", "\n")))

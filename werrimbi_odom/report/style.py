@@ -7,6 +7,7 @@ Only the number of drawn points is reduced; statistics are of all data.
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -158,7 +159,7 @@ def plain(figure: Figure, *, height: int, legend: bool = True) -> Figure:
 
 def escaped(text: str) -> str:
     """A name from a record, escaped for a figure's texts, which interpret some HTML."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    return html.escape(text, quote=False)
 
 
 MOST = 4000

@@ -102,10 +102,7 @@ def steps_of(added: Added) -> list[ErrorOfModel]:
 def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float) -> Figure:
     """Bars of the errors in each step, and a line at the error by noise alone.
 
-    Parameters
-    ----------
-    floor : float
-        Position error of the held-out drives by noise alone [m]; NaN to omit the line.
+    `floor` is that error, of positions on the held-out drives [m]; NaN to omit the line.
     """
     figure = style.blank()
     largest = max(

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
+from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.report import style
 from werrimbi_odom.report.style import Figure
 
@@ -86,9 +87,6 @@ def _bars(at: Sequence[float], low: Sequence[float], high: Sequence[float]) -> t
     return x, y
 
 
-_TWO_SIGMA = 1.959964
-
-
 def legs_by_motion_figure(comparison: Comparison) -> Figure:
     """Leg errors by type of motion, next to the range that the covariance predicts."""
     from plotly.subplots import make_subplots
@@ -110,7 +108,7 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
             if values.size == 0:
                 continue
             sigma = legs.errors.covariance[mine, column, column]
-            promised = _TWO_SIGMA * factor * float(np.sqrt(np.mean(sigma)))
+            promised = NORMAL_95 * factor * float(np.sqrt(np.mean(sigma)))
             _promise(figure, NAMES[kind], promised, unit, place, first=place == 1)
             low, first, middle, third, high = np.quantile(
                 values, [0.025, 0.25, 0.5, 0.75, 0.975]

@@ -86,10 +86,7 @@ def _rounded(value: float, std: float) -> str:
 def covariance_words(verdict: Verdict, nees: float) -> list[str]:
     """Consistency of the covariance, in agreement with the table of leg lengths.
 
-    Parameters
-    ----------
-    nees : float
-        NEES of all legs of the requested length.
+    `nees` is that of all legs of the requested length.
     """
     if verdict.covariance == "unknown":
         return [f"- NEES is {nees:.3g} (1 is right); legs are too few to judge by it."]

@@ -57,7 +57,12 @@ def evidence_map_figure(cells: Sequence[Dependence], *, opens: str = "") -> Figu
     top = max((max(_worth(cell), 0.0) for cell in best.values()), default=0.0)
     figure = style.blank()
     figure.add_heatmap(
-        z=np.array([[_shade(cell) for cell in row] for row in grid]),
+        z=np.array(
+            [
+                [np.nan if cell is None else np.sqrt(max(_worth(cell), 0.0)) for cell in row]
+                for row in grid
+            ]
+        ),
         x=[label_of(name) for name in names],
         y=list(CHANNELS),
         text=[["" if cell is None else _told(cell) for cell in row] for row in grid],
@@ -109,10 +114,6 @@ def evidence_map_figure(cells: Sequence[Dependence], *, opens: str = "") -> Figu
     style.plain(figure, height=430, legend=False)
     figure.update_layout(dragmode=False, margin={"t": 40})
     return figure
-
-
-def _shade(cell: Dependence | None) -> float:
-    return float("nan") if cell is None else float(np.sqrt(max(_worth(cell), 0.0)))
 
 
 def _ticks(top: float) -> list[float]:

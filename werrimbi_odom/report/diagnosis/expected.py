@@ -26,10 +26,7 @@ Values = Mapping[str, float]
 def expected_words(name: str, values: Values, robot: Robot) -> str:
     """A sentence without its full stop; "" if there is nothing to compute.
 
-    Parameters
-    ----------
-    values : mapping of str to float
-        By the effect's parameters; per-run parameters are NaN or absent.
+    Values are by the effect's parameters; per-run parameters are NaN or absent.
     """
     words = _EXPECTED.get(name)
     if words is None or not all(map(math.isfinite, _needed(name, values))):

@@ -187,12 +187,9 @@ def ideal_of(name: str) -> Ideal | None:
 
 
 def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: DrivingLimits) -> Figure:
-    """Wheel tracks of a manoeuvre, for a robot of this size at the speed of the recorded drives.
+    """Wheel tracks of a manoeuvre, for a robot of this base at the speed of the recorded drives.
 
-    Parameters
-    ----------
-    robot : Robot
-        Gives the wheel base; its effects are ignored.
+    The robot's effects are ignored.
     """
     robot = replace(robot, effects=())
     run = ideal_run(ideal, robot, pace, ticks=_TICK, poses=_TICK, measures=(True, True))
