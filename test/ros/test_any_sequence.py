@@ -124,7 +124,7 @@ class Driven:
             return
         whole = [int(count) if abs(count) < 2**63 else 0 for count in (left, right)]  # NaN: 0
         if self.kind == "int64_pair":
-            take._listener(self.arrived % 2)(Int64(data=whole[0]), info)
+            take._arrived(self.arrived % 2, Int64(data=whole[0]), info)
         else:
             take._arrived(Int64MultiArray(data=whole), info)
 

@@ -75,15 +75,8 @@ def reference_reader(
 ) -> Callable[[Any, Clockwork], TimedPose]:
     """Create a function that reads one of `REFERENCE_TYPES`.
 
-    Parameters
-    ----------
-    usual : PoseCovariance
-        Covariance for messages without one of their own (a variance is not positive).
-
-    Returns
-    -------
-    callable
-        It raises InputError if a number is invalid.
+    It raises InputError if a number is invalid. `usual` is the covariance for messages without one
+    of their own (a variance is not positive).
     """
 
     def read(message: Any, clockwork: Clockwork) -> TimedPose:

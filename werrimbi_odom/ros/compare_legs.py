@@ -172,13 +172,7 @@ _ONE_LEG = 0.7  # share of a window's NEES from which one leg is named as the ca
 
 
 class Window:
-    """The last legs.
-
-    Parameters
-    ----------
-    size : int
-        Number of legs.
-    """
+    """The last `size` legs."""
 
     def __init__(self, size: int) -> None:
         self._deviations: deque[float] = deque(maxlen=size)

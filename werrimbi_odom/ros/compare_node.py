@@ -60,9 +60,8 @@ class CompareNode(Node):  # type: ignore[misc]
     def __init__(self) -> None:
         super().__init__("compare_node")
         values = declared(self, compare_parameters.PARAMETERS)
-        xy, yaw = (
-            compare_parameters.squared(values, f"reference_sigma_{part}") for part in ("xy", "yaw")
-        )
+        sigmas = (values["reference_sigma_xy"], values["reference_sigma_yaw"])
+        xy, yaw = (float(sigma) ** 2 for sigma in sigmas)  # type: ignore[arg-type]
         kind = str(values["reference_type"])
         self._read = reference_reader(kind, PoseCovariance(xy, 0.0, 0.0, xy, 0.0, yaw))
         self._clockwork = Clockwork()

@@ -4,9 +4,7 @@
 
 from __future__ import annotations
 
-import math
-
-from werrimbi_odom.files.node_parameter import NodeParameter, Value
+from werrimbi_odom.files.node_parameter import NodeParameter
 from werrimbi_odom.inference import rules
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declared_parameters import table
@@ -80,11 +78,6 @@ PARAMETERS: tuple[NodeParameter, ...] = (
         "What `~/write_robot_file` writes; empty: beside `robot_file`, with _better in its name.",
     ),
 )
-
-
-def squared(values: dict[str, Value], name: str) -> float:
-    """Square of a standard deviation."""
-    return math.pow(float(values[name]), 2)  # type: ignore[arg-type]
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, cast
 
 from builtin_interfaces.msg import Time as Stamp
@@ -81,13 +82,7 @@ def type_of(values: Mapping[str, Value]) -> type:
 
 
 def subscribed(wiring: InputOptions) -> JointStates | Pair | TicksArray:
-    """Subscribe to the input named in the robot file.
-
-    Raises
-    ------
-    InputError
-        If a QoS override is invalid.
-    """
+    """Subscribe to the input named in the robot file; InputError if a QoS override is invalid."""
     kind = type_of(wiring.values)
     if kind is JointState:
         return JointStates(wiring)
@@ -217,21 +212,15 @@ class Pair:
         window = float(wiring.values["pairing_window"])  # type: ignore[arg-type]
         self._pairing = Pairing(int(1e9 * window))
         for side, topic in enumerate(topics_of(wiring.values)):
-            _subscribe(wiring, message_type, topic, self._listener(side))
+            _subscribe(wiring, message_type, topic, partial(self._arrived, side))
 
     def tally(self) -> dict[str, int]:
         """Numbers of counts without a partner, and of counts that preceded theirs."""
         return {"unpaired": self._pairing.unpaired, "earlier of a pair": self._pairing.earlier}
 
-    def _listener(self, side: int) -> Callable[[Any, Info], None]:
-        def arrived(message: Any, info: Info) -> None:
-            self._arrived(side, message.data, info)
-
-        return arrived
-
-    def _arrived(self, side: int, value: int, info: Info) -> None:
+    def _arrived(self, side: int, message: Any, info: Info) -> None:
         self._health.hear(side, info)
-        pair = self._pairing.take(side, value, arrival_of(info))
+        pair = self._pairing.take(side, message.data, arrival_of(info))
         if pair is not None:
             self._take(self._stamps.of(info), *pair)
 

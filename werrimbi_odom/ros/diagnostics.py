@@ -63,18 +63,9 @@ def status_of(
 ) -> DiagnosticStatus:
     """Create a status message from the estimate.
 
-    Parameters
-    ----------
-    name : str
-        Name of the status.
-    pose, covariance
-        Present pose in the odometry frame.
-    piece : Piece
-        The open piece.
-    distance : float
-        Travel since the start [m].
-    mean_shift : (float, float), optional
-        Mean of the true position minus the pose, with exact moments [m].
+    Pose and covariance are the present ones in the odometry frame, `piece` is the open one, and
+    `distance` the travel since the start [m]. `mean_shift` is the mean of the true position minus
+    the pose, with exact moments [m].
     """
     along, across = sigmas_along_and_across(covariance, pose.yaw)
     heading = math.degrees(math.sqrt(covariance.yawyaw))

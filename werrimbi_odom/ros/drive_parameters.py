@@ -173,13 +173,7 @@ def watch_of(values: Mapping[str, Value]) -> Watch:
 
 
 def chosen_plan(values: Mapping[str, Value]) -> ManoeuvrePlan:
-    """Manoeuvre to drive.
-
-    Raises
-    ------
-    InputError
-        If the diagnosis file is not usable.
-    """
+    """Manoeuvre to drive; InputError if the diagnosis file is not usable."""
     size = _number(values, "size")
     if values["diagnosis"]:
         return proposed(Path(str(values["diagnosis"])), limits_of(values), size=size)

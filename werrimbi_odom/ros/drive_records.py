@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -19,21 +20,9 @@ from werrimbi_odom.files.node_parameter import Value
 
 
 class Bagging:
-    """A bag being recorded.
+    """A bag being recorded from topics, by their full names; those of unknown type are skipped.
 
-    Parameters
-    ----------
-    node : Node
-        Node that subscribes.
-    folder : Path
-        Folder of the bag; must not exist.
-    topics : sequence of str
-        Full topic names; topics of unknown type are skipped.
-
-    Raises
-    ------
-    InputError
-        If rosbags is not installed, or the folder cannot be written.
+    InputError if rosbags is not installed, or the folder cannot be written; it must not exist.
     """
 
     def __init__(self, node: Node, folder: Path, topics: Sequence[str]) -> None:
@@ -55,15 +44,16 @@ class Bagging:
             )
             self._subscriptions.append(
                 node.create_subscription(
-                    _class_of(named[0]), topic, self._keeper(connection), _qos(latched), raw=True
+                    _class_of(named[0]),
+                    topic,
+                    partial(self._keep, connection),
+                    _qos(latched),
+                    raw=True,
                 )
             )
 
-    def _keeper(self, connection: Any) -> Callable[[bytes], None]:
-        def keep(message: bytes) -> None:
-            self._writer.write(connection, time.time_ns(), message)
-
-        return keep
+    def _keep(self, connection: Any, message: bytes) -> None:
+        self._writer.write(connection, time.time_ns(), message)
 
     def close(self) -> None:
         """Write pending messages and unsubscribe."""
@@ -96,17 +86,7 @@ LINGER = 0.5
 class Records:
     """Records a bag for each drive, if requested.
 
-    Parameters
-    ----------
-    node : Node
-        The node that drives.
-    values : mapping
-        Its parameters.
-
-    Raises
-    ------
-    InputError
-        If rosbags is needed and not installed.
+    InputError if rosbags is needed and not installed.
     """
 
     def __init__(self, node: Node, values: Mapping[str, Value]) -> None:
@@ -122,13 +102,7 @@ class Records:
             known_types()  # load it now, so that no start has to wait for it
 
     def begin(self, name: str) -> None:
-        """Start recording a drive, if requested.
-
-        Raises
-        ------
-        InputError
-            If the bag cannot be written.
-        """
+        """Start recording a drive, if requested; InputError if the bag cannot be written."""
         self.close()
         if self._folder:
             bag = Path(self._folder) / f"{name}_{time.strftime('%Y%m%d_%H%M%S')}"

@@ -110,20 +110,9 @@ class Health:
     ) -> DiagnosticStatus:
         """Create the status, with the rates since the last report.
 
-        Parameters
-        ----------
-        name : str
-            Name of the status.
-        tally : EncoderTally
-            Tally of the model's encoder.
-        inputs : mapping
-            Further counters of the input.
-        effects : mapping, optional
-            Description of each physical effect and its values.
-        crowded : collection of str
-            Input topics with several publishers.
-        wrong : sequence of str
-            Other problems, in words.
+        It tells the tally of the model's encoder, further counters of the input, each physical
+        effect with its values, input topics with several publishers (`crowded`), and other problems
+        in words.
         """
         now = time.monotonic()
         for topic, numbers in zip(self._topics, self._numbers, strict=True):

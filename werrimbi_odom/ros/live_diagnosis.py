@@ -62,21 +62,10 @@ class NoWatching:
 
 
 class Watching(NoWatching):
-    """Diagnoses repeatedly.
+    """Diagnoses repeatedly, with the parameters of compare_node and a reference of type `kind`.
 
-    Parameters
-    ----------
-    values : mapping
-        Parameters of compare_node.
-    kind : type
-        Message type of the reference.
-    subscribe : callable
-        Method of the node that subscribes.
-
-    Raises
-    ------
-    InputError
-        If the robot file is invalid, or the new one would overwrite it.
+    `subscribe` is the method of the node that subscribes. InputError if the robot file is invalid,
+    or the new one would overwrite it.
     """
 
     def __init__(
@@ -178,7 +167,8 @@ class Watching(NoWatching):
             return DiagnosticStatus.OK, f"these drives tell nothing: {found['error']}"
         words = found["headline"]
         if found["added"]:
-            words += f" {self._service()} writes {self._new} with it."
+            service = f"{self._node.get_fully_qualified_name()}/write_robot_file"
+            words += f" {service} writes {self._new} with it."
         fine = found["verdict"] == "none" and not found["changes"]
         return DiagnosticStatus.OK if fine else DiagnosticStatus.WARN, words
 
@@ -208,9 +198,6 @@ class Watching(NoWatching):
         shutil.rmtree(self._folder, ignore_errors=True)
 
     # ------------------------------------------------------------------------- services
-
-    def _service(self) -> str:
-        return f"{self._node.get_fully_qualified_name()}/write_robot_file"
 
     def _on_write(self, _: Any, response: Any) -> Any:
         response.success, response.message = False, self._unwritable()

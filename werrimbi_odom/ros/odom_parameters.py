@@ -219,13 +219,7 @@ def judged(
 
 
 def changes_of(items: Changeable, parameters: list[Parameter]) -> dict[str, Value]:
-    """Values among `parameters` that belong to this package.
-
-    Raises
-    ------
-    InputError
-        If a value is invalid.
-    """
+    """Values among `parameters` that belong to this package; InputError if a value is invalid."""
     return {
         item.name: items[item.name].checked(_plain(item.value))
         for item in parameters

@@ -36,10 +36,7 @@ _OUT_OF_PLANE = (14, 21, 28)
 class OdometryMessage:
     """A message that is filled again for each estimate; publishing copies it.
 
-    Parameters
-    ----------
-    odom_frame, base_frame : str
-        Frames of the pose and of the twist (REP-105).
+    Pose and twist have the frames `odom_frame` and `base_frame` (REP-105).
     """
 
     def __init__(self, odom_frame: str, base_frame: str) -> None:
@@ -72,7 +69,9 @@ class OdometryMessage:
         self._linear.x, self._linear.y, self._angular.z = estimate.twist
         self._fill_covariances(estimate)
         if missed.heading:
-            self._fill_slip(missed, estimate.late.duration)
+            per_second = 1.0 / estimate.late.duration**2
+            self._twist[_XX] += missed.along * per_second
+            self._twist[_YAWYAW] += missed.heading * per_second
         return self._message
 
     def transform(self) -> TransformStamped:
@@ -96,11 +95,6 @@ class OdometryMessage:
         twist[_YY] = speed
         twist[_YAWYAW] = yaw_rate
         twist[_XYAW] = twist[_YAWX] = cross
-
-    def _fill_slip(self, missed: Missed, duration: float) -> None:
-        per_second = 1.0 / (duration * duration)
-        self._twist[_XX] += missed.along * per_second
-        self._twist[_YAWYAW] += missed.heading * per_second
 
 
 def pose_from(

@@ -53,14 +53,9 @@ class NoLearning:
 
 
 class Learning(NoLearning):
-    """Estimates phases from a topic.
+    """Estimates phases of a robot's effects from a topic.
 
-    Parameters
-    ----------
-    robot : Robot
-        With effects whose phase is unknown.
-    topic, kind : str
-        `learn_from_topic` and `learn_from_type`.
+    `topic` and `kind` are the parameters `learn_from_topic` and `learn_from_type`.
     """
 
     def __init__(

@@ -38,15 +38,7 @@ class ReceivedMessage(NamedTuple):
 
 
 class Kept:
-    """Recent messages of some topics.
-
-    Parameters
-    ----------
-    topics : sequence of (str, str)
-        Full topic names, and message types.
-    seconds : float
-        Driving time to keep [s].
-    """
+    """Messages of some topics (full names with types) from the last `seconds` of driving."""
 
     def __init__(self, topics: Sequence[tuple[str, str]], seconds: float) -> None:
         self.driven = 0.0

@@ -151,13 +151,7 @@ def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRo
 
 
 def write_believed(robot: TrueRobot, path: Path) -> None:
-    """Write the nominal robot file.
-
-    Raises
-    ------
-    InputError
-        If the file exists, or cannot be written.
-    """
+    """Write the nominal robot file; InputError if the file exists, or cannot be written."""
     from werrimbi_odom.simulation import write_robot_file
 
     if path.exists():

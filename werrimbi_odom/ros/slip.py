@@ -37,13 +37,7 @@ class NoSlip:
 
 
 class Slip(NoSlip):
-    """Compares the wheels with the gyro of a topic.
-
-    Parameters
-    ----------
-    topic : str
-        Topic of sensor_msgs/Imu.
-    """
+    """Compares the wheels with the gyro of a topic (sensor_msgs/Imu)."""
 
     def __init__(self, wiring: counter_inputs.InputOptions, robot: Robot, topic: str) -> None:
         self._topic = topic

@@ -132,14 +132,9 @@ def full_name(node: Node) -> str:
 
 
 def others_on(node: Node, topic: str, *, own: bool) -> str:
-    """Other publishers on a topic, in words; "" if there are none.
+    """Other publishers on a topic (with its namespace), in words; "" if there are none.
 
-    Parameters
-    ----------
-    topic : str
-        With its namespace.
-    own : bool
-        Whether the node itself publishes it.
+    `own`: whether the node itself publishes it.
     """
     if node.count_publishers(topic) <= own:
         return ""
@@ -155,12 +150,7 @@ def others_on(node: Node, topic: str, *, own: bool) -> str:
 class Company:
     """Detects publishers and nodes that should not exist, once they have lasted for a while.
 
-    Parameters
-    ----------
-    node : Node
-        Its name should be unique.
-    topics : tuple of str
-        Topics that should have one publisher each.
+    The node's name should be unique, and each of `topics` should have one publisher.
     """
 
     def __init__(self, node: Node, topics: tuple[str, ...]) -> None:
