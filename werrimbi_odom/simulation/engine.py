@@ -209,13 +209,7 @@ Row = tuple[float, float, float, float, float, float]
 
 
 class DrivenRobot:
-    """A robot driven period by period, with its shifters and reshapers.
-
-    Parameters
-    ----------
-    chassis, start, angles, shifters, reshapers
-        As in `drive`.
-    """
+    """A robot driven period by period, with its shifters and reshapers; arguments as in `drive`."""
 
     def __init__(
         self,

@@ -16,15 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bag import EPOCH
-from .engine import PERIOD, AxlePose, TruePath
+from .engine import PERIOD, AxlePose, Floats, TruePath
 from .hidden.hidden_effect import Peculiarity
 from .lidar import Lidar, Sweeps, scanned
 from .recording import Recording
 from .robot import TrueRobot
 from .rooms import around
 from .sensors import ReferenceSensor, counters, sampling_times
-
-Floats = NDArray[np.float64]
 
 HELD, CARRIED = 4.0, 5.0
 """Durations of holding and carrying the robot [s]."""

@@ -48,12 +48,7 @@ def write_field_bag(
 ) -> Path:
     """Write wheels, gyro, scans, the robot's odometry, transforms of a localiser, and the URDF.
 
-    Parameters
-    ----------
-    folder : path
-        Folder of the bag; must not exist.
-    mounting : bool
-        Whether to write the transform of the lidar's mount.
+    The folder must not exist. `mounting`: whether to write the transform of the lidar's mount.
     """
     folder = Path(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)

@@ -9,12 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .engine import AxlePose, TruePath
+from .engine import AxlePose, Floats, TruePath
 from .sensors import WORLD
-
-Floats = NDArray[np.float64]
 
 _BLOCK = 1 << 14
 

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .engine import PERIOD, AxlePose, DrivenRobot, TruePath
+from .engine import PERIOD, AxlePose, DrivenRobot, Floats, TruePath
 from .field import FieldSensors, gyro_of
 from .hidden.hidden_effect import Peculiarity
 from .lidar import Room, sweeps_at
@@ -19,8 +18,6 @@ from .recorder import counter_zeros, motor_speeds, prepared, stream
 from .recording import Recording
 from .robot import TrueRobot
 from .sensors import ReferenceSensor, counters
-
-Floats = NDArray[np.float64]
 
 ACCELERATION, YAW_ACCELERATION = 3.0, 12.0
 """Largest accelerations by the robot's own controller [m/s^2, rad/s^2]: above those of all drives

@@ -11,10 +11,9 @@ from functools import reduce
 from typing import Literal, get_args, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .chassis import Chassis, chassis_of
-from .engine import PERIOD, AxlePose, Reshaper, Shift, Shifter, Stride, TruePath, drive
+from .engine import PERIOD, AxlePose, Floats, Reshaper, Shift, Shifter, Stride, TruePath, drive
 from .hidden.hidden_effect import Peculiarity
 from .manoeuvres import Manoeuvre
 from .recording import Happened, Recording
@@ -38,8 +37,6 @@ def wheel_noise(robot: TrueRobot, rng: np.random.Generator) -> Shifter:
 
     return shift
 
-
-Floats = NDArray[np.float64]
 
 REST = 0.6
 """Rest before and after the manoeuvre [s]."""
@@ -162,7 +159,7 @@ def _sample(
     t = sampling_times(ticks_rate_hz, end, stream(seed, "encoders"))
     left, right = counters(path, robot, t, counter_zeros(robot, seed))
     rng = stream(seed, "reference")
-    reference_t = sensor.times(end, rng)
+    reference_t = sampling_times(sensor.rate_hz, end, rng)
     x, y, yaw = sensor.measure(path, reference_t, rng)
     return Recording(
         name=name,

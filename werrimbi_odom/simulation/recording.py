@@ -11,13 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .engine import TruePath
-
-Floats = NDArray[np.float64]
-Counts = NDArray[np.int64]
+from .engine import Floats, TruePath
+from .sensors import Counts
 
 
 @dataclass(frozen=True)
@@ -73,13 +68,7 @@ class Recording:
 
 
 def write_run(recording: Recording, folder: str | Path) -> Path:
-    """Write `recording` as a run folder without the truth; parent folders are created.
-
-    Returns
-    -------
-    Path
-        The folder.
-    """
+    """Write `recording` as a run folder without the truth, and return it; parents are created."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     names = "".join(f",{name}" for name in recording.channels)

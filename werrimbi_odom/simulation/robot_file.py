@@ -36,15 +36,7 @@ odom_node:
 def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
     """Write the nominal parameters of `robot` and its noise, without its true geometry.
 
-    Parameters
-    ----------
-    path : path
-        YAML file to write; its folder must exist.
-
-    Returns
-    -------
-    Path
-        The file.
+    Returns the YAML file; its folder must exist.
     """
     path = Path(path)
     text = _TEMPLATE.format(

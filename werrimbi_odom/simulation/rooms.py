@@ -5,11 +5,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .engine import Floats
 from .lidar import Person, Room
-
-Floats = NDArray[np.float64]
 
 
 def living_room(people: bool = False) -> Room:

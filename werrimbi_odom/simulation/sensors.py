@@ -12,10 +12,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import AxlePose, TruePath
+from .engine import AxlePose, Floats, TruePath
 from .robot import TrueRobot
 
-Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 WORLD = AxlePose(0.0, 0.0, 0.0)
@@ -27,7 +26,7 @@ class ReferenceSensor:
     """A motion capture system, or another external measurement of the robot's pose."""
 
     rate_hz: float = 20.0
-    """Sampling rate, with its own sampling times."""
+    """Sampling rate."""
     sigma_xy: float = 1e-3
     sigma_yaw: float = 2e-3
     """Standard deviations of each coordinate [m] and of the yaw [rad], white noise."""
@@ -42,10 +41,6 @@ class ReferenceSensor:
     mirrored: Literal["no", "y_down", "exchanged"] = "no"
     """"no", "y_down" (y and yaw with the wrong sign) or "exchanged" (x and y exchanged, yaw
     clockwise from the new x), as in a left-handed frame."""
-
-    def times(self, end: float, rng: np.random.Generator) -> Floats:
-        """Times of the samples until `end` [s], from a random start in the first 0.3 s."""
-        return sampling_times(self.rate_hz, end, rng)
 
     def measure(
         self, path: TruePath, times: Floats, rng: np.random.Generator

@@ -7,17 +7,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..chassis import Chassis, WheelPlan
-from ..engine import Engine, Reshaper, Shift, Shifter, Stride
+from ..engine import Engine, Floats, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
 from .hidden_effect import Peculiarity, Rng, resized
 from .tyres import course, payloads, weighed, with_channel
 from .wheels import Side
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from .beyond_library import (
     BaseByPayload,
     OneTyreBackwards,
@@ -22,14 +20,13 @@ from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
 from .creep import CastorKick, CoulombSlip, LateralSlip, LongitudinalSlip, TurnDependentTrack
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
-from .hidden_effect import Peculiarity
+from .hidden_effect import Peculiarity, Rng
 from .knocks import Knock, ReferenceJump
 from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
 from .skid import skid_steer
 from .tyres import LoadTransfer, RadiusFollowsPayload, RadiusFollowsTemperature, TyreSquash
 from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side, TreadBump
 
-Rng = np.random.Generator
 Make = Callable[[float, Rng], Peculiarity]
 Kind = Literal["effect", "mistake", "outside", "robot", "event"]
 

@@ -10,8 +10,8 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from .catalogue import CATALOGUE, Entry, Rng
-from .hidden_effect import Peculiarity
+from .catalogue import CATALOGUE, Entry
+from .hidden_effect import Peculiarity, Rng
 
 
 class UnknownEffectError(ValueError):

@@ -7,9 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..engine import Shift, Shifter, Stride
+from ..engine import Floats, Shift, Shifter, Stride
 from ..robot import TrueRobot
 from .hidden_effect import Peculiarity, Rng
 
@@ -57,14 +56,14 @@ class SkidSteer(Peculiarity):
 
         return shift
 
-    def spin(self, base: float) -> NDArray[np.float64]:
+    def spin(self, base: float) -> Floats:
         """Motion (ahead, left, turn) for -1 m of the left wheels and 1 m of the right ones."""
         # The lost share of the turn is linear in the lateral stiffness.
         lost = [2.0 / base / self._balance(base, across)[2] for across in (1.0, 2.0)]
         across = 1.0 + (self.multiplier - lost[0]) / (lost[1] - lost[0])
         return self._balance(base, across)
 
-    def _balance(self, base: float, across: float) -> NDArray[np.float64]:
+    def _balance(self, base: float, across: float) -> Floats:
         """Solve for the motion at which the forces and torques of the four tyres sum to zero."""
         matrix, pushed = np.zeros((3, 3)), np.zeros(3)
         for x, of_length in ((0.5 * LENGTH, self.front), (-0.5 * LENGTH, 1.0 - self.front)):

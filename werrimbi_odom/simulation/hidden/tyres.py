@@ -7,15 +7,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..chassis import Chassis
-from ..engine import Engine, Reshaper, Shift, Shifter, Stride
+from ..engine import Engine, Floats, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
 from .hidden_effect import Peculiarity, Rng, resized
-
-Floats = NDArray[np.float64]
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s^2]."""
