@@ -19,7 +19,7 @@ from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import process_pool, robot_task
-from werrimbi_odom.fleet.robot_task import Task, row_of
+from werrimbi_odom.fleet.robot_task import Task, failed, row_of
 
 KILLS = "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n"
 SLOW = """
@@ -48,7 +48,7 @@ def test_who_kills_its_process_is_a_row_and_the_others_are_done(tmp_path: Path) 
     (tmp_path / "kills.py").write_text(KILLS)
     tasks = [nowhere(f"robot_{number}") for number in range(3)]
     tasks.insert(1, nowhere("killer", DriveOptions(effects=(tmp_path / "kills.py",))))
-    rows = {row.robot: row.error for row in process_pool.here(tasks, 2)}
+    rows = {row.robot: row.error for row in process_pool.spread(tasks, 2, row_of, failed)}
     assert rows.keys() == {"robot_0", "robot_1", "robot_2", "killer"}
     assert rows.pop("killer") == process_pool.DIED
     assert all("robot.yaml" in error and "died" not in error for error in rows.values())

@@ -12,9 +12,10 @@ from typing import Any
 import pytest
 
 from test.workbench.session import ROBOT
+from werrimbi_odom.api.next_command import beside
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.workbench.saving import Target, beside, saved, text_of
+from werrimbi_odom.workbench.saving import Target, saved, text_of
 from werrimbi_odom.workbench.session import Session, begun
 
 
@@ -46,7 +47,7 @@ def test_what_is_shown_before_is_what_is_written(source: RobotFile, tmp_path: Pa
 def test_a_tab_writes_its_own_file_again_and_another_tab_the_next_number(
     source: RobotFile, tmp_path: Path
 ) -> None:
-    target = Target(beside(source.path))
+    target = Target(Path(beside(source.path, "new")))
     first = saved(source, session(source), target)
     assert target.of(first) == tmp_path / "robot_new.yaml"
     assert saved(source, first, target).saved.keys() == first.saved.keys()

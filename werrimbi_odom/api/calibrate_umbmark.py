@@ -89,7 +89,8 @@ def calibrate_umbmark(
     driven_after = _paths(after)
     later = _squares(driven_after, robot, new, read) if driven_after else None
     again = recomputed(squares, old, found.factors) if squares.driven_cw else None
-    changes = {name: _rounded(each.value) for name, each in found.multipliers(old).items()}
+    # Rounded far below the resolution of any tape.
+    changes = {name: round(each.value, 9) for name, each in found.multipliers(old).items()}
     words = [
         *paragraphs(read.notes),
         *found_in_words(squares, found, old),
@@ -134,11 +135,6 @@ def before_after(robot: RobotFile, changes: dict[str, float]) -> dict[str, tuple
 def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
     several = [given] if isinstance(given, str | Path) else list(given)
     return [Path(each) for each in several]
-
-
-def _rounded(value: float) -> float:
-    """Round for display, far below the resolution of any tape."""
-    return round(value, 9)
 
 
 def _squares(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Reading) -> Squares:

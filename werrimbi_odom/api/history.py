@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import cache as cached
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,12 +31,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.dated_drives import Dated, History, Unusable, in_order
-from werrimbi_odom.inference.changes.history import (
-    Course,
-    DriveEstimate,
-    course_of,
-    estimate_of_drive,
-)
+from werrimbi_odom.inference.changes.history import DriveEstimate, course_of, estimate_of_drive
 from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
@@ -111,14 +107,23 @@ def history_of(
     paths = [Path(each) for each in given if not isinstance(each, Run)]
     refuse_twice(paths)
     found: list[Looked] = [_looked_at(each, robot, how) for each in given if isinstance(each, Run)]
-    found += _known_or_done(_tasks(paths, robot, how, cache), spread or _each, show)
+    found += _known_or_done(
+        _tasks(paths, robot, how, cache), spread or partial(map, told_of_task), show
+    )
     unusable = [each for each in found if isinstance(each, Unusable)]
     drives = in_order(_as_given([each for each in found if isinstance(each, Dated)], given))
     if not drives:
         raise InputError(f"no drive can be used; {unusable[0].run}: {unusable[0].why}")
     show(1.0, "putting the drives together")
+    time = np.array([drive.date for drive in drives])
+    course = course_of([drive.estimate for drive in drives], robot.robot, time)
     against = None if like is None else like.robot
-    return _result(History(robot.robot, drives, _course(drives, robot), tuple(unusable), against))
+    told = History(robot.robot, drives, course, tuple(unusable), against)
+    from werrimbi_odom.report.history import document_of, json_of
+
+    return Result(
+        found=told, document=lambda: document_of(told), figures_of_json=lambda: json_of(told)
+    )
 
 
 def told_of_task(task: DriveTask) -> Looked:
@@ -186,10 +191,6 @@ def _known_or_done(tasks: Sequence[DriveTask], spread: Spread, show: Show) -> li
     return found
 
 
-def _each(tasks: Sequence[DriveTask]) -> Iterable[Looked]:
-    return map(told_of_task, tasks)
-
-
 def _dated(run: Path, told: DriveEstimate) -> Dated:
     if told.begin > rules.DATED:
         return Dated(run, told, told.begin, "stamp")
@@ -202,19 +203,6 @@ def _dated(run: Path, told: DriveEstimate) -> Dated:
 def _as_given(drives: Sequence[Dated], given: Sequence[Run | str | Path]) -> list[Dated]:
     places = {str(each.path if isinstance(each, Run) else each): n for n, each in enumerate(given)}
     return sorted(drives, key=lambda drive: places.get(str(drive.run), 0))
-
-
-def _course(drives: Sequence[Dated], robot: RobotFile) -> Course:
-    time = np.array([drive.date for drive in drives])
-    return course_of([drive.estimate for drive in drives], robot.robot, time)
-
-
-def _result(found: History) -> Result[History]:
-    from werrimbi_odom.report.history import document_of, json_of
-
-    return Result(
-        found=found, document=lambda: document_of(found), figures_of_json=lambda: json_of(found)
-    )
 
 
 @cached

@@ -123,9 +123,10 @@ def _spread(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[R
 
         yield from on_cluster(tasks, arguments.scheduler, warn)
         return
-    from werrimbi_odom.fleet.process_pool import here, processors
+    from werrimbi_odom.fleet.process_pool import processors, spread
+    from werrimbi_odom.fleet.robot_task import failed, row_of
 
-    yield from here(tasks, arguments.jobs or processors())
+    yield from spread(tasks, arguments.jobs or processors(), row_of, failed)
 
 
 def _fleet(rows: Sequence[Row], members: Sequence[Member]) -> Fleet:

@@ -38,13 +38,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; return its exit code.
-
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        Arguments after the command's name; default: those of the process.
-    """
+    """Run the command line with `argv`, by default that of the process; return its exit code."""
     # Set before numpy is imported. The matrices are small: two OpenBLAS threads mostly wait for
     # each other, the more so on a busy machine (the workbench, with its browser).
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

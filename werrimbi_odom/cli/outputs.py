@@ -144,22 +144,19 @@ def add_file_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def write_and_tell(arguments: argparse.Namespace, result: Result[Any]) -> None:
-    """Write the files first: the reader of the text may stop early (`| head`)."""
+    """Write new robot file, JSON and page as requested, then print.
+
+    Files come first, because the reader of the text may stop early (`| head`).
+    """
     written: list[Path] = []
     try:
-        written = _write_asked(arguments, result)
+        if result.new_robot is not None:
+            result.write_robot(arguments.out, force=arguments.force)
+            written.append(arguments.out)
+        written += write_figures(arguments, result.to_dict, result.write_report)
     finally:
         print(result.summary())
     tell_written(written)
-
-
-def _write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Path]:
-    """Write the new robot file, if any, then JSON and page if requested; return the paths."""
-    written = []
-    if result.new_robot is not None:
-        result.write_robot(arguments.out, force=arguments.force)
-        written.append(arguments.out)
-    return written + write_figures(arguments, result.to_dict, result.write_report)
 
 
 def write_figures(

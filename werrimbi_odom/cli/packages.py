@@ -54,13 +54,7 @@ def refuse_lacking(arguments: argparse.Namespace) -> None:
 
 
 def refuse_without(name: str, who: str) -> None:
-    """Check that a package is installed.
-
-    Raises
-    ------
-    InputError
-        If it is missing.
-    """
+    """Check that a package is installed; InputError if it is missing."""
     if importlib.util.find_spec(name) is None:
         raise InputError(lacking(name, who))
 

@@ -14,9 +14,7 @@ from werrimbi_odom.cli.options import add_recording_arguments, declare, number, 
 from werrimbi_odom.cli.outputs import write_json
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.recordings import Recordings
-    from werrimbi_odom.workbench.job import Job
-    from werrimbi_odom.workbench.tab import Opening, Shared
+    from werrimbi_odom.workbench.tab import Shared
 
 HELP = "a local page: compare, diagnose, add an effect, watch the error fall, save"
 
@@ -49,10 +47,15 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
     os.environ.pop("NICEGUI_REDIS_URL", None)
     try:
+        from werrimbi_odom.api.next_command import beside
+        from werrimbi_odom.workbench.saving import Target
         from werrimbi_odom.workbench.server import listening, serve
+        from werrimbi_odom.workbench.tab import Opening
 
         at = listening(arguments.port)
-        opening = _opening(job, arguments, read_recordings(arguments))
+        given = read_recordings(arguments)
+        out = arguments.out or Path(beside(arguments.robot, "new"))
+        opening = Opening(job, given, Target(out, arguments.force and arguments.out is not None))
     except BaseException:
         job.cancel()
         raise
@@ -65,29 +68,14 @@ def run(arguments: argparse.Namespace) -> int:
             webbrowser.open(address)
 
     def opened(address: str, shared: Shared) -> None:
-        if arguments.json is not None:
-            _tell(arguments.json, address, shared)
+        if arguments.json is not None:  # the page's address and its first errors, for programs
+            found = {
+                "address": address,
+                "out": str(shared.target.path),
+                "holdout": {"rmse_position_m": shared.look.holdout_error},
+                "train": {"rmse_position_m": shared.look.train_error},
+            }
+            write_json(arguments.json, found)
 
     serve(opening, at, ready, opened)  # server and page start while the drives are compared
     return 0
-
-
-def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Opening:
-    """The comparison to open first, shared by all clients."""
-    from werrimbi_odom.workbench.saving import Target, beside
-    from werrimbi_odom.workbench.tab import Opening
-
-    out = arguments.out or beside(Path(arguments.robot))
-    target = Target(out, arguments.force and arguments.out is not None)
-    return Opening(job, given, target)
-
-
-def _tell(path: Path, address: str, shared: Shared) -> None:
-    """Write the page's address and its first errors as JSON, for programs."""
-    found = {
-        "address": address,
-        "out": str(shared.target.path),
-        "holdout": {"rmse_position_m": shared.look.holdout_error},
-        "train": {"rmse_position_m": shared.look.train_error},
-    }
-    write_json(path, found)

@@ -18,8 +18,8 @@ import numpy as np
 
 from werrimbi_odom.demo.node_processes import Stage, save_and_tell
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.path_figure import CHI2_95_OF_2
 from werrimbi_odom.report.style import BLUE, ORANGE, Figure, blank, plain
 
 SEED = 149
@@ -55,15 +55,8 @@ CALL, TRIGGER = "ros2 service call ", "std_srvs/srv/Trigger"
 def second_act(out: Path) -> None:
     """Drive, diagnose, add, drive again; print the results of the nodes.
 
-    Parameters
-    ----------
-    out : Path
-        Folder for the robot files and the picture.
-
-    Raises
-    ------
-    InputError
-        If a node fails; the message names it, and its own output is above.
+    Robot files and the picture are written to `out`. InputError if a node fails; the message names
+    it, and its own output is above.
     """
     print("\nSecond act: why is the odometry wrong?\n")
     print("A robot in a physics engine, with an effect hidden in it. Which one is told at the end.")
@@ -148,7 +141,7 @@ def drive_of(odometry: Sequence[Any], measured: Sequence[Any]) -> OdometryError:
     seen = np.array([_row(m.header.stamp, m.pose) for m in measured])
     seen = seen[(seen[:, 0] >= time[0]) & (seen[:, 0] <= time[-1])]
     blocks = np.array([m.pose.covariance for m in odometry]).reshape(-1, 6, 6)[:, :2, :2]
-    radius = np.sqrt(np.linalg.eigvalsh(blocks)[:, -1] * CHI2_95_OF_2)
+    radius = np.sqrt(np.linalg.eigvalsh(blocks)[:, -1] * CHI2_95[2])
     way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(path[0]), np.diff(path[1])))])
     way, x, y, promised = (np.interp(seen[:, 0], time, one) for one in (way, *path[:2], radius))
     stands = way < STANDS

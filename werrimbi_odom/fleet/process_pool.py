@@ -16,8 +16,7 @@ from multiprocessing.connection import wait as wait_for
 from threading import Thread
 from typing import TypeVar
 
-from werrimbi_odom.fleet.robot_task import Task, bug, failed, row_of
-from werrimbi_odom.report.fleet import Row
+from werrimbi_odom.fleet.robot_task import bug
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
@@ -35,11 +34,6 @@ def processors() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-def here(tasks: Sequence[Task], jobs: int) -> Iterator[Row]:
-    """Rows of robots in the order of completion, from at most `jobs` processes."""
-    return spread(tasks, jobs, row_of, failed)
 
 
 def spread(

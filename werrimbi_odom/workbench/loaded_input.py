@@ -63,13 +63,7 @@ class Opened:
 
 
 def opened(given: Recordings) -> Opened:
-    """Match and cut all drives.
-
-    Raises
-    ------
-    InputError
-        If a run has no usable reference or no ticks.
-    """
+    """Match and cut all drives; InputError if a run has no usable reference or no ticks."""
     both = split(given)
     judge = judge_of(both.runs, both.holdout, given.robot, given.evaluation)
     names = tuple(run.name for run in judge.kept_back)

@@ -13,7 +13,8 @@ from nicegui import Client, app, ui
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.workbench.drawings import empty_floor
 from werrimbi_odom.workbench.html import ask_for_drawing, box, button, listen, text
-from werrimbi_odom.workbench.tab import Opening, Shared, Tab, new_tab
+from werrimbi_odom.workbench.session import begun
+from werrimbi_odom.workbench.tab import Opening, Shared, Tab
 from werrimbi_odom.workbench.views.add import add_view
 from werrimbi_odom.workbench.views.compare import compare_view
 from werrimbi_odom.workbench.views.diagnose import diagnose_view
@@ -118,8 +119,7 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
         theme.set_value(tab.dark)
         draw("theme")
 
-    tab = new_tab(shared, draw)
-    tab.session, tab.dark = kept.get(_SESSION, tab.session), dark
+    tab = Tab(shared, kept.get(_SESSION, begun(shared.look)), draw, dark=dark)
     for place in (top, bar, main):
         listen(place, tab)
     client.on_delete(tab.cancel)

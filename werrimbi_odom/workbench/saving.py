@@ -36,12 +36,7 @@ class Target:
     def of(self, session: Session, taken: Collection[Path] = ()) -> Path:
         """The file of one tab: its own if it is unmodified, otherwise a free one.
 
-        Parameters
-        ----------
-        session : Session
-            Session of the tab.
-        taken : collection of Path
-            Files written by other tabs.
+        `taken` are files written by other tabs.
         """
         for path, item in reversed(tuple(session.saved.items())):
             if _holds(path, item.text):
@@ -64,11 +59,6 @@ def _holds(path: Path, text: str) -> bool:
         return not path.is_symlink() and path.read_bytes() == text.encode()
     except OSError:
         return False
-
-
-def beside(robot: Path) -> Path:
-    """Default path of the new robot file."""
-    return robot.with_name(f"{robot.stem}_new{robot.suffix}")
 
 
 def changes_of(robot: Robot, source: RobotFile) -> dict[str, float]:

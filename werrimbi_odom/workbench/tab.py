@@ -27,7 +27,7 @@ from werrimbi_odom.workbench.job import Add, CancelledError, Diagnose, Job, Task
 from werrimbi_odom.workbench.leg_selection import Part
 from werrimbi_odom.workbench.loaded_input import Look, Opened
 from werrimbi_odom.workbench.saving import Target, saved
-from werrimbi_odom.workbench.session import Session, begun
+from werrimbi_odom.workbench.session import Session
 from werrimbi_odom.workbench.worker import NOT_SENT, known_before, known_to_both
 
 VIEWS = ("compare", "diagnose", "add", "save")
@@ -217,27 +217,11 @@ def percent(share: float) -> str:
     return f"{share:+.0f} %".replace("-", "−")
 
 
-def new_tab(shared: Shared, changed: Callable[[str | None], None]) -> Tab:
-    """A new tab."""
-    return Tab(shared, begun(shared.look), changed)
-
-
 class Opening:
     """The opening of the drives, which all tabs wait for.
 
-    Parameters
-    ----------
-    job : Job
-        A started process for an `Open`; gets its task at once.
-    given : Recordings
-        The recordings as read.
-    target : Target
-        Allowed output files.
-
-    Attributes
-    ----------
-    trouble : BaseException or None
-        The error, if it failed.
+    `job` is a started process for an `Open`, which gets its task at once. `trouble` is the error,
+    if it failed.
     """
 
     def __init__(self, job: Job, given: Recordings, target: Target) -> None:
