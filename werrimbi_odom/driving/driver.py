@@ -45,13 +45,7 @@ LATER = 60.0
 
 
 class Driver:
-    """Drives a robot through a plan.
-
-    Parameters
-    ----------
-    area : Area
-        Allowed area, in the frame of the first start pose.
-    """
+    """Drives a robot through a plan, within an area in the frame of the first start pose."""
 
     def __init__(self, plan: ManoeuvrePlan, limits: Limits, area: Area, watch: Watch) -> None:
         self.plan, self.limits, self.area, self.watch = plan, limits, area, watch

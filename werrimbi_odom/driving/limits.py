@@ -27,20 +27,14 @@ STILL = Command(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Largest absolute values of commands and their rates of change; all positive.
-
-    Parameters
-    ----------
-    speed, yaw_rate : float
-        [m/s], [rad/s].
-    acceleration, yaw_acceleration : float
-        [m/s^2], [rad/s^2].
-    """
+    """Largest absolute values of commands and their rates of change; all positive."""
 
     speed: float
     yaw_rate: float
+    """[m/s], [rad/s]"""
     acceleration: float
     yaw_acceleration: float
+    """[m/s^2], [rad/s^2]"""
 
     def kept(self, wanted: Command, before: Command, duration: float) -> Command:
         """The command nearest to `wanted` within the limits, `duration` [s] after `before`."""
@@ -59,24 +53,17 @@ def _kept(wanted: float, before: float, most: float, step: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """Area that the whole robot must stay in, in the frame of its first start (x ahead, y left).
-
-    Parameters
-    ----------
-    ahead, behind, left, right : float
-        Distances of the sides of a rectangle from the start [m]; infinite for no side.
-    radius : float
-        Radius of a circle about the start [m]; infinite for no circle.
-    robot_radius : float
-        Radius of the circle about the middle of the axle that encloses the robot [m].
-    """
+    """Area that the whole robot must stay in, in the frame of its first start (x ahead, y left)."""
 
     ahead: float = math.inf
     behind: float = math.inf
     left: float = math.inf
     right: float = math.inf
+    """Distances of the sides of a rectangle from the start [m]; infinite for no side."""
     radius: float = math.inf
+    """Radius of a circle about the start [m]; infinite for no circle."""
     robot_radius: float = 0.0
+    """Radius of the circle about the middle of the axle that encloses the robot [m]."""
 
     def room(self, x: float, y: float) -> float:
         """Distance between the robot and the nearest border [m]; negative outside."""
@@ -103,29 +90,19 @@ class OdometryReading(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """Limits at which a drive is stopped.
-
-    Parameters
-    ----------
-    odom_timeout : float
-        Longest silence of the odometry, and longest delay beyond the least one seen [s].
-    deviation, turned_off : float
-        Largest position error [m] and heading error [rad] against the plan.
-    scan_min_distance : float
-        Least distance that a scan may measure [m]; 0 if there is no scan.
-    scan_timeout : float
-        Longest silence of the scan [s].
-    slip : float
-        Largest difference of wheels and gyro in a turn over SLIP_WINDOW [rad]; 0 if there is no
-        gyro.
-    """
+    """Limits at which a drive is stopped."""
 
     odom_timeout: float = 0.2
+    """Longest silence of the odometry, and longest delay beyond the least one seen [s]."""
     deviation: float = 0.15
     turned_off: float = 0.5
+    """Largest position error [m] and heading error [rad] against the plan."""
     scan_min_distance: float = 0.0
+    """Least distance that a scan may measure [m]; 0 if there is no scan."""
     scan_timeout: float = 0.5
+    """Longest silence of the scan [s]."""
     slip: float = 0.0
+    """Largest difference of wheels and gyro in a turn over SLIP_WINDOW [rad]; 0: no gyro."""
 
 
 def fault_between(before: OdometryReading, now: OdometryReading, limits: Limits) -> str:

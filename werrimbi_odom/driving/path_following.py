@@ -51,10 +51,7 @@ class PathFollower:
     def follow(self, pose: Pose, duration: float) -> Command:
         """Command before limits, at a pose in the frame of the plan's start.
 
-        Parameters
-        ----------
-        duration : float
-            Time since the last call [s].
+        `duration` is the time since the last call [s].
         """
         if self.done:
             return STILL

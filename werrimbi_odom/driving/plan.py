@@ -27,25 +27,17 @@ SLACK = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A line, an arc or a turn on the spot, from rest to rest; or a rest only.
-
-    Parameters
-    ----------
-    length, turn : float
-        Signed [m, rad]; both together make an arc.
-    pace : float
-        Share of the full speed, at most 1.
-    hard : bool
-        Whether to use the full acceleration.
-    rest : float
-        Rest after the move [s].
-    """
+    """A line, an arc or a turn on the spot, from rest to rest; or a rest only."""
 
     length: float
     turn: float
+    """Signed [m, rad]; both together make an arc."""
     pace: float = 1.0
+    """Share of the full speed, at most 1."""
     hard: bool = False
+    """Whether to use the full acceleration."""
     rest: float = 0.3
+    """Rest after the move [s]."""
 
     def end(self, start: Pose, share: float = 1.0) -> Pose:
         """The pose after a share of the move."""
@@ -56,13 +48,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class ManoeuvrePlan:
-    """A manoeuvre as a sequence of moves.
-
-    Parameters
-    ----------
-    name, words : str
-        Name and description.
-    """
+    """A manoeuvre as a sequence of moves, with its name and a description."""
 
     name: str
     words: str
@@ -95,21 +81,14 @@ NOTHING = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """Trapezoidal speed profile: a move's progress from 0 to 1.
-
-    Parameters
-    ----------
-    rate : float
-        Rate of the steady part [1/s].
-    ramp : float
-        Acceleration and deceleration [1/s^2].
-    duration : float
-        Duration of the move [s].
-    """
+    """Trapezoidal speed profile: a move's progress from 0 to 1."""
 
     rate: float
+    """Rate of the steady part [1/s]."""
     ramp: float
+    """Acceleration and deceleration [1/s^2]."""
     duration: float
+    """Duration of the move [s]."""
 
     @classmethod
     def of(cls, move: Move, limits: Limits) -> Profile:

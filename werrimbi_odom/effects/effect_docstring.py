@@ -32,18 +32,12 @@ STAGES: Mapping[Stage, str] = {
 
 @dataclass(frozen=True)
 class Page:
-    """Parsed documentation of an effect.
-
-    Parameters
-    ----------
-    physics : tuple of str
-        Paragraphs, each as one line; the first is the summary.
-    sections : mapping of str to str
-        Text of each section in the docstring, with its line breaks.
-    """
+    """Parsed documentation of an effect."""
 
     physics: tuple[str, ...]
+    """Paragraphs, each as one line; the first is the summary."""
     sections: Mapping[str, str]
+    """Text of each section in the docstring, with its line breaks."""
 
 
 def page_of(effect: Effect) -> Page:

@@ -91,7 +91,6 @@ def displacement(motion: BodyMotion[Number], yaw: Number) -> tuple[Number, Numbe
 
     A constant twist traces an arc. Its chord is sinc(Δ/2) times as long and points along the
     heading at mid-arc (paper, equation 13, in a form that also holds for Δ = 0).
-    heading half way (paper, equation 13, in the form that holds for Δ = 0 too).
 
     Returns
     -------
