@@ -10,15 +10,13 @@ then even from 0 to 1.
 
 from __future__ import annotations
 
-import json
 import math
 import tempfile
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from statistics import NormalDist, fmean, stdev
 
-from test.hidden.follow import run
+from test.hidden.follow import run_json
 from test.hidden.followed_to_rest import at_the_truth
 from test.hidden.intervals import between
 from test.hidden.result_line import Judged
@@ -47,14 +45,13 @@ def tasks(sets: Sequence[HiddenSet], start: int, sessions: int) -> dict[str, Hid
 def work(what: HiddenSet) -> Line:
     """What `calibrate fit` states of a set."""
     folder = make(what)
+    runs = [str(path) for path in runs_of(folder, "train")]
     with tempfile.TemporaryDirectory() as place:
-        robot, runs = str(folder / "robot.yaml"), [str(path) for path in runs_of(folder, "train")]
-        out, file = f"{place}/out.yaml", Path(place) / "out.json"
-        words = ["calibrate", "fit", "--robot", robot, *runs, *options_of(what), "--out", out]
-        done = run([*words, "--json", str(file)])
-        if done.code != 0:
-            return {"set": what.name, "error": done.complained}
-        said = json.loads(file.read_text(encoding="utf-8"))["parameters"]
+        given = ["--robot", str(folder / "robot.yaml"), *runs, *options_of(what)]
+        done, found = run_json(["calibrate", "fit", *given, "--out", f"{place}/out.yaml"])
+    if done.code != 0:
+        return {"set": what.name, "error": done.complained}
+    said = found["parameters"]
     truth = {**multipliers_of(what.truth), **noises_of(what.truth)}
     return {
         "set": what.name,

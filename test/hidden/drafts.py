@@ -8,11 +8,10 @@ python -m test.hidden.drafts prints the table of docs/draft.md.
 from __future__ import annotations
 
 from test.hidden.plan import OUTSIDERS
-from test.hidden.set_judging import floor_of
-from test.hidden.sets import HiddenSet, make, runs_of
+from test.hidden.set_judging import floor_of, read_set
+from test.hidden.sets import HiddenSet
 from werrimbi_odom.api.draft import draft
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import read_robot_file
 
 OF_TWO = ("slide_by_tilt_and_payload", "one_tyre_by_load_over_pressure", "one_tyre_backwards")
 SEED = 80_001
@@ -23,14 +22,13 @@ HEAD = ("hidden", "strength", "before", "one variable", "two variables", "right 
 
 def row(what: HiddenSet) -> tuple[str, ...]:
     """Held-out errors of a set [mm], and the law of two where one was taken."""
-    folder = make(what)
-    train, holdout = (runs_of(folder, part) for part in ("train", "holdout"))
+    file, train, holdout = read_set(what)
     (hidden,) = what.hidden()
     unit = "" if hidden.entry.unit == "1" else f" {hidden.entry.unit}"
     named = (f"`{what.names[0]}`", f"{hidden.strength:.2g}{unit}")
     right = _mm(floor_of(what).of(what.names))
     try:
-        result = draft(read_robot_file(folder / "robot.yaml"), train, holdout=holdout, force=True)
+        result = draft(file, train, holdout=holdout, force=True)
     except InputError:
         return (*named, "", "none", "none", right, "")
     figures = result.to_dict()

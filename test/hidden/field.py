@@ -8,7 +8,6 @@ wanders and jumps, stamps that jitter, and the robot held and carried in each dr
 
 from __future__ import annotations
 
-import json
 import math
 import shutil
 import tempfile
@@ -19,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from test.hidden.follow import run
+from test.hidden.follow import run, run_json
 from test.hidden.plan import EFFECTS, evenly
 from test.hidden.resumable_jobs import Line, commit_now
 from test.hidden.sets import HiddenSet, runs_of
@@ -168,13 +167,10 @@ def _said(folder: Path, field: Mapping[str, Any], name: str, apart: int | None =
     """The diagnosis by one reference, some drives held out (None: all that there are)."""
     train, holdout = (list(map(str, runs_of(folder, part))) for part in ("train", "holdout"))
     holdout = holdout[:apart]
-    with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / "diagnosis.json"
-        words = ["diagnose", "--robot", str(folder / "robot.yaml"), *train, "--holdout", *holdout]
-        done = run([*words, *SEEN[name].options(folder), "--json", str(file)])
-        if done.code != 0:
-            return {"verdict": "refused", "error": done.complained, "seconds": done.seconds}
-        said = json.loads(file.read_text(encoding="utf-8"))
+    words = ["diagnose", "--robot", str(folder / "robot.yaml"), *train, "--holdout", *holdout]
+    done, said = run_json([*words, *SEEN[name].options(folder)])
+    if done.code != 0:
+        return {"verdict": "refused", "error": done.complained, "seconds": done.seconds}
     judged = {name: true for name, true in field.items() if str(folder / name) in train + holdout}
     return {
         "verdict": said["verdict"],

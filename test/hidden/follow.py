@@ -84,6 +84,14 @@ def run(words: Sequence[str]) -> Ran:
     return Ran(code, out.getvalue(), err.getvalue().strip(), time.process_time() - begin)
 
 
+def run_json(words: Sequence[str]) -> tuple[Ran, dict[str, Any]]:
+    """A command with --json, and that JSON; empty where the command ended with an error."""
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / "found.json"
+        done = run([*words, "--json", str(file)])
+        return done, json.loads(file.read_text(encoding="utf-8")) if done.code == 0 else {}
+
+
 def commands(text: str, verb: str) -> list[list[str]]:
     """Commands of a verb that a text tells to type, as words; a backslash carries on a line."""
     whole = re.sub(r"\s*\\\n\s*", " ", text)
@@ -176,12 +184,10 @@ def _walk(told: Followed, options: list[str], most: int) -> None:
 
 def _diagnose(words: list[str], told: Followed) -> str:
     """What a diagnosis prints."""
-    file = Path("diagnosis.json")
-    done = run([*words, "--json", str(file)])
+    done, said = run_json(words)
     if done.code != 0:
         told.ended, told.error = "refused", done.complained
         return ""
-    said = json.loads(file.read_text(encoding="utf-8"))
     if not told.first:
         told.first, told.printed, told.seconds = said, done.printed, done.seconds
     told.after = said["holdout"]["before"]
@@ -197,13 +203,12 @@ def _add(text: str, told: Followed, train: list[str], holdout: list[str]) -> lis
         told.ended = "no command"
         return []
     words = typed(wanted[0], train, holdout)
-    file = Path(f"addition_{len(told.added)}.json")
-    done = run([*words, "--json", str(file)])
+    done, said = run_json(words)
     if done.code != 0:
         told.ended, told.error = "refused", done.complained
         return []
     told.added.append(words[1].split(","))
-    told.fits.append(json.loads(file.read_text(encoding="utf-8")))
+    told.fits.append(said)
     wanted = commands(done.printed, "diagnose")
     if not wanted:
         told.ended = "no command"
@@ -213,12 +218,12 @@ def _add(text: str, told: Followed, train: list[str], holdout: list[str]) -> lis
 
 def _compare(robot: str, runs: list[str], options: list[str], told: Followed) -> None:
     """What compare says of a model that the diagnosis finds nothing wrong with."""
-    done = run(["compare", "--robot", robot, *runs, *options, "--json", "comparison.json"])
+    done, said = run_json(["compare", "--robot", robot, *runs, *options])
     if done.code != 0:
         told.error = done.complained
         return
-    said = json.loads(Path("comparison.json").read_text(encoding="utf-8"))["verdict"]
-    told.explains, told.mean_is_right = said["good"], said["mean_is_right"]
+    told.explains = said["verdict"]["good"]
+    told.mean_is_right = said["verdict"]["mean_is_right"]
 
 
 def _drafted(told: Followed, options: list[str]) -> float | None:
@@ -236,9 +241,8 @@ def _drafted(told: Followed, options: list[str]) -> float | None:
         told.error = done.complained
         return None
     model = [words[words.index("--effects") + 1], "--robot", words[words.index("--out") + 1]]
-    done = run(["compare", "--effects", *model, *holdout, *options, "--json", "drafted.json"])
+    done, said = run_json(["compare", "--effects", *model, *holdout, *options])
     if done.code != 0:
         told.error = done.complained
         return None
-    said = json.loads(Path("drafted.json").read_text(encoding="utf-8"))
     return float(said["legs"]["rmse_position_m"])

@@ -24,8 +24,8 @@ from typing import cast
 from test.hidden.plan import APART, CALIBRATION, evenly
 from test.hidden.result_line import Judged, is_right, judgement
 from test.hidden.resumable_jobs import Line
-from test.hidden.set_judging import judged, options_of
-from test.hidden.sets import HiddenSet, make, runs_of
+from test.hidden.set_judging import judged, options_of, read_set
+from test.hidden.sets import HiddenSet
 from test.hidden.table_layout import Table
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
@@ -190,15 +190,9 @@ def gap(what: HiddenSet) -> Line:
 
     In units of minus two log-likelihood, as the diagnosis weighs them.
     """
-    from werrimbi_odom.files.read_run import read_run
-    from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 
-    folder = make(what)
-    file = read_robot_file(folder / "robot.yaml")
-    train, holdout = (
-        [read_run(path, file) for path in runs_of(folder, part)] for part in ("train", "holdout")
-    )
+    file, train, holdout = read_set(what)
     options = EvaluationOptions(limits=file.limits)
     if options_of(what):
         options = replace(options, reference_kind=cast(ReferenceKind, options_of(what)[1]))

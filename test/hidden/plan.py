@@ -10,7 +10,7 @@ Seeds of different effects differ, so that their chances do.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, count
 from typing import TypeVar
@@ -160,13 +160,20 @@ def plan(start: int, sizes: Sizes) -> list[HiddenSet]:
     ]
 
 
+def _of_each(
+    group: str, hidden: Iterable[tuple[str, ...]], first: int, apart: int, sets: int
+) -> list[HiddenSet]:
+    """So many sets of each; the seeds of one begin so far from those of the next."""
+    return [
+        HiddenSet(group, names, first + apart * number + seed)
+        for number, names in enumerate(hidden)
+        for seed in range(sets)
+    ]
+
+
 def effects(start: int, sizes: Sizes) -> list[HiddenSet]:
     """Each effect of the vocabulary, weak and strong."""
-    return [
-        HiddenSet("effect", (name,), start + 1000 + 20 * number + seed)
-        for number, name in enumerate(EFFECTS)
-        for seed in range(sizes.effects)
-    ]
+    return _of_each("effect", [(name,) for name in EFFECTS], start + 1000, 20, sizes.effects)
 
 
 def clean(start: int, sizes: Sizes) -> list[HiddenSet]:
@@ -177,11 +184,7 @@ def clean(start: int, sizes: Sizes) -> list[HiddenSet]:
 def calibration(start: int, sizes: Sizes) -> list[HiddenSet]:
     """Only calibration wrong, in several numbers at once."""
     together = [*combinations(CALIBRATION, 2), CALIBRATION]
-    return [
-        HiddenSet("calibration", names, start + 3000 + 10 * number + seed)
-        for number, names in enumerate(together)
-        for seed in range(sizes.calibration)
-    ]
+    return _of_each("calibration", together, start + 3000, 10, sizes.calibration)
 
 
 def pairs(start: int, sizes: Sizes) -> list[HiddenSet]:
@@ -210,20 +213,12 @@ def pairs(start: int, sizes: Sizes) -> list[HiddenSet]:
 
 def outsiders(start: int, sizes: Sizes) -> list[HiddenSet]:
     """What the library does not hold; seeds are those of clean sets, which are their floor."""
-    return [
-        HiddenSet("outsider", (name,), start + 2001 + 4 * number + seed)
-        for number, name in enumerate(OUTSIDERS)
-        for seed in range(sizes.outsiders)
-    ]
+    return _of_each("outsider", [(name,) for name in OUTSIDERS], start + 2001, 4, sizes.outsiders)
 
 
 def mistakes(start: int, sizes: Sizes) -> list[HiddenSet]:
     """Wiring and frames."""
-    return [
-        HiddenSet("mistake", (name,), start + 5000 + 10 * number + seed)
-        for number, name in enumerate(MISTAKES)
-        for seed in range(sizes.mistakes)
-    ]
+    return _of_each("mistake", [(name,) for name in MISTAKES], start + 5000, 10, sizes.mistakes)
 
 
 def factors(start: int, sizes: Sizes) -> list[HiddenSet]:

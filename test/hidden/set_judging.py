@@ -8,22 +8,21 @@ truth.json is opened after it has spoken.
 
 from __future__ import annotations
 
-import json
-import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from test.hidden.floors import Floor
-from test.hidden.follow import MOST, Followed, follow, run
+from test.hidden.follow import MOST, Followed, follow, run_json
 from test.hidden.poorer import POORER
 from test.hidden.result_line import IN_LIBRARY, Judged
 from test.hidden.resumable_jobs import Line, commit_now
 from test.hidden.right_laws import RIGHT_LAWS
 from test.hidden.sets import HiddenSet, make, runs_of
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import Run
 
 DRIVEN_ON = 3
 """Most manoeuvres that a user drives for one verdict."""
@@ -162,23 +161,24 @@ def _resolved(what: HiddenSet, name: str | None, minutes: float) -> tuple[str, .
 
 def _diagnosed(what: HiddenSet, folder: Path, runs: Sequence[str]) -> Line | str:
     """Diagnosis of drives with a set's robot file; the complaint, if it was refused."""
-    with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / "diagnosis.json"
-        robot = ["--robot", str(folder / "robot.yaml")]
-        done = run(["diagnose", *robot, *runs, *options_of(what), "--json", str(file)])
-        if done.code != 0:
-            return done.complained
-        said: Line = json.loads(file.read_text(encoding="utf-8"))
-        return said
+    robot = ["--robot", str(folder / "robot.yaml")]
+    done, said = run_json(["diagnose", *robot, *runs, *options_of(what)])
+    return said if done.code == 0 else done.complained
 
 
-def floor_of(what: HiddenSet) -> Floor:
-    """For fits of true models to a set."""
+def read_set(what: HiddenSet) -> tuple[RobotFile, list[Run], list[Run]]:
+    """The robot file of a set, the drives to learn from, and those held out."""
     folder = make(what)
     file = read_robot_file(folder / "robot.yaml")
     train, holdout = (
         [read_run(path, file) for path in runs_of(folder, part)] for part in ("train", "holdout")
     )
+    return file, train, holdout
+
+
+def floor_of(what: HiddenSet) -> Floor:
+    """For fits of true models to a set."""
+    file, train, holdout = read_set(what)
     kind = POORER[what.seen].kind if what.seen else "absolute"
     return Floor(train, holdout, file.robot, kind, file.limits)
 

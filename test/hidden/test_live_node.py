@@ -18,11 +18,11 @@ pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip i
 
 from ruamel.yaml import YAML
 
-from test.hidden.sets import HiddenSet, make, runs_of
+from test.hidden.set_judging import read_set
+from test.hidden.sets import HiddenSet
 from test.ros.conftest import DEEP, Launched, launcher
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.robot_file_rewrite import write_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.adding.adding import add_effects
@@ -42,11 +42,8 @@ def test_the_node_with_the_added_effect_errs_less(
     launch: Callable[..., Launched], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("WERRIMBI_HIDDEN", str(tmp_path / "hidden"))
-    folder = make(HiddenSet("effect", ("left_missed_ticks=0.05",), 31, "short"))
-    file = read_robot_file(folder / "robot.yaml")
-    train, holdout = (
-        [read_run(path, file) for path in runs_of(folder, part)] for part in ("train", "holdout")
-    )
+    hidden = HiddenSet("effect", ("left_missed_ticks=0.05",), 31, "short")
+    file, train, holdout = read_set(hidden)
     found = add_effects([find("left_missed_ticks")], train, file.robot, holdout=holdout)
     assert found.objection is None
     robot = found.robot
