@@ -7,6 +7,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
+from inspect import cleandoc
 from typing import Any
 
 from werrimbi_odom.model.effect import Effect, Parameter, Stage, Twin
@@ -55,7 +56,7 @@ def page_of(effect: Effect) -> Page:
         else:
             current = None
             physics.append(line)
-    found = {name: _flush(lines) for name, lines in sections.items()}
+    found = {name: cleandoc("\n".join(lines)) for name, lines in sections.items()}
     twins = [_of_twin(twin) for twin in effect.indistinguishable_from if twin.do]
     if twins:
         found["Twins"] = ".\n".join([*twins, *([found["Twins"]] if "Twins" in found else [])])
@@ -141,8 +142,3 @@ def anew(item: Parameter) -> str:
 
 def _in_unit(unit: str) -> str:
     return f" [{unit}]" if unit else ""
-
-
-def _flush(lines: list[str]) -> str:
-    """Lines without the indentation of the section."""
-    return "\n".join([lines[0], *(textwrap.dedent("\n".join(lines[1:])).splitlines())]).strip()

@@ -117,13 +117,7 @@ class TicksCollector(Protocol):
         """Add a message of one of the source's topics."""
 
     def ticks(self) -> tuple[Ticks, list[str]]:
-        """All ticks, and the skipped messages in words.
-
-        Raises
-        ------
-        InputError
-            If no message was usable.
-        """
+        """All ticks, and the skipped messages in words; InputError if no message was usable."""
 
 
 def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksCollector:

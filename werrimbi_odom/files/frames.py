@@ -171,7 +171,8 @@ def chains_to_base(edges: Sequence[Edge], base: str) -> list[Chain]:
         from robot_state_publisher, which hang from its base or only rotate.
     """
     children = {edge.child for edge in edges}
-    bases = [base] if base in children else sorted(filter(is_base, children), key=_as_usual)
+    bases = [base] if base in children else sorted(filter(is_base, children))
+    bases.sort(key=lambda name: not name.endswith("base_link"))
     found: list[Chain] = []
     fixed = [edge for edge in edges if edge.static]
     for name in bases:
@@ -191,11 +192,6 @@ def chains_to_base(edges: Sequence[Edge], base: str) -> list[Chain]:
 def _on_the_robot(edges: Sequence[Edge], name: str) -> bool:
     """Whether a frame is the robot's base, or hangs from it."""
     return any(is_base(each) for each in (name, *_above(edges, name)))
-
-
-def _as_usual(name: str) -> tuple[bool, str]:
-    """Sort key: the usual name of a base first."""
-    return not name.endswith("base_link"), name
 
 
 def _above(edges: Sequence[Edge], name: str) -> list[str]:

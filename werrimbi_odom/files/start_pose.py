@@ -50,7 +50,9 @@ def start_of(run: Run, robot_file: RobotFile) -> StartPose:
     view = view_of(robot_file.robot.effects)
     if run.reference is None:
         return _origin("the origin; there is no reference", view)
-    reference = _right_handed(run.reference, view)
+    reference = run.reference
+    if view.mirrored:
+        reference = replace(reference, y=-reference.y, yaw=-reference.yaw)
     right_handed = view._replace(mirrored=False)
     known = np.flatnonzero(reference.has_position | reference.has_yaw)
     if known.size == 0:
@@ -73,12 +75,6 @@ def start_of(run: Run, robot_file: RobotFile) -> StartPose:
 
 def _origin(told: str, view: View) -> StartPose:
     return StartPose(Pose(), told, _mirrored(Pose(view.ahead, view.left, view.yaw), view))
-
-
-def _right_handed(reference: Reference, view: View) -> Reference:
-    if not view.mirrored:
-        return reference
-    return replace(reference, y=-reference.y, yaw=-reference.yaw)
 
 
 def _mirrored(pose: Pose, view: View) -> Pose:

@@ -70,7 +70,7 @@ def magnification(drawing: PathDrawing) -> float:
     return max((size for size in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if size <= wanted), default=1.0)
 
 
-def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
+def path_figure(drawing: PathDrawing) -> Figure:
     """The interactive figure; equal scales on both axes."""
     figure = blank()
     magnified = drawing.magnified or magnification(drawing)
@@ -78,7 +78,7 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
     if drawing.reference_x is not None and drawing.reference_y is not None:
         measured, look = (drawing.reference_x, drawing.reference_y), {"color": GREY, "width": 5}
         plot(figure, *measured, "measured", hover=f"measured{_PLACE}", line=look, opacity=0.55)
-    for order, index in enumerate(spread_along_path(drawing.x, drawing.y, ellipses)):
+    for order, index in enumerate(spread_along_path(drawing.x, drawing.y, 16)):
         x, y, shape = drawing.x[index], drawing.y[index], drawing.covariance[index]
         plot(
             figure,

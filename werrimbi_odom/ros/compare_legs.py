@@ -72,18 +72,12 @@ class LegCutter:
     """Cuts a drive into legs, each of which begins at the pose after the end of the last.
 
     No reference pose belongs to two legs, so their errors are independent. No leg spans a gap: an
-    unusually long interval without reference in which the robot moved.
-
-    Parameters
-    ----------
-    length : float
-        Path length of a leg [m].
-    turn : float
-        Turn on the spot that also makes a leg [rad]; path and turn add up.
+    unusually long interval without reference in which the robot moved. A leg has a path of
+    `length` [m], or a quarter turn on the spot; path and turn add up.
     """
 
-    def __init__(self, length: float, turn: float = rules.QUARTER_TURN) -> None:
-        self._length, self._turn = length, turn
+    def __init__(self, length: float) -> None:
+        self._length = length
         self._start: Both | None = None
         self._last: Both | None = None
         self._intervals: deque[tuple[float, float]] = deque(maxlen=_KEPT)
@@ -109,7 +103,7 @@ class LegCutter:
     def _way(self, start: Both, end: Both) -> float:
         path = end.odometry.path - start.odometry.path
         turned = end.odometry.turned - start.odometry.turned
-        return legs_worth(path, turned, self._length, self._turn)
+        return legs_worth(path, turned, self._length, rules.QUARTER_TURN)
 
     def _is_gap(self, last: Both, both: Both) -> bool:
         """Whether there is a gap in the reference, compared with its usual intervals."""

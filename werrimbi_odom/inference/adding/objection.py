@@ -123,9 +123,10 @@ def objection(
         hint = f"; look at {set_up.findings[0].effect} first ({set_up.findings[0].words})"
     for key, item in parameters.items():
         if item.remark == "bound":
+            value = f"{item.value:g} {item.declared.unit}".rstrip()
             return (
-                f"{name} would need {key} = {item.value:g}{_in(item)}, the limit of what is "
-                f"physically possible; so it is not that effect{hint}"
+                f"{name} would need {key} = {value}, the limit of what is physically possible; so "
+                f"it is not that effect{hint}"
             )
     if not (np.isfinite(after) or worth.asked_for):
         return f"{name} cannot be judged: the held-out drives have no leg that was measured"
@@ -177,7 +178,3 @@ def _by_chance(name: str, worth: Worth) -> str | None:
         f"the drives do not show {name}: chance alone would make the fit as much better "
         f"in {100.0 * worth.chance:.2g} % of cases"
     )
-
-
-def _in(item: FittedParameter) -> str:
-    return f" {item.declared.unit}" if item.declared.unit else ""

@@ -96,7 +96,9 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
         "Why it is so, the data cannot say: find the physics, then give this effect its name "
         "and its law."
     )
-    target = {"left": "left", "right": "right", "along": first_of(amount), "sideways": "sideways"}
+    # The along channel changes both wheels alike, where it goes with their travel.
+    along = "along" if amount.per in ("turn", "duration") else "left and right"
+    target = {"left": "left", "right": "right", "along": along, "sideways": "sideways"}
     side = target.get(amount.channel, "turn")
     base = {"travel": "travel", "path": "|travel|", "turn": "turn", "duration": "duration"}
     formula = f"{side} += share * {base[amount.per]};  {form.formula}"
@@ -119,11 +121,6 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
     ]
     text = "\n".join(parts)
     return f'"""{text}\n"""'
-
-
-def first_of(amount: Amount) -> str:
-    """Field of the motion that the along channel changes."""
-    return "along" if amount.per in ("turn", "duration") else "left and right"
 
 
 def _section(word: str, text: str) -> str:

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.fitting.filtering import (
     Ways,
     filtered,
 )
-from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
@@ -231,7 +231,7 @@ def _of_increments(
         + walked(prediction, runs.intervals, variances.xy[:, None], variances.yaw[:, None])
         + 2.0 * np.diag(quantisation_variance(robot))
     )
-    covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
+    covariance = covariance + UNMEASURED * diagonal_of(~np.isfinite(value))
     value = np.where(known, value, 0.0)
     sets = variances.left.size
     return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, None, known)
@@ -316,8 +316,3 @@ def quantisation_variance(robot: Robot) -> Floats:
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
     along = 0.25 * (left + right)
     return np.array([along, along, (left + right) / robot.track**2])
-
-
-def _diagonal(rows: NDArray[np.bool_]) -> Floats:
-    """Diagonal matrices from rows, shape (m, 3) to (m, 3, 3)."""
-    return np.asarray(rows[..., None] * np.eye(3))

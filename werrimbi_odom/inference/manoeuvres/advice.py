@@ -93,7 +93,10 @@ def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosi
     diagnosis = _diagnosis(given, show)
     leg, open_at = given.how.leg, None
     if shorter := shorter_leg(diagnosis, leg):
-        again = _diagnosis(with_leg(given, shorter), _again(show, shorter))
+        again = _diagnosis(
+            with_leg(given, shorter),
+            lambda share, words: show(share, f"legs of {shorter:g} m: {words}"),
+        )
         if settles(again, diagnosis):
             diagnosis, leg, open_at = again, shorter, leg
     show(0.97, "the next step")
@@ -119,10 +122,6 @@ def _diagnosis(given: Recordings, show: Show) -> Diagnosis:
     return diagnose(
         given.runs, given.robot, effects, given.evaluation, holdout=given.holdout, show=show
     )
-
-
-def _again(show: Show, leg: float) -> Show:
-    return lambda share, words: show(share, f"legs of {leg:g} m: {words}")
 
 
 def significant(diagnosis: Diagnosis) -> list[Dependence]:

@@ -127,7 +127,6 @@ def robot(
     size: float = 1.0,
     left: str = INK,
     right: str = INK,
-    castor: bool = False,
     marker: bool = False,
 ) -> str:
     """A robot from above, facing right, rotated anticlockwise [degrees]; left is up on the page."""
@@ -138,8 +137,6 @@ def robot(
         _wheel(0.0, -26.0 * s, s, left),
         _wheel(0.0, 26.0 * s, s, right),
     ]
-    if castor:
-        parts.append(f'<circle cx="{-19 * s}" cy="0" r="{4 * s}" stroke="{INK}"/>')
     if marker:
         parts.append(f'<circle cx="0" cy="0" r="{4 * s}" fill="{GREEN}"/>')
     return f'<g transform="translate({x} {y}) rotate({-turn})">{"".join(parts)}</g>'
