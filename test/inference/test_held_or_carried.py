@@ -100,6 +100,21 @@ def carried(run: Run, begin: float, lasts: float, seed: int = 0) -> Run:
     )
 
 
+def seen_at(run: Run, time: np.ndarray) -> np.ndarray:
+    """Poses (3, n) of the reference at other times."""
+    given = run.reference
+    assert given is not None
+    columns = (given.x, given.y, np.unwrap(given.yaw))
+    return np.stack([np.interp(time, given.time, each) for each in columns])
+
+
+def at_10_hz(run: Run) -> Reference:
+    """A reference as often as most are."""
+    assert run.reference is not None
+    time = np.arange(run.reference.time[0], run.reference.time[-1], 0.1)
+    return Reference(time, *seen_at(run, time))
+
+
 def span(run: Run) -> tuple[float, float, set[str]]:
     """From the first to the last that is found, and what."""
     found = with_no_driving(run, ROBOT).no_driving
@@ -107,12 +122,17 @@ def span(run: Run) -> tuple[float, float, set[str]]:
     return found[0].begin, found[-1].end, {part.why for part in found}
 
 
+def is_found(run: Run, why: str, begin: float, end: float, near: float = NEAR) -> None:
+    """One kind of no driving is found, and when it was."""
+    found = span(run)
+    assert found[:2] == pytest.approx((begin, end), abs=near)
+    assert found[2] == {why}
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_robot_that_is_held_is_found_within_half_a_second(seed: int) -> None:
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
-    found = span(run)
-    assert found[:2] == pytest.approx((begin, end), abs=NEAR)
-    assert found[2] == {"held"}
+    is_found(run, "held", begin, end)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5])
@@ -135,26 +155,15 @@ def test_a_robot_that_is_held_on_a_line_and_turns_when_let_go_is_found() -> None
     on_a_line = (time > 26.0) & (time < 36.2)
     turning = np.where(on_a_line, 0.0, 1.2 * np.sign(np.sin(0.5 * time)))
     run, begin, end = held(run_by(ROBOT, np.full(time.size, 0.4), turning), 30.0, 36.0)
-    found = span(run)
-    assert found[:2] == pytest.approx((begin, end), abs=NEAR)
-    assert found[2] == {"held"}
-
-
-def at_ten_hertz(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Times of a slower reference, and its poses (3, n)."""
-    given = run.reference
-    assert given is not None
-    time = np.arange(given.time[0], given.time[-1], 0.1)
-    columns = (given.x, given.y, np.unwrap(given.yaw))
-    return time, np.stack([np.interp(time, given.time, each) for each in columns])
+    is_found(run, "held", begin, end)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -> None:
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
-    time, (x, y, yaw) = at_ten_hertz(run)
-    jump = np.where(time > begin - 0.5, 0.4, 0.0)
-    jumped = replace(run, reference=Reference(time, x + jump, y - jump, yaw))
+    seen = at_10_hz(run)
+    jump = np.where(seen.time > begin - 0.5, 0.4, 0.0)
+    jumped = replace(run, reference=replace(seen, x=seen.x + jump, y=seen.y - jump))
     assert span(jumped)[:2] == pytest.approx((begin, end), abs=NEAR)
 
 
@@ -162,22 +171,20 @@ def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -
 def test_a_localiser_that_wanders_does_not_make_it_longer(seed: int) -> None:
     """By 8 mm and 4 mrad in half a second; in one of these the robot stands where it is let go."""
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
-    time, poses = at_ten_hertz(run)
+    given = at_10_hz(run)
     wander, random = np.zeros(3), np.random.default_rng([seed, 5])
     seen = []
-    for pose in poses.T:
+    for pose in np.stack([given.x, given.y, given.yaw], axis=1):
         wander = 0.993 * wander + [3.5e-3, 3.5e-3, 1.8e-3] * random.standard_normal(3)
         seen.append(pose + wander)
-    found = span(replace(run, reference=Reference(time, *np.array(seen).T)))
+    found = span(replace(run, reference=Reference(given.time, *np.array(seen).T)))
     assert found[:2] == pytest.approx((begin, end), abs=NEAR)
 
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("which", ["poses", "yaw"])
 def test_a_robot_that_is_carried_is_found_within_half_a_second(seed: int, which: str) -> None:
-    found = span(parts(carried(run_of(ROBOT, seed), 30.0, 3.0), which))
-    assert found[:2] == pytest.approx((30.0, 33.0), abs=NEAR)
-    assert found[2] == {"carried"}
+    is_found(parts(carried(run_of(ROBOT, seed), 30.0, 3.0), which), "carried", 30.0, 33.0)
 
 
 @pytest.mark.parametrize("late", [0.0, 0.1])
@@ -266,9 +273,8 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
     yaw = np.clip(time - 16.0, 0.0, 2.0) + np.random.default_rng(0).normal(0.0, 1e-3, time.size)
     nothing = np.full(time.size, np.nan)
     ticks, seen = Ticks(time, counts, counts), Reference(time, nothing, nothing, yaw)
-    found = span(with_no_driving(Run("straight", Path("straight"), ticks, seen), ROBOT))
-    assert found[:2] == pytest.approx((16.0, 18.0), abs=NEAR)
-    assert found[2] == {"carried"}
+    run = with_no_driving(Run("straight", Path("straight"), ticks, seen), ROBOT)
+    is_found(run, "carried", 16.0, 18.0)
 
 
 def test_a_robot_that_is_carried_slowly_between_straight_lines_is_found_by_its_turning() -> None:
@@ -283,9 +289,8 @@ def test_a_robot_that_is_carried_slowly_between_straight_lines_is_found_by_its_t
     noise = np.random.default_rng(0).normal(0.0, [[5e-3], [5e-3], [2e-3]], (3, time.size))
     path = np.cumsum(step)
     seen = Reference(time, path.real + noise[0], path.imag + noise[1], yaw + noise[2])
-    found = span(Run("to_and_fro", Path("to_and_fro"), Ticks(time, counts, counts), seen))
-    assert found[:2] == pytest.approx((20.0, 25.0), abs=NEAR)
-    assert found[2] == {"carried"}
+    run = Run("to_and_fro", Path("to_and_fro"), Ticks(time, counts, counts), seen)
+    is_found(run, "carried", 20.0, 25.0)
 
 
 def test_no_leg_comes_near_the_ends_of_what_was_no_driving() -> None:
@@ -334,16 +339,13 @@ def test_a_robot_that_is_lifted_ever_faster_until_it_is_lost() -> None:
 
 def test_who_sets_a_robot_elsewhere_takes_half_a_second() -> None:
     """Its wheels go on meanwhile; a localiser that jumps does so from one pose to the next."""
-    run = at_10_hz(run_of(ROBOT, 2))
-    reference = run.reference
-    assert reference is not None
+    run = run_of(ROBOT, 2)
+    reference = at_10_hz(run)
     gone = np.clip((reference.time - 40.0) / 0.5, 0.0, 1.0)
     away = replace(
         reference, x=reference.x + 0.5 * gone, y=reference.y - 0.3 * gone, yaw=reference.yaw + gone
     )
-    begin, end, why = span(replace(run, reference=away))
-    assert (begin, end) == pytest.approx((40.0, 40.5), abs=NEAR)
-    assert why == {"carried"}
+    is_found(replace(run, reference=away), "carried", 40.0, 40.5)
 
 
 def test_a_robot_that_is_stopped_for_a_moment_is_found_by_a_gyro_though_its_wheels_are_slow() -> (
@@ -360,9 +362,7 @@ def test_a_robot_that_is_stopped_for_a_moment_is_found_by_a_gyro_though_its_whee
     nothing = np.full(stamps.size, np.nan)
     ticks = Ticks(time, np.cumsum(-spins), np.cumsum(spins))
     run = Run("stopped", Path("stopped"), ticks, Reference(stamps, nothing, nothing, yaw))
-    begin, end, why = span(run)
-    assert (begin, end) == pytest.approx((33.0, 33.9), abs=NEAR)
-    assert why == {"held"}
+    is_found(run, "held", 33.0, 33.9)
 
 
 def test_nothing_is_expected_of_a_robot_whose_wheels_stand() -> None:
@@ -409,10 +409,8 @@ def stop_and_go(noise: float) -> Run:
     going = np.where(time % 4.0 < 1.0, np.sin(np.pi * (time % 4.0)), 0.0)
     turning = np.where(time // 4.0 % 3.0 == 1.0, 0.8, 0.0) * going
     run = run_by(ROBOT, 0.3 * going, turning)
-    assert run.reference is not None
     stamps = np.arange(0.1, 119.0, 0.125)
-    table = np.stack([run.reference.x, run.reference.y, np.unwrap(run.reference.yaw)])
-    seen = np.stack([np.interp(stamps, run.reference.time, each) for each in table])
+    seen = seen_at(run, stamps)
     seen += noise * np.random.default_rng(1).standard_t(4, seen.shape)
     return replace(run, reference=Reference(stamps, *seen))
 
@@ -425,9 +423,7 @@ def test_nobody_carries_a_robot_that_stands_below_a_poor_camera(noise: float) ->
 
 def test_a_carry_below_a_poor_camera_is_found() -> None:
     run = carried(stop_and_go(0.01), 62.0, 4.0)
-    found = span(run)
-    assert found[:2] == pytest.approx((62.0, 66.0), abs=1.0)
-    assert found[2] == {"carried"}
+    is_found(run, "carried", 62.0, 66.0, near=1.0)
 
 
 def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
@@ -451,17 +447,6 @@ def test_arcs_seen_from_beside_the_axle_are_driving(tmp_path: Path) -> None:
     drive = record(TrueRobot(), drives(7)["train/eights_and_spins"], seed=42, hidden=[mount])
     run = read_run_folder(write_run(drive, tmp_path / "eights"))
     assert with_no_driving(run, ROBOT).no_driving == ()
-
-
-def at_10_hz(run: Run) -> Run:
-    """With a reference as often as most are."""
-    reference = run.reference
-    assert reference is not None
-    time = np.arange(reference.time[0], reference.time[-1], 0.1)
-    columns = (reference.x, reference.y, np.unwrap(reference.yaw))
-    return replace(
-        run, reference=Reference(time, *(np.interp(time, reference.time, one) for one in columns))
-    )
 
 
 def test_of_positions_alone_the_longest_drive_is_kept() -> None:
