@@ -5,13 +5,12 @@
 from __future__ import annotations
 
 import itertools
-import os
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.memory import resident
 from werrimbi_odom.model.covariance import path_noise, piece_covariance
 from werrimbi_odom.model.motion import WheelTravel, wheels_to_body
 from werrimbi_odom.model.odometer import Odometer
@@ -22,12 +21,6 @@ RATE = 50
 HOURS = 10
 LEFT, RIGHT = 58, 61
 """Counts a message: 0.47 m/s, a circle of 7 m."""
-
-
-def resident() -> float:
-    """Resident memory of this process [MB]."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 def circling(seconds: int) -> Iterator[tuple[float, int, int]]:
@@ -51,7 +44,7 @@ def after(seconds: int) -> tuple[Odometer, list[float], tuple[int, int]]:
         odometer.update(time, left, right)
         counts = left, right
         if row and row % every == 0:
-            memory.append(resident())
+            memory.append(resident() / 2**20)
     return odometer, memory, counts
 
 

@@ -17,6 +17,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from test.memory import resident
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -86,7 +87,7 @@ def listened(node: Any, expected: int) -> tuple[int, Any, list[int], float]:
         node.until(
             lambda seen=seen: len(node.diagnostics) > seen or arrived(node, last_stamp), "report"
         )
-        memory.append(resident_memory(node.process.pid))
+        memory.append(resident(node.process.pid))
         if node.odometry:
             last = node.odometry[-1]
         received += len(node.odometry)
@@ -102,12 +103,6 @@ def arrived(node: Any, last_stamp: float) -> bool:
 
 def stamp_of(message: Any) -> float:
     return float(message.header.stamp.sec) + 1e-9 * float(message.header.stamp.nanosec)
-
-
-def resident_memory(process: int) -> int:
-    """Resident set size [bytes]."""
-    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 def cpu_time(process: int) -> float:

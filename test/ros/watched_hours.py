@@ -15,7 +15,6 @@ from __future__ import annotations
 import gc
 import json
 import math
-import os
 import sys
 import tempfile
 import time as clock
@@ -40,6 +39,7 @@ from sensor_msgs.msg import JointState
 import werrimbi_odom as wo
 from test.driving.in_engine import InEngine
 from test.driving.test_watched_hours import TRUTH, patrol
+from test.memory import resident
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.demo.node_processes import private_domain
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
@@ -309,12 +309,6 @@ def _stamp(time: float) -> Any:
     return Time(nanoseconds=round(1e9 * (BEGINS + time))).to_msg()
 
 
-def _resident() -> float:
-    gc.collect()
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return 1e-6 * pages * os.sysconf("SC_PAGE_SIZE")
-
-
 def looks(
     kind: str, seed: int, hours: float, hidden: str, sets_in: float, folder: Path
 ) -> Iterator[Look]:
@@ -339,6 +333,7 @@ def looks(
 
 def look(watched: Watched, time: float, since: float) -> Look:
     """What stands now."""
+    gc.collect()
     costs, milli = watched.costs, 1e3 / time
     looking = float(watched.told("what is missing", "CPU of all looks").removesuffix(" s"))
     status = watched.status["what is missing"]
@@ -349,7 +344,7 @@ def look(watched: Watched, time: float, since: float) -> Look:
         watched.told("what is missing", "effect"),
         status.message.partition("/compare_node/")[0].strip(),
         dict(watched.alarms),
-        round(_resident(), 1),
+        round(1e-6 * resident(), 1),
         round(milli * costs.odometry, 2),
         round(milli * costs.comparing, 2),
         round(milli * looking, 2),

@@ -7,14 +7,13 @@ Every ten minutes it prints how many scans a second were matched, and the memory
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from test.memory import resident
 from test.scans.drives import seen
 from werrimbi_odom.scans.sweep import Sweep
 from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
@@ -69,14 +68,9 @@ def hour(minutes: int = 60, rate_hz: float = 10.0) -> Iterator[Point]:
         spent += time.process_time() - begun
         scans += len(given)
         if part * PART % TEN_MINUTES == 0:
-            yield Point(part, scans, scans / spent, _megabytes())
+            yield Point(part, scans, scans / spent, resident() / 2**20)
     found = matcher.path()
     assert found.time.size > 0.99 * scans, "it was lost"
-
-
-def _megabytes() -> float:
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 if __name__ == "__main__":
