@@ -8,6 +8,7 @@ import argparse
 import os
 import sys
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -69,9 +70,6 @@ def run(arguments: argparse.Namespace) -> int:
     assert robot is not None
     remark(robot)
 
-    def spread(tasks: Sequence[DriveTask]) -> Iterator[Looked]:
-        return _spread(tasks, arguments.jobs)
-
     with share_done("looking at the drives") as show:
         result = history_of(
             robot,
@@ -79,14 +77,14 @@ def run(arguments: argparse.Namespace) -> int:
             how_of(arguments),
             like=like,
             cache=arguments.cache,
-            spread=spread,
+            spread=partial(_spread, arguments.jobs),
             show=show,
         )
     write_and_tell(arguments, result)
     return 0
 
 
-def _spread(tasks: Sequence[DriveTask], jobs: int) -> Iterator[Looked]:
+def _spread(jobs: int, tasks: Sequence[DriveTask]) -> Iterator[Looked]:
     from werrimbi_odom.api.history import told_of_task, unusable_task
     from werrimbi_odom.fleet.process_pool import processors, spread
 

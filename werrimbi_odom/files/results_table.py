@@ -80,17 +80,13 @@ def read_results(
     return ResultsTable(np.array(rows, dtype=np.float64).reshape(-1, len(numbers)), tuple(words))
 
 
-def _text(path: Path) -> str:
-    """Text of a small file."""
-    return read_small_text(
-        path, wanted="it must be a CSV file", too_large="that was not typed by hand"
-    )
-
-
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
     """Number and cells of every line with content."""
     found = []
-    reader = csv.reader(_text(path).splitlines(), skipinitialspace=True, strict=True)
+    text = read_small_text(
+        path, wanted="it must be a CSV file", too_large="that was not typed by hand"
+    )
+    reader = csv.reader(text.splitlines(), skipinitialspace=True, strict=True)
     try:
         for cells in reader:
             stripped = [cell.strip() for cell in cells]

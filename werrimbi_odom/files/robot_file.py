@@ -42,7 +42,8 @@ from werrimbi_odom.files.parameters import (
     tolerance_of,
     virtual_ticks,
 )
-from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
+from werrimbi_odom.files.text_files import read_small_text
+from werrimbi_odom.files.yaml_text import line_of, load, plain
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -122,7 +123,10 @@ def read_robot_file(path: str | Path, effects: Collection | None = None) -> Robo
         If it is not usable; the message names file, line, parameter, and the remedy.
     """
     path = Path(path)
-    return robot_file_of_text(read_text(path), path, None if effects is None else effects.find)
+    text = read_small_text(
+        path, wanted="give the YAML file in it", too_large="it is not a robot file"
+    )
+    return robot_file_of_text(text, path, None if effects is None else effects.find)
 
 
 def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:

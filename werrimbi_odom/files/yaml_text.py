@@ -23,7 +23,6 @@ from ruamel.yaml.events import (
 from ruamel.yaml.scalarbool import ScalarBoolean
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.text_files import read_small_text
 
 MAX_DEPTH = 8
 _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
@@ -36,19 +35,6 @@ _READ_OTHERWISE = re.compile(
 )
 """Numbers that YAML 1.2 and ROS read differently: ROS uses C's strtol, which reads 0100 as 64 and
 does not accept 0o, 0b or 1_000."""
-
-
-def read_text(path: Path) -> str:
-    """Read a small UTF-8 file; line ends become LF.
-
-    Raises
-    ------
-    InputError
-        If it cannot be opened, is too large for a robot file, or is not UTF-8.
-    """
-    return read_small_text(
-        path, wanted="give the YAML file in it", too_large="it is not a robot file"
-    )
 
 
 def round_trip() -> YAML:

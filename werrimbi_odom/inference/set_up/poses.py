@@ -8,6 +8,7 @@ import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -133,10 +134,7 @@ def search_poses(
     )
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)
-
-    def misfit(tried: Setting) -> float:
-        return fit.misfit(tried, track)
-
+    misfit = partial(fit.misfit, track=track)
     # On one circle, sizes that are all far off cancel: each is needed beside the others.
     if misfit(AS_ENTERED) < rules.WIDE * misfit(setting):
         return [], None
