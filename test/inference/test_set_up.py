@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -50,34 +50,32 @@ from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
 EVERY = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}
 NAMES = ("train/square_ccw", "train/free_calm", "train/eights_and_spins")
-THINNED = [
-    name if number % 8 == 4 else pytest.param(name, marks=pytest.mark.evidence)
-    for number, name in enumerate([*SIZES, *ONE_SIDE])
-]
-"""Factors that poorer references are tried with; all of them in `make evidence`."""
-EVERY_OTHER = [
-    pytest.param(name, marks=pytest.mark.evidence)
-    if (name in SIZES or name in ONE_SIDE) and number % 4 in (2, 3)
-    else name
-    for number, name in enumerate([*WIRING, *SIZES, *REFERENCE, *DELAYS, *ONE_SIDE])
-]
-"""Each factor once, of the radius or of the base, and half of those of one side's counters."""
-WIRED = [
-    name if name in ("swapped", "both reversed") else pytest.param(name, marks=pytest.mark.evidence)
-    for name in WIRING
-]
-"""Wirings, likewise."""
 
 
-def sparse(names: Sequence[Any]) -> list[Any]:
-    """Every other one of those that are not in `make evidence` already."""
-    plain = [name for name in names if isinstance(name, str)]
+def thinned(names: Iterable[Any], kept: Container[str]) -> list[Any]:
+    """Names, of which those that are not kept are tried in `make evidence` alone."""
     return [
-        pytest.param(name, marks=pytest.mark.evidence) if name in plain[1::2] else name
+        pytest.param(name, marks=pytest.mark.evidence)
+        if isinstance(name, str) and name not in kept
+        else name
         for name in names
     ]
 
 
+def sparse(names: Sequence[Any]) -> list[Any]:
+    """Every other one of those that are not in `make evidence` already."""
+    return thinned(names, [name for name in names if isinstance(name, str)][::2])
+
+
+FACTORS_OF_ALL = [*SIZES, *ONE_SIDE]
+THINNED = thinned(FACTORS_OF_ALL, FACTORS_OF_ALL[4::8])
+"""Factors that poorer references are tried with."""
+ALL = [*WIRING, *SIZES, *REFERENCE, *DELAYS, *ONE_SIDE]
+EVERY_OTHER = thinned(
+    ALL, [name for n, name in enumerate(ALL) if name not in FACTORS_OF_ALL or n % 4 < 2]
+)
+"""Each factor once, of the radius or of the base, and half of those of one side's counters."""
+WIRED = thinned(WIRING, ("swapped", "both reversed"))
 MOUNT_90 = pytest.param("mount 90", marks=pytest.mark.evidence)
 Search = Callable[[str], tuple[list[Run], SetUp]]
 
