@@ -24,7 +24,14 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed, quantity
+from werrimbi_odom.report.number_format import (
+    capital,
+    chance_words,
+    each_its_own,
+    error_words,
+    listed,
+    quantity,
+)
 from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
@@ -72,7 +79,7 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
         return []
     values = {key: value for key, value in every.items() if not _unseen(value)} or every
     parts = [
-        f"{parameter} is another one in each drive ({value.says})"
+        f"{parameter} is {each_its_own(value.of_runs, value.unit)} ({value.says})"
         if value.per_run
         else f"{parameter} {'=' if value.determined else 'is'} {_value(value)} ({value.says})"
         for parameter, value in values.items()
