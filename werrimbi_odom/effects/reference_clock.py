@@ -94,7 +94,7 @@ def reference_heading_delay(view: View, delay: float) -> View:
     ),
 )
 def reference_clock_drift(view: View, delay: float, rate: float) -> View:
-    """The reference's clock runs faster or slower than the encoders': two computers, two quartzes.
+    """The reference's clock runs faster or slower than the encoders': no two run alike.
 
     Two recordings that were begun by hand differ by some delay, and by more and more from then on,
     in each drive by others: clocks without NTP or PTP gain 10 to 100 millionths on each other, a

@@ -100,7 +100,8 @@ def each_its_own(values: Sequence[float], unit: str) -> str:
     """What a parameter is that each drive has anew: the range of its `values`, if there are any."""
     if not values:
         return "another one in each drive"
-    low, high = (quantity(value, math.nan, unit) for value in (min(values), max(values)))
+    rounded = [float(f"{value:.2g}") for value in (min(values), max(values))]
+    low, high = (quantity(value, math.nan, unit) for value in rounded)
     return f"another one in each drive, from {low} to {high}"
 
 

@@ -208,15 +208,14 @@ def without_nested(tried: Sequence[Fitted]) -> list[Fitted]:
     """Of an effect and one that extends it, the one that the data ask for.
 
     Nested models are no rivals: both hold. The wider is taken where what it has beyond the other is
-    beyond chance, whatever both explain together.
+    beyond chance, whatever both explain together; beside the other, in a model that holds it, too.
     """
     kept = list(tried)
     for wider in tried:
-        extended = effect_of(wider.point, wider.names[-1]).extends
-        nested = next((fit for fit in tried if fit.names[-1] == extended), None)
-        if nested is not None:
-            of_nested = effect_of(nested.point, extended)
-            kept.remove(nested if extension_p_value(wider, of_nested) < rules.SURE else wider)
+        if extended := effect_of(wider.point, wider.names[-1]).extends:
+            needed = extension_p_value(wider) < rules.SURE
+            needless = extended if needed else wider.names[-1]
+            kept = [fit for fit in kept if fit.names[-1] != needless]
     return kept
 
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.size_statistics import (
@@ -266,10 +267,11 @@ def wald_statistic(name: str, design: Design, covariance: Floats, point: Point) 
     return _wald(effect, freed, design, covariance, point)[0]
 
 
-def extension_p_value(fit: Fitted, nested: Effect) -> float:
+def extension_p_value(fit: Fitted) -> float:
     """P-value of what the newest effect of a model has beyond the one that it extends (Wald)."""
     effect = effect_of(fit.point, fit.names[-1])
-    freed = [key for key in effect.parameters if key not in nested.parameters]
+    nested = find(effect.extends).parameters
+    freed = [key for key in effect.parameters if key not in nested]
     rise, degrees = _wald(effect, freed, fit.design, fit.covariance, fit.point)
     return fisher_survival(rise / max(degrees, 1), max(degrees, 1), fit.spare)
 

@@ -77,6 +77,10 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     every = values_of(diagnosis, name)
     if not every:
         return []
+    others = [diagnosis.effect_named(other) for other in diagnosis.found]
+    wider = [effect.name for effect in others if effect is not None and effect.extends == name]
+    if wider and not any(value.reported for value in every.values()):
+        return [f"How large: another one in each drive, see {wider[0]}."]
     values = {key: value for key, value in every.items() if not _unseen(value)} or every
     parts = [
         f"{parameter} is {each_its_own(value.of_runs, value.unit)} ({value.says})"
@@ -160,11 +164,14 @@ def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
     return ", ".join(
         f"{parameter} {_value(value)}"
         for parameter, value in values.items()
-        if value.reported and not (believed and value.std > abs(value.value - value.null))
+        if value.of_runs
+        or (value.reported and not (believed and value.std > abs(value.value - value.null)))
     )
 
 
 def _value(value: Value) -> str:
+    if value.of_runs:
+        return each_its_own(value.of_runs, value.unit)
     if not value.determined:
         return "not determined by these drives"
     return quantity(value.value, value.std, value.unit)
