@@ -89,8 +89,8 @@ def _changes(advised: AdvisedDiagnosis) -> list[str]:
     if all(change.group == "reference_delay" for change in advised.changes):
         what, one = "The reference's clock", "one clock, the mean of all"
         now = (
-            "Shift the reference of each drive by its own delay, record both with one clock, or add "
-            "reference_clock_drift, which has a delay of its own in each drive."
+            "Shift the reference of each drive by its own delay, record both with one clock, or "
+            "add reference_clock_drift, which has a delay of its own in each drive."
         )
     return [
         f"{what} was not the same in all of these drives.",
