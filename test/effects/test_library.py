@@ -51,6 +51,7 @@ VOCABULARY = {
     "reference_yaw_offset": 0.0,
     "reference_delay": 0.0,
     "reference_heading_delay": 0.0,
+    "reference_clock_drift": 0.0,
     "reference_scale": 1.0,
     "reference_gyro_drift": 0.0,
     "encoder_skew": 0.0,

@@ -444,3 +444,18 @@ def test_a_gyro_that_drifts_turns_with_the_square_of_time_standing_or_not() -> N
         expected = [0.0, 1e-5 * 60.0**2, 1e-5 * 120.0**2]
         np.testing.assert_allclose(seen.yaw, expected, atol=1e-12)
         np.testing.assert_array_equal(seen.x, 0.0)
+
+
+def test_a_clock_that_gains_shows_the_same_later_and_later() -> None:
+    """And two minutes after it began a jolt comes as much later as its page says."""
+    view = view_of((find("reference_clock_drift").using(delay=0.5, rate=1e-2),))
+    rows = np.linspace(0.0, 200.0, 2001)
+    for begin in (0.0, 500.0):
+        robot = Robot(TRACK, RADIUS, 2000.0, 2000.0)
+        driven = trajectory(robot, begin + rows, 1000.0 * rows, 900.0 * rows)
+        seen = shown(driven, view)
+        for stamp in (1.0, 120.0, 200.0):
+            true = begin + stamp - (0.5 + 1e-2 * stamp)
+            assert np.interp(begin + stamp, seen.time, seen.yaw) == pytest.approx(
+                np.interp(true, driven.time, driven.yaw), abs=1e-9
+            )

@@ -132,7 +132,7 @@ def gone(
 def shown(track: Track, effects: tuple[AppliedEffect, ...], at: Floats) -> tuple[Floats, Floats]:
     """What a reference shows at times `at`: positions as x + iy [m], headings [rad]."""
     view = view_of(effects)
-    seen = at - view.delay
+    seen = at - view.late(at)
     position = np.interp(seen, track.time, track.x) + 1j * np.interp(seen, track.time, track.y)
     position = position + np.exp(1j * np.interp(seen, track.time, track.yaw)) * complex(
         view.ahead, view.left

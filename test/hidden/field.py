@@ -49,6 +49,9 @@ NOT_IN_SCANS = frozenset({"reference_heading_delay", "reference_gyro_drift"})
 """A scan tells place and heading of one instant, and no gyro has a part in it: bags that hide these
 hide nothing in their scans."""
 
+IN_BAGS = tuple(name for name in EFFECTS if name != "reference_clock_drift")
+"""Effects that bags can hide: one computer stamps all of a bag's messages."""
+
 DELAYS = frozenset({"reference_delay", "reference_heading_delay"})
 """Of headings alone they are one."""
 
@@ -93,7 +96,7 @@ def sets(start: int, each: int, clean: int, effects: int) -> list[HiddenSet]:
     found = [
         HiddenSet("field", (name,), start + 8000 + 20 * EFFECTS.index(name) + seed, "field")
         for seed in range(each)
-        for name in evenly(EFFECTS, effects, start)
+        for name in evenly(IN_BAGS, effects, start)
     ]
     return found + [HiddenSet("field", (), start + 8500 + n, "field") for n in range(clean)]
 

@@ -58,7 +58,7 @@ FAMILIES = (
     ("castor_kick", "left_backlash", "right_backlash"),
     ("left_missed_ticks", "right_missed_ticks"),
     ("reference_lever_arm",),
-    ("reference_delay", "reference_heading_delay", "reference_gyro_drift"),
+    ("reference_delay", "reference_heading_delay", "reference_clock_drift", "reference_gyro_drift"),
     ("encoder_skew",),
 )
 """Effects of one family are not hidden together: they have much of their signature in common."""

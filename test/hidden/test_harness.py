@@ -376,7 +376,7 @@ def test_where_a_lidar_is_all_that_there_is_the_table_has_its_column_alone() -> 
 def test_field_sets_have_seeds_of_their_own() -> None:
     start = plan.start_of("abcdef012345")
     own = field.sets(start, 4, 12, len(plan.EFFECTS))
-    assert len({each.name for each in own}) == len(own) == 4 * len(plan.EFFECTS) + 12
+    assert len({each.name for each in own}) == len(own) == 4 * len(field.IN_BAGS) + 12
     scans = field.sets(start + SCANS, 4, 12, len(plan.EFFECTS))
     assert not {each.seed for each in own} & {each.seed for each in scans}
     others = {each.seed for each in plan.plan(start, plan.ALL)}

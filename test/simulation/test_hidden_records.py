@@ -198,6 +198,7 @@ def test_everything_in_the_catalogue_can_be_hidden(entry: Entry) -> None:
             run.left_ticks, plain.left_ticks
         )
         same_reference = np.array_equal(measured(run), measured(plain))
+        same_reference &= np.array_equal(run.reference_t_s, plain.reference_t_s)
         acts_later = entry.name in {
             "castor_kick", "slippery_spot", "left_backlash", "one_tyre_backwards",
                 "left_tread_bump", "right_tread_bump",  # once in a turn
@@ -234,6 +235,7 @@ def test_the_catalogue_holds_the_vocabulary_of_the_contract() -> None:
         "oval_left_wheel", "oval_right_wheel", "radius_by_channel", "tyre_squash",
         "load_transfer", "anisotropic_floor",
         "left_tread_bump", "right_tread_bump", "reference_gyro_drift", "coulomb_slip",
+        "reference_clock_drift",
     }  # fmt: skip
     assert {entry.name for entry in sim.CATALOGUE if entry.kind == "mistake"} == {
         "wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored",

@@ -18,7 +18,11 @@ from werrimbi_odom.effects.missed_ticks import left_missed_ticks, right_missed_t
 from werrimbi_odom.effects.oval_wheel import oval_left_wheel, oval_right_wheel
 from werrimbi_odom.effects.radius_by_channel import radius_by_channel
 from werrimbi_odom.effects.radius_drift import radius_drift
-from werrimbi_odom.effects.reference_clock import reference_delay, reference_heading_delay
+from werrimbi_odom.effects.reference_clock import (
+    reference_clock_drift,
+    reference_delay,
+    reference_heading_delay,
+)
 from werrimbi_odom.effects.reference_gyro_drift import reference_gyro_drift
 from werrimbi_odom.effects.reference_mirrored import reference_mirrored
 from werrimbi_odom.effects.reference_mount import reference_lever_arm, reference_yaw_offset
@@ -69,6 +73,7 @@ LIBRARY: tuple[Effect, ...] = (
     reference_yaw_offset,
     reference_delay,
     reference_heading_delay,
+    reference_clock_drift,
     reference_scale,
     reference_gyro_drift,
     encoder_skew,

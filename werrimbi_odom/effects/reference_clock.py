@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference with late stamps."""
+"""A reference with late stamps, or with a clock that runs at another rate."""
 
 from __future__ import annotations
 
@@ -66,3 +66,47 @@ def reference_heading_delay(view: View, delay: float) -> View:
                reference_delay, where positions are poor: drive lines with hard starts and stops
     """
     return view._replace(heading_delay=view.heading_delay + delay)
+
+
+@reference_effect(
+    sketch=Sketch(
+        "late",
+        "the reference's clock runs fast, or slow",
+        "the reference tells the same, later and later",
+        ("counters", "reference"),
+    ),
+    extends="reference_delay",
+    delay=Parameter(
+        "s",
+        null=0.0,
+        typical=0.03,
+        bounds=(-5.0, 5.0),
+        says="by which its stamps are late as the drive begins",
+        per_run=True,
+    ),
+    rate=Parameter(
+        "s/s",
+        null=0.0,
+        typical=1e-3,
+        bounds=(-0.02, 0.02),
+        says="what its clock gains on the encoders' in a second",
+        per_run=True,
+    ),
+)
+def reference_clock_drift(view: View, delay: float, rate: float) -> View:
+    """The reference's clock runs faster or slower than the encoders': no two run alike.
+
+    Two recordings that were begun by hand differ by some delay, and by more and more from then on,
+    in each drive by others: clocks without NTP or PTP gain 10 to 100 millionths on each other, a
+    microcontroller's up to a hundredth. Rows that were stamped by counting, at a rate that the
+    sensor did not keep, do the same. Which of the two clocks is off cannot be told.
+
+    Formula    measured(t) = true(t - delay - rate * t), t since the drive began         [s]
+    Signature  the reference lags by speed times a delay that grows along a drive; by its middle it
+               may be right, and early before
+    Ruler      let both record for two minutes, with a jolt by hand at the begin and at the end: the
+               time between the jolts differs by 120 s * rate
+    Alike      wheel_radius_scale and track_width, at one speed: stop now and then; reference_delay,
+               in short drives: drive for two minutes
+    """
+    return view._replace(delay=view.delay + delay, clock_drift=view.clock_drift + rate)

@@ -80,6 +80,8 @@ class Effect:
         A drawing for reports.
     one_of_channels : tuple of str
         It needs a measured channel with one of these words in its name.
+    extends : str
+        Name of a nested effect: the same at the null values of the parameters that it lacks.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Effect:
     channels: tuple[str, ...] = ()
     sketch: Sketch | None = None
     one_of_channels: tuple[str, ...] = ()
+    extends: str = ""
 
     def lacks(self, measured: Iterable[str]) -> tuple[str, ...]:
         """Channels that it reads and that were not measured, in words; empty if it can act."""
@@ -239,10 +242,14 @@ def body_effect(
 
 
 def reference_effect(
-    *, twins: Sequence[Twin | str] = (), sketch: Sketch | None = None, **parameters: Parameter
+    *,
+    twins: Sequence[Twin | str] = (),
+    sketch: Sketch | None = None,
+    extends: str = "",
+    **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(view, **parameters) -> View`` as an effect on the measurement."""
-    return _declared("reference", parameters, 1, twins, sketch)
+    return _declared("reference", parameters, 1, twins, sketch, extends=extends)
 
 
 def wiring_mistake(
@@ -261,6 +268,7 @@ def _declared(
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
     one_of_channels: tuple[str, ...] = (),
+    extends: str = "",
 ) -> Callable[[Apply], Effect]:
     def declare(apply: Apply) -> Effect:
         name = apply.__name__
@@ -290,6 +298,7 @@ def _declared(
             channels,
             sketch,
             one_of_channels,
+            extends,
         )
 
     return declare

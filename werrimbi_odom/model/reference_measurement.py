@@ -42,9 +42,10 @@ def shown(driven: Trajectory, view: View) -> Path:
     axle = Path(driven.time, driven.x, driven.y, driven.yaw, driven.covariance)
     if view == View():
         return axle
-    seen = delayed(axle, view.delay)
-    yaw = delayed(axle, view.delay + view.heading_delay).yaw + view.yaw
-    yaw = yaw + view.drifted(axle.time - axle.time[:1])
+    since = axle.time - axle.time[:1]
+    seen = delayed(axle, view.late(since))
+    yaw = delayed(axle, view.late(since) + view.heading_delay).yaw + view.yaw
+    yaw = yaw + view.drifted(since)
     dx, dy = _turned(view.ahead, view.left, seen.yaw)
     point = Path(driven.time, seen.x + dx, seen.y + dy, yaw, carried(seen.covariance, dx, dy))
     point = _scaled(point, view.scale)
@@ -84,13 +85,13 @@ def mirrored(path: Path) -> Path:
     return Path(path.time, path.x, -path.y, -path.yaw, flipped)
 
 
-def delayed(path: Path, delay: float) -> Path:
-    """Pose of the robot `delay` [s] earlier, at every time.
+def delayed(path: Path, delay: float | Floats) -> Path:
+    """Pose of the robot `delay` [s] earlier, at every time; one for all, or of shape (n,).
 
     Between two rows the robot moves along the arc of a constant twist. The covariance is that of
     the previous row.
     """
-    if delay == 0.0 or path.time.size < 2:
+    if not np.any(delay) or path.time.size < 2:
         return path
     time = np.maximum.accumulate(path.time)
     at = np.clip(path.time - delay, time[0], time[-1])

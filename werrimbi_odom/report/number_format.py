@@ -96,6 +96,15 @@ def quantity(value: float, std: float, unit: str) -> str:
     return f"{text} {small}".rstrip() + angle
 
 
+def each_its_own(values: Sequence[float], unit: str) -> str:
+    """What a parameter is that each drive has anew: the range of its `values`, if there are any."""
+    if not values:
+        return "another one in each drive"
+    rounded = [float(f"{value:.2g}") for value in (min(values), max(values))]
+    low, high = (quantity(value, math.nan, unit) for value in rounded)
+    return f"another one in each drive, from {low} to {high}"
+
+
 def chance_words(p_value: float | None) -> str:
     """A p-value in words; None if it was not tested."""
     if p_value is None:

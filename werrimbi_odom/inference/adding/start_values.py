@@ -96,8 +96,8 @@ def drives_of(prepared: PreparedRuns, robot: Robot, options: EvaluationOptions) 
     skipped = list(at_edges(runs))
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
-            stamps = every.measured.time + every.delay
-            wanted = runs[index].measured.time + runs[index].delay
+            stamps = every.measured.time + every.record.delay
+            wanted = runs[index].measured.time + runs[index].record.delay
             nodes = np.searchsorted(0.5 * (stamps[1:] + stamps[:-1]), wanted)
             skipped[index] |= jumped_legs(jumps, nodes, options.reference_kind)
     return FitDrives(concatenated(runs), tuple(skipped), with_stated_noise(options, runs))

@@ -70,7 +70,9 @@ def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Pa
     first = diagnosis.rounds[0].before
     if not found and first is not final:
         found = _beside(diagnosis, first, diagnosis.rounds[0].dependences, effects)
-    return found
+    # What an effect has anew in each drive is no change.
+    anew = {applied.effect.extends for applied in final.point.model.robot.effects}
+    return tuple(each for each in found if each.group not in anew)
 
 
 def _beside(

@@ -36,9 +36,12 @@ def rivals_of_held(
 ) -> dict[str, tuple[str, ...]]:
     """Effects that explain the drives as well as an effect that the file holds, by its name."""
     found = {}
+    extended = {applied.effect.extends for applied in fit.point.model.robot.effects}
     for applied in fit.point.model.robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED or base_name(applied.effect):
             continue  # sizes are in every fit
+        if applied.name in extended:
+            continue  # the other holds all of it
         rivals = _rivals(runs, fit, effects, given, applied.effect)
         if rivals:
             found[applied.name] = rivals
@@ -52,7 +55,9 @@ def _rivals(
     mine, bare = f"{held.name}.", fit.point.model.without_effect(held.name)
     point, others = replace(fit.point, model=bare), bare.robot.effects
     numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
-    library = [held, *(effect for effect in effects if effect.name != held.name)]
+    # What extends the held effect holds it.
+    own = {effect.name for effect in effects if held.name in (effect.name, effect.extends)}
+    library = [held, *(effect for effect in effects if effect.name not in own)]
     tried = candidates(library, {item.name for item in others}, runs.channels, len(runs.runs))
     ordered = best_of_each(scores(runs, point, (*CALIBRATION, *numbers), tried))
     gains = {score.candidate.name: score.gain for score in ordered}

@@ -40,6 +40,8 @@ class Value:
     """Whether it is a length or a threshold of the law, which has no null value."""
     determined: bool = True
     """Whether the drives determine it; otherwise its fitted value means nothing."""
+    of_runs: tuple[float, ...] = ()
+    """Value in each fitted drive, of a per-run parameter that has a null value: no phase."""
 
     @property
     def reported(self) -> bool:
@@ -85,6 +87,9 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             per_run,
             bool(item.tries),
             not untold and is_determined(item, float(applied.values[parameter]), std),
+            tuple(own[f"{name}.{parameter}"] for own in model.own)
+            if per_run and applied.effect.has_null(parameter)
+            else (),
         )
     return found
 

@@ -13,7 +13,12 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
+    Fitted,
+    effect_of,
+    extension_p_value,
+    fitted,
+)
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.candidate_starts import (
     looked_for,
@@ -166,7 +171,7 @@ def search_round(
     cheapest: dict[str, Fitted] = {}
     for fit in sorted(tried, key=lambda fit: fit.total):
         cheapest.setdefault(fit.names[-1], fit)
-    tried = list(cheapest.values())
+    tried = without_nested(list(cheapest.values()))
     return Round(
         before,
         tuple(ordered),
@@ -197,6 +202,21 @@ def _scores_in_place_of_sizes(
     numbers = (*before.numbers, *point.model.nuisance_parameters)
     best = best_of_each(scores(runs, point, numbers, looked_at))
     return {score.candidate.name: score for score in best}
+
+
+def without_nested(tried: Sequence[Fitted]) -> list[Fitted]:
+    """Of an effect and one that extends it, the one that the data ask for.
+
+    Nested models are no rivals: both hold. The wider is taken where what it has beyond the other is
+    beyond chance, whatever both explain together; beside the other, in a model that holds it, too.
+    """
+    kept = list(tried)
+    for wider in tried:
+        if extended := effect_of(wider.point, wider.names[-1]).extends:
+            needed = extension_p_value(wider) < rules.SURE
+            needless = extended if needed else wider.names[-1]
+            kept = [fit for fit in kept if fit.names[-1] != needless]
+    return kept
 
 
 def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:

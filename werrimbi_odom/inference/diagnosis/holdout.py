@@ -159,7 +159,10 @@ def begin(
     if (sides[0], sides[1]) != (fitted, held):
         set_up = set_up_of(sides[0])
         judge = judge_of(sides[0], sides[1], given, options, set_up.on_its_clock(given))
-    return Begun(judge, set_up, otherwise)
+    # What an effect of the file has anew in each drive is no mistake.
+    anew = {applied.effect.extends for applied in robot.effects}
+    told = tuple(each for each in set_up.findings if each.effect not in anew)
+    return Begun(judge, replace(set_up, findings=told), otherwise)
 
 
 def _refuse_standing(runs: Sequence[Run]) -> None:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.size_statistics import (
@@ -23,6 +24,7 @@ from werrimbi_odom.inference.diagnosis.size_statistics import (
     freedom_of_sizes,
     variance_inflation_of_sizes,
 )
+from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.inference.fitting.clusters import widening
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model
@@ -39,6 +41,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
 from werrimbi_odom.inference.set_up.factors import is_ordinary
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -259,18 +262,37 @@ def grain_of(design: Design, robot: Robot) -> Floats:
 
 def wald_statistic(name: str, design: Design, covariance: Floats, point: Point) -> float:
     """Rise of the cost without an effect, by the curvature at the fit (Wald statistic)."""
+    effect = effect_of(point, name)
+    freed = [key for key in effect.parameters if effect.has_null(key)]
+    return _wald(effect, freed, design, covariance, point)[0]
+
+
+def extension_p_value(fit: Fitted) -> float:
+    """P-value of what the newest effect of a model has beyond the one that it extends (Wald)."""
+    effect = effect_of(fit.point, fit.names[-1])
+    nested = find(effect.extends).parameters
+    freed = [key for key in effect.parameters if key not in nested]
+    rise, degrees = _wald(effect, freed, fit.design, fit.covariance, fit.point)
+    return fisher_survival(rise / max(degrees, 1), max(degrees, 1), fit.spare)
+
+
+def effect_of(point: Point, name: str) -> Effect:
+    """Effect of a model, by its name."""
+    return next(item.effect for item in point.model.robot.effects if item.name == name)
+
+
+def _wald(
+    effect: Effect, freed: Sequence[str], design: Design, covariance: Floats, point: Point
+) -> tuple[float, int]:
+    """Wald statistic of some parameters of an effect being null, and their number in all runs."""
     chosen, away = [], []
     for index, (number, run) in enumerate(design.columns):
-        effect, _, parameter = number.name.rpartition(".")
-        if effect != name:
-            continue
-        applied = next(item for item in point.model.robot.effects if item.name == name)
-        if not applied.effect.has_null(parameter):
-            continue
-        chosen.append(index)
-        away.append(point.model.value(number, max(run, 0)) - applied.effect.nulls[parameter])
+        name, _, parameter = number.name.rpartition(".")
+        if name == effect.name and parameter in freed:
+            chosen.append(index)
+            away.append(point.model.value(number, max(run, 0)) - effect.nulls[parameter])
     if not chosen:
-        return 0.0
+        return 0.0, 0
     spread = covariance[np.ix_(chosen, chosen)]
     values = np.array(away)
-    return float(values @ np.linalg.pinv(spread, hermitian=True) @ values)
+    return float(values @ np.linalg.pinv(spread, hermitian=True) @ values), len(chosen)

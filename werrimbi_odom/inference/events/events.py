@@ -235,11 +235,13 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     weight = np.abs(_fitted(steps)[group, channel])
     seen = float(np.sum(weight * middle) / np.sum(weight))
     own = runs.runs[run]
+    stamp = seen + own.record.delay
+    view = view_of(side.point.model.of_run(run).effects)
     return Event(
         side.paths[run],
         side.held_out,
-        seen + own.record.delay - view_of(side.point.model.robot.effects).delay,
-        seen + own.record.delay,
+        stamp - view.late(stamp - own.counters.time[0]),
+        stamp,
         float(own.counters.time[0]),
         name,
         size,

@@ -59,9 +59,9 @@ class Caches:
         """Result of `work`, cached by key."""
         return _remembered(self._known, key, work, MODELS)
 
-    def delayed(self, delay: float, work: Callable[[], Found]) -> Found:
-        """The runs by another reference delay [s]."""
-        return _remembered(self._delayed, delay, work, DELAYS)
+    def delayed(self, clocks: Hashable, work: Callable[[], Found]) -> Found:
+        """The runs by another clock of the reference."""
+        return _remembered(self._delayed, clocks, work, DELAYS)
 
     def drive(self, robot: Hashable, work: Callable[[], Found]) -> Found:
         """Inputs of the effects for a robot."""

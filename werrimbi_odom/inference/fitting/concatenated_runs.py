@@ -24,6 +24,7 @@ from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
@@ -31,6 +32,8 @@ WORTH_COPIES = range(30_000, 250_000)
 """Numbers of steps for which whole fits are worth threads and caches of their own: an hour at 50 Hz
 takes 1.4 GB so, and 1.0 GB without."""
 Found = TypeVar("Found")
+Clocks = tuple[tuple[float, float], ...]
+"""Delay [s] and clock drift [s/s] of the reference in each run."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -153,16 +156,23 @@ class Concatenated:
         sums = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(sums[self.end] - sums[self.begin])
 
-    def delayed(self, delay: float) -> Concatenated:
-        """Same legs with a reference delay: what it stamps t was seen at t - `delay` [s]."""
-        if all(delay == run.delay for run in self.runs):
-            return self
-        return self.cache.delayed(delay, lambda: self._delayed(delay))
+    def seen_through(self, view: View) -> Concatenated:
+        """Same legs with stamps as late as `view` says, whose values may be arrays (m,)."""
+        first = self.legs[:-1]
+        late = np.broadcast_arrays(view.delay, view.clock_drift, np.zeros(self.count))
+        clocks = tuple(zip(late[0][first].tolist(), late[1][first].tolist(), strict=True))
+        return self._by_clocks(clocks)
 
-    def _delayed(self, delay: float) -> Concatenated:
+    def _by_clocks(self, clocks: Clocks) -> Concatenated:
+        if clocks == tuple((run.delay, run.clock_drift) for run in self.runs):
+            return self
+        return self.cache.delayed(clocks, lambda: self._delayed(clocks))
+
+    def _delayed(self, clocks: Clocks) -> Concatenated:
         if self.finer is None:
-            return concatenated([delayed(run, delay) for run in self.runs])
-        finer = self.finer.delayed(delay)
+            both = zip(self.runs, clocks, strict=True)
+            return concatenated([delayed(run, *clock) for run, clock in both])
+        finer = self.finer._by_clocks(clocks)
         runs = zip(finer.runs, self.runs, strict=True)
         return concatenated([joined(fine, run.rows) for fine, run in runs], finer)
 

@@ -76,7 +76,7 @@ def predicted_legs(model: Model, runs: Concatenated, looked_at: Robot | None = N
         Robot whose travel is the input of the effects, where that is cached and close enough.
     """
     view = extrinsics_of(model, runs)
-    runs = runs.delayed(view.delay)
+    runs = runs.seen_through(view)
     robot = model.laid_out(runs.steps)
     path = _path(robot, runs, view, model.start_yaws, looked_at)
     return _shown(path, runs, view, model.drifts)
@@ -85,7 +85,7 @@ def predicted_legs(model: Model, runs: Concatenated, looked_at: Robot | None = N
 def predicted_on_path(model: Model, runs: Concatenated) -> Floats:
     """As `predicted_legs`, by a path that is kept: for a model whose noise is asked for next."""
     view = extrinsics_of(model, runs)
-    runs = runs.delayed(view.delay)
+    runs = runs.seen_through(view)
     return _shown(path_of(model, runs), runs, view, model.drifts)
 
 
@@ -105,7 +105,7 @@ def predict_all(model: Model, runs: Concatenated) -> Prediction:
 
 def _predicted(model: Model, runs: Concatenated) -> Prediction:
     view = extrinsics_of(model, runs)
-    runs = runs.delayed(view.delay)
+    runs = runs.seen_through(view)
     path = path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
@@ -134,7 +134,7 @@ def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
 def extrinsics_of(model: Model, runs: Concatenated) -> View:
     """Extrinsics of the reference; per-run values are arrays over the legs.
 
-    The only per-run value can be the wander of the heading.
+    Per-run values can be the wander of the heading, and what its clock does.
     """
     return view_of(model.laid_out(runs.legs).effects)
 

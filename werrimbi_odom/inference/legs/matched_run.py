@@ -23,6 +23,7 @@ from werrimbi_odom.inference.legs.count_interpolation import Counters, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, touched
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.reference_view import View
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +62,7 @@ class MatchedRun:
     gap: NDArray[np.bool_]
     """Legs that are gaps, as they overlap an excluded stretch; shape (m,)."""
     delay: float
-    """Delay of the reference: what it stamps t was seen at t - delay [s]."""
+    """Delay of the reference: what it stamps t was seen at t - delay, but for `clock_drift` [s]."""
     time: Floats
     """Stamps of the nodes, shape (n + 1,), [s]."""
     left: Floats
@@ -72,6 +73,8 @@ class MatchedRun:
     """Nodes at which legs begin and end, shape (m + 1,)."""
     channels: Mapping[str, Span[Floats]]
     """Extra measured channels, at the start and end of each step."""
+    clock_drift: float = 0.0
+    """Growth of that delay along the drive [s/s] (`View.late`)."""
 
     @property
     def name(self) -> str:
@@ -143,16 +146,24 @@ def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
     )
 
 
-def delayed(run: MatchedRun, delay: float) -> MatchedRun:
-    """Same legs with a reference delay: what it stamps t was seen at t - `delay` [s]."""
-    if delay == run.delay:
+def delayed(run: MatchedRun, delay: float, clock_drift: float = 0.0) -> MatchedRun:
+    """Same legs with another delay of the reference [s], and another growth of it [s/s]."""
+    if (delay, clock_drift) == (run.delay, run.clock_drift):
         return run
     counters = run.counters
-    seen = run.measured.time + (run.record.delay - delay)
-    seen = np.clip(seen, counters.time[0], counters.time[-1])
+    stamps = run.measured.time + run.record.delay
+    late = View(delay=delay, clock_drift=clock_drift).late(stamps - counters.time[0])
+    seen = np.clip(stamps - late, counters.time[0], counters.time[-1])
     time, left, right, ends, channels = nodes_at(counters, np.maximum.accumulate(seen))
     return replace(
-        run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
+        run,
+        delay=delay,
+        clock_drift=clock_drift,
+        time=time,
+        left=left,
+        right=right,
+        ends=ends,
+        channels=channels,
     )
 
 

@@ -14,7 +14,7 @@ from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_wor
 from werrimbi_odom.report.diagnosis.remarks import little_words
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.number_format import listed, quantity, scaled_with_std
+from werrimbi_odom.report.number_format import each_its_own, listed, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import (
     either_side,
     jumps_words,
@@ -82,7 +82,8 @@ def value_told(item: FittedParameter) -> str:
         usual = quantity(item.declared.null, math.nan, item.declared.unit)
         return f"not determined by these drives, left at {usual}"
     if item.value is None:
-        return "another one in each drive"
+        own = () if item.declared.unit == "rad" else item.of_runs
+        return each_its_own(own, item.declared.unit)
     std = math.nan if item.std is None else item.std
     return quantity(item.value, std, item.declared.unit)
 

@@ -120,6 +120,7 @@ def _values(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
         parameter: {
             **(picked(value, "value std") if value.determined else {"value": None, "std": None}),
             **picked(value, "unit per_run"),
+            **({"of_runs": list(value.of_runs)} if value.of_runs else {}),
         }
         for parameter, value in values_of(diagnosis, name).items()
     }

@@ -189,6 +189,9 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "oval_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
     "left_tread_bump": lambda values, robot: _bump(values["height"]),
     "right_tread_bump": lambda values, robot: _bump(values["height"]),
+    "reference_clock_drift": lambda values, robot: (
+        f"{1000.0 * 120.0 * values['rate']:.0f} ms after two minutes"
+    ),
     "reference_gyro_drift": lambda values, robot: (
         f"{_angle(0.5 * values['rate'] * 120.0**2)} after two minutes' rest"
     ),

@@ -24,7 +24,14 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed, quantity
+from werrimbi_odom.report.number_format import (
+    capital,
+    chance_words,
+    each_its_own,
+    error_words,
+    listed,
+    quantity,
+)
 from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
@@ -70,9 +77,13 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     every = values_of(diagnosis, name)
     if not every:
         return []
+    others = [diagnosis.effect_named(other) for other in diagnosis.found]
+    wider = [effect.name for effect in others if effect is not None and effect.extends == name]
+    if wider and not any(value.reported for value in every.values()):
+        return [f"How large: another one in each drive, see {wider[0]}."]
     values = {key: value for key, value in every.items() if not _unseen(value)} or every
     parts = [
-        f"{parameter} is another one in each drive ({value.says})"
+        f"{parameter} is {each_its_own(value.of_runs, value.unit)} ({value.says})"
         if value.per_run
         else f"{parameter} {'=' if value.determined else 'is'} {_value(value)} ({value.says})"
         for parameter, value in values.items()
@@ -153,11 +164,14 @@ def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
     return ", ".join(
         f"{parameter} {_value(value)}"
         for parameter, value in values.items()
-        if value.reported and not (believed and value.std > abs(value.value - value.null))
+        if value.of_runs
+        or (value.reported and not (believed and value.std > abs(value.value - value.null)))
     )
 
 
 def _value(value: Value) -> str:
+    if value.of_runs:
+        return each_its_own(value.of_runs, value.unit)
     if not value.determined:
         return "not determined by these drives"
     return quantity(value.value, value.std, value.unit)

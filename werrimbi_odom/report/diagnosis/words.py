@@ -88,7 +88,10 @@ def _changes(advised: AdvisedDiagnosis) -> list[str]:
     now = f"For what it is now, ask again with the drives from {drives[last]} on alone."
     if all(change.group == "reference_delay" for change in advised.changes):
         what, one = "The reference's clock", "one clock, the mean of all"
-        now = "Shift the reference of each drive by its own delay, or record both with one clock."
+        now = (
+            "Shift the reference of each drive by its own delay, record both with one clock, or "
+            "add reference_clock_drift, which has a delay of its own in each drive."
+        )
     return [
         f"{what} was not the same in all of these drives.",
         *(f"- {words}" for words in changes),

@@ -22,7 +22,14 @@ from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .hidden_effect import Peculiarity, Rng
 from .knocks import Knock, ReferenceJump
-from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
+from .mount import (
+    AskewAxle,
+    DriftingClock,
+    ReferenceDelay,
+    ReferenceMirrored,
+    ReferenceMount,
+    WarmingGyro,
+)
 from .skid import skid_steer
 from .tyres import LoadTransfer, RadiusFollowsPayload, RadiusFollowsTemperature, TyreSquash
 from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side, TreadBump
@@ -178,6 +185,8 @@ CATALOGUE: tuple[Entry, ...] = (
             "reference's stamps late"),
     Entry("reference_heading_delay", lambda s, rng: ReferenceDelay(heading_delay=s), "s", 0.01,
             0.15, "reference's yaw later than its position", signed=False),
+    Entry("reference_clock_drift", lambda s, rng: DriftingClock(s), "s/s", 5e-4, 5e-3,
+            "what the reference's clock gains on the encoders' in a second"),
     Entry("encoder_skew", lambda s, rng: EncoderSkew(s), "s", 0.002, 0.02,
             "right counter read later than the left one"),
     Entry("oval_left_wheel", lambda s, rng: OvalWheel("left", s), "m", 6e-4, 2.5e-3,

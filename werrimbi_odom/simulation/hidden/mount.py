@@ -63,6 +63,26 @@ class ReferenceDelay(Peculiarity):
 
 
 @dataclass(frozen=True)
+class DriftingClock(Peculiarity):
+    """The reference is recorded by another computer, whose clock runs at another rate.
+
+    The clocks are set to one another at some time before each drive, so the delay as it begins is
+    another one in each. The rate changes little, with the temperature of the quartz.
+    """
+
+    rate: float
+    """Mean of what its clock gains in a second [s/s]."""
+    unset: float = 100.0
+    """Longest time from when the clocks were set to when a drive begins [s]."""
+
+    def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
+        """Stamp the same measurements by the other clock."""
+        rate = self.rate * float(rng.uniform(0.8, 1.2))
+        since = recording.reference_t_s + self.unset * float(rng.uniform())
+        return replace(recording, reference_t_s=recording.reference_t_s + rate * since)
+
+
+@dataclass(frozen=True)
 class WarmingGyro(Peculiarity):
     """The reference's heading is from a gyro, and its temperature changes in each drive.
 
