@@ -53,8 +53,8 @@ def sweep_of(
     time : float
         Time of the first beam [s].
     ranges : ndarray, shape (n,)
-        Ranges [m]; 0, infinity, NaN and values at or beyond the lidar's limits are no echoes. Nor is
-        the largest if several beams give it to the last digit: some drivers write a range for
+        Ranges [m]; 0, infinity, NaN and values at or beyond the lidar's limits are no echoes. Nor
+        is the largest if several beams give it to the last digit: some drivers write a range for
         beams without echo, which would be a round wall that goes with the robot.
     angles : ndarray, shape (n,)
         Directions of the beams in equal steps [rad].
