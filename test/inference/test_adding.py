@@ -19,7 +19,10 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.adding.objection import Worth, objection
+from werrimbi_odom.inference.adding.start_values import drives_of
+from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.search import SetUp
@@ -91,6 +94,20 @@ def test_words_and_json_tell_the_same(creep: Added) -> None:
     assert max(map(len, words.splitlines())) <= 80
     assert f"{1e3 * figures['holdout']['after']:.2f} mm" in words
     assert figures["parameters"]["creep"]["unit"] == "s"
+
+
+def test_legs_on_which_the_reference_jumped_are_fitted_as_in_a_diagnosis() -> None:
+    """One question has one answer: `add` left out spins of a TurtleBot3, and `diagnose` did not."""
+    (run,) = runs_of(PLAIN, (3,), 30)
+    assert run.reference is not None
+    time, x = run.reference.time, run.reference.x
+    jumped = replace(run, reference=replace(run.reference, x=x + 0.1 * (time > 0.4 * time[-1])))
+    prepared = prepare([jumped], PLAIN)
+    assert prepared.groups[0].jumps[0].any()
+    drives = drives_of(prepared, PLAIN, prepared.options)
+    fit = drives.fit(drives.begin(PLAIN)[0], (), (), PLAIN)
+    other = fit_calibration(drives.laid, PLAIN, drives.options)
+    assert fit.cost == pytest.approx(other.cost, abs=1e-3)
 
 
 def test_what_is_not_there_is_objected_to() -> None:

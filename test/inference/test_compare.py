@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import run_by
+from test.model.drives import ROBOT
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -317,6 +319,21 @@ def test_fixes_at_fifty_hertz_that_scatter_by_a_third_of_their_spacing_are_no_ju
     assert 1 <= lost.main.all.outliers <= clean.main.all.outliers + 1
     spiked = compare([shifted(run, 0.6, 0.3, last=2)], RIGHT)
     assert spiked.main.all.outliers <= clean.main.all.outliers + 1
+
+
+def test_noise_that_keeps_to_an_axis_of_the_room_is_no_jump_where_the_robot_turns() -> None:
+    """Scans between two walls that are far apart: sideways noise of a robot that has turned."""
+    random = np.random.default_rng(2)
+    time = np.arange(0.0, 44.0, 0.1)
+    speed, turning = np.where(time < 40.0, 0.2, 0.0), np.where(time < 40.0, 0.0, 0.4)
+    run = run_by(ROBOT, np.repeat(speed, 2), np.repeat(turning, 2))
+    assert run.reference is not None
+    seen = run.reference.time
+    along, across, askew = random.normal(size=(3, seen.size)) * [[3e-3], [1e-4], [2e-3]]
+    x = np.minimum(0.2 * seen, run.reference.x[-1]) + along
+    yaw = 0.4 * np.maximum(seen - 40.0, 0.0) + askew
+    (group,) = prepare([with_reference(run, x=x, y=across, yaw=yaw)], ROBOT).groups
+    assert not group.jumps[0].any()
 
 
 def test_before_and_after_are_over_the_same_legs(runs: tuple[Run, ...]) -> None:

@@ -149,6 +149,20 @@ def test_nobody_holds_a_robot_whose_heading_follows_its_wheels(seed: int, share:
     assert found == ()
 
 
+@pytest.mark.parametrize("share", [0.4, 0.55])
+def test_a_hand_that_lets_a_spinning_robot_turn_by_half_holds_it(share: float) -> None:
+    """As that of a real TurtleBot3. How far it turns is itself in doubt: no slip does as much."""
+    time = np.arange(0.0, 50.0, 0.05)
+    turning = np.where(time < 14.0, 0.0, -0.4)
+    speed = np.where((time >= 3.0) & (time < 13.0), 0.2, 0.0)
+    free = run_by(ROBOT, speed, turning)
+    slowed = np.where((time > 30.0) & (time < 34.0), share * turning, turning)
+    hand = run_by(ROBOT, speed, slowed)
+    begin, end, why = span(replace(free, reference=hand.reference))
+    assert (begin, end) == pytest.approx((30.0, 34.0), abs=NEAR)
+    assert why == {"held"}
+
+
 def test_a_robot_that_is_held_on_a_line_and_turns_when_let_go_is_found() -> None:
     """All that it turns is in windows at the end, half driven: it says nothing of the hold."""
     time = 0.05 * np.arange(1200)

@@ -148,7 +148,7 @@ def test_a_jump_is_left_out_of_a_fit_by_another_clock(delay: float) -> None:
     x = run.reference.x + 0.3 * (run.reference.time >= jump)
     run = replace(run, reference=replace(run.reference, x=x))
     apart = replace(ROBOT, effects=(find("reference_delay").using(delay=delay),))
-    options = EvaluationOptions(leg=0.5)
+    options = EvaluationOptions(leg=0.5, reference_kind="local_map")
     for first, then in ((ROBOT, apart), (apart, ROBOT)):
         drives = drives_of(prepare([run], first, options), then, options)
         (legs,), (skipped,) = drives.laid.runs, drives.skipped

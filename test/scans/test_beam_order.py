@@ -36,12 +36,19 @@ def rightly_matched(lidar: Lidar) -> ScanPath:
 
 def backwards(sweeps: Iterable[Sweep]) -> list[Sweep]:
     """As a driver states them that fills its arrays from the end."""
-    return [replace(sweep, duration=-sweep.duration) for sweep in sweeps]
+    return [replace(sweep, share=-sweep.share) for sweep in sweeps]
+
+
+def backwards_in_time(sweeps: Iterable[Sweep]) -> list[Sweep]:
+    """As a driver states them that fills its arrays from the end, and says so."""
+    return [replace(sweep, duration=-sweep.duration) for sweep in backwards(sweeps)]
 
 
 def at_once(sweeps: Iterable[Sweep]) -> list[Sweep]:
-    """As a driver states them that knows of no time between beams."""
-    return [replace(sweep, duration=0.0) for sweep in sweeps]
+    """As a driver states them that knows of no time between beams: all at that of the first."""
+    return [
+        replace(sweep, time=sweep.time - 0.5 * sweep.duration, duration=0.0) for sweep in sweeps
+    ]
 
 
 def matched(sweeps: Iterable[Sweep], matcher: AnyOrder | ScanMatcher) -> AnyOrder | ScanMatcher:
@@ -60,6 +67,7 @@ def matched(sweeps: Iterable[Sweep], matcher: AnyOrder | ScanMatcher) -> AnyOrde
     [
         pytest.param(list, "stated", marks=pytest.mark.evidence),
         (backwards, "last to first"),
+        pytest.param(backwards_in_time, "stated", marks=pytest.mark.evidence),
         (at_once, "first to last"),
     ],
 )
@@ -72,6 +80,7 @@ def test_the_walls_tell_which_way(lidar: Lidar, stated: object, order: Order) ->
     found = Matched(path, sweeps.truth[rows], sweeps)
     # How long a turn takes is read off the stamps, to a rounding error, which must not grow.
     np.testing.assert_allclose(path.poses, rightly_matched(lidar).poses, atol=1e-9)
+    np.testing.assert_allclose(path.time, rightly_matched(lidar).time, atol=1e-6)
     assert max(rms(found.legs()[0])) < (2.5 if lidar is not POOR else 5.0)
 
 

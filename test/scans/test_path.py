@@ -14,7 +14,7 @@ from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, AxlePose, TruePath
-from werrimbi_odom.simulation.lidar import Lidar, Room
+from werrimbi_odom.simulation.lidar import Lidar, Room, scanned
 
 
 @pytest.mark.parametrize("beams", [218, pytest.param(681, marks=pytest.mark.evidence)])
@@ -52,6 +52,32 @@ def test_starts_and_stops_are_no_noise_of_the_lidar() -> None:
     found = matched(hops(16.0), rooms.living_room(), Lidar())
     assert found.path.common[0] < 1.5e-3
     assert 0.7 < found.steps()[1].mean() < 1.5
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        *(pytest.param(each, marks=pytest.mark.evidence) for each in (np.inf, np.nan, 0.0, -1.0)),
+        4.0,
+        3.95,
+        pytest.param(5.0, marks=pytest.mark.evidence),
+    ],
+)
+def test_whatever_is_written_for_beams_without_an_echo_they_have_none(written: float) -> None:
+    """A fifth of the beams. At the lidar's own range they were a wall that goes with the robot.
+
+    Legs erred by 16 mm, with a NEES of 15, and by half a metre in a larger room.
+    """
+    lidar = Lidar(farthest=4.0 if written != 3.95 else 3.9)
+    room = Room(1.2 * rooms.living_room().walls)
+    sweeps = scanned(in_circles(20.0), room, lidar, seed=3)
+    none = ~np.isfinite(sweeps.ranges)
+    assert 0.1 < none.mean() < 0.3
+    ranges = np.where(none, written, sweeps.ranges)
+    found = of_sweeps(replace(sweeps, ranges=ranges), replace(lidar, farthest=4.0))
+    errors, nees = found.legs()
+    assert rms(errors)[0] < 4.0
+    assert nees.mean() < 1.6
 
 
 def turning_hard(path: TruePath, time: np.ndarray) -> np.ndarray:

@@ -60,7 +60,7 @@ class LidarCollector:
         ranges = np.asarray(scan.ranges, dtype=np.float64)
         angles = float(scan.angle_min) + float(scan.angle_increment) * np.arange(float(ranges.size))
         interval = float(scan.time_increment)
-        if not 0.0 <= interval * ranges.size <= LONGEST_SWEEP:
+        if not abs(interval) * ranges.size <= LONGEST_SWEEP:  # nor NaN
             interval = 0.0
         limits = float(scan.range_min), float(scan.range_max)
         if not limits[0] < limits[1]:

@@ -43,12 +43,13 @@ class AnyOrder:
         """Take a scan, as `sweep_of` reads it from its message."""
         if self._others is None:
             self.at_once = sweep.duration == 0.0
-            ways: tuple[Order, ...] = ("first to last",) if self.at_once else ()
-            self._others = {way: ScanMatcher() for way in (*ways, "last to first")}
+            ways: list[Order] = ["first to last"] if sweep.duration <= 0.0 else []
+            ways += ["last to first"] if sweep.duration >= 0.0 else []
+            self._others = {way: ScanMatcher() for way in ways}
         if self.at_once and 0.0 < sweep.time - self._last <= LONGEST_SWEEP:
             self._intervals.append(sweep.time - self._last)
         self._last = sweep.time
-        turn = float(np.median(self._intervals)) if self._intervals else USUAL
+        turn = self._turn
         self._matcher.take(_seen(sweep, self.order, turn))
         for order, other in self._others.items():
             other.take(_seen(sweep, order, turn))
@@ -56,8 +57,19 @@ class AnyOrder:
             self._decide(self._others)
 
     def path(self) -> ScanPath:
-        """The path of all scans taken; call it last."""
-        return self._matcher.path()
+        """The path of all scans taken; call it last.
+
+        The stamp is that of the first beam. If the others are not simultaneous with it, although
+        the messages say so, the middle of the turn is half a turn later.
+        """
+        path = self._matcher.path()
+        if not self.at_once or self.order == "stated":
+            return path
+        return replace(path, time=path.time + 0.5 * self._turn)
+
+    @property
+    def _turn(self) -> float:
+        return float(np.median(self._intervals)) if self._intervals else USUAL
 
     def _decide(self, others: dict[Order, ScanMatcher]) -> None:
         """Decide by a sign test: in how many scans the echoes lie nearer to the walls."""
@@ -81,4 +93,4 @@ def _seen(sweep: Sweep, order: Order, turn: float) -> Sweep:
     if order == "stated":
         return sweep
     sign = -1.0 if order == "last to first" else 1.0
-    return replace(sweep, duration=sign * (sweep.duration or turn))
+    return replace(sweep, duration=sign * (abs(sweep.duration) or turn))

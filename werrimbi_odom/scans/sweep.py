@@ -53,7 +53,9 @@ def sweep_of(
     time : float
         Time of the first beam [s].
     ranges : ndarray, shape (n,)
-        Ranges [m]; 0, infinity, NaN and values beyond the lidar's limits are no echoes.
+        Ranges [m]; 0, infinity, NaN and values at or beyond the lidar's limits are no echoes. Nor
+        is the largest if several beams give it to the last digit: some drivers write a range for
+        beams without echo, which would be a round wall that goes with the robot.
     angles : ndarray, shape (n,)
         Directions of the beams in equal steps [rad].
     beam_interval : float
@@ -62,7 +64,10 @@ def sweep_of(
         Range limits stated by the lidar [m].
     """
     with np.errstate(invalid="ignore"):
-        echo = np.isfinite(ranges) & (ranges > max(nearest, 0.0)) & (ranges <= farthest)
+        echo = np.isfinite(ranges) & (ranges > max(nearest, 0.0)) & (ranges < farthest)
+    largest = echo & (ranges == np.max(ranges, initial=0.0, where=echo))
+    if np.count_nonzero(largest) > 1:
+        echo &= ~largest
     number = np.flatnonzero(echo)
     distance, direction = ranges[number], angles[number]
     points = distance[:, None] * np.column_stack([np.cos(direction), np.sin(direction)])

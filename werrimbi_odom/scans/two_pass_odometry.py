@@ -58,7 +58,7 @@ class ScanPath:
     common: tuple[float, float]
     """What all echoes of a scan err together, standard deviations in `covariances` [m, rad]."""
     scans: int
-    """All that were given."""
+    """All that were given, those with one stamp counted once."""
     flags: dict[Flag, int]
     """How many matches were none, by reason."""
 
@@ -97,16 +97,16 @@ class ScanMatcher:
         the walls [m]."""
 
     def take(self, sweep: Sweep) -> None:
-        """Take a scan; one that is not later than the last is left out."""
-        self._scans += 1
+        """Take a scan; one that is not later than the last is none."""
         if self._last is not None:
             interval = sweep.time - self._last.time
             if interval <= 0.0:
-                return
+                return  # a message that came twice
             if interval > LONGEST_HOLE:
                 self._cut()
             else:
                 self._intervals.append(interval)
+        self._scans += 1
         usual = float(np.median(self._intervals)) if self._intervals else USUAL
         turns = 1 if self._last is None else max(round((sweep.time - self._last.time) / usual), 1)
         self._last = sweep

@@ -89,12 +89,14 @@ class Start:
 def drives_of(prepared: PreparedRuns, robot: Robot, options: EvaluationOptions) -> FitDrives:
     """Cut the drives of a fit by the travel of `robot`.
 
-    Its clock may be another than that of `prepared` (the delay as fitted, of drives that were cut
-    by the set-up's), so the reference's poses are found by its own stamps.
+    Legs on which the reference jumped are left out where `diagnose` does so: a pose whose error is
+    its own costs two legs and no more (`refit_to_rest`), and a place that is lost is an event. The
+    clock of `robot` may be another than that of `prepared` (the delay as fitted, of drives that
+    were cut by the set-up's), so the reference's poses are found by its own stamps.
     """
     runs = for_fit(prepared, robot)
     skipped = list(at_edges(runs))
-    for group in prepared.groups:
+    for group in prepared.groups if options.reference_kind != "absolute" else ():
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
             stamps = every.measured.time + every.record.delay
             wanted = runs[index].measured.time + runs[index].record.delay

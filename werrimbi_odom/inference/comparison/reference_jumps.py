@@ -54,6 +54,8 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     ) > rules.JUMP_RARE
     many = np.quantile(np.abs(left), 1.0 - rules.JUMP_RARE, axis=0) / rules.JUMP_RARE_SIGMAS
     scatter = np.where(often, np.maximum(many, scatter), scatter)
+    # A reference's noise has the axes of its room, the robot's turn: of two, the larger is of both.
+    scatter[:2] = scatter[:2].max()
     wrong = np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least)
     total = _windows(left, rules.JUMP_NEIGHBOURS, "constant").sum(axis=-1)
     stays = np.abs(total) > rules.JUMP_LASTS * np.abs(left)

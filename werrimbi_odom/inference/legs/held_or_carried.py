@@ -88,10 +88,12 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
                 by_ways, rules.NO_DRIVING_GOES * typical, rules.NO_DRIVING_WAY, turns=False
             )
         )
-    found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
+    doubted = [_stretches(each) for each in seen]
+    found = sorted(_reaching(stretch, seen) for each in doubted for stretch in each)
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     if by_turns is not None:
-        parts = [part for part in parts if part.why != "held" or not _follows(part, by_turns)]
+        slid = (part for part in parts if part.why == "held" and not _among(part, doubted[0]))
+        parts = sorted({*parts} - {part for part in slid if _follows(part, by_turns)})
     parts = _with_rests(parts, counters, robot)
     parts = [part if part.words == CARRIED else as_stuck(part, reference) for part in parts]
     if turns is not None and by_turns is None:  # to and fro on a line, carried in between
@@ -255,6 +257,10 @@ def _by_kind(begin: float, end: float, seen: Sequence[MeasuredMotion]) -> list[N
             stood = np.mean(rolled[one:other] <= still) > 0.5
             parts.append(NoDriving(*span, "carried", CARRIED if stood else BY_HAND))
     return parts
+
+
+def _among(part: NoDriving, stretches: Sequence[tuple[float, float]]) -> bool:
+    return any(begin < part.end and end > part.begin for begin, end in stretches)
 
 
 def _follows(part: NoDriving, turns: Agreement) -> bool:
