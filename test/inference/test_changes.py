@@ -13,7 +13,7 @@ import pytest
 from test.inference.driven import COMMON
 from test.recorded_robots import ROBOTS
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
@@ -169,6 +169,21 @@ def test_clocks_that_stand_otherwise_in_each_drive_are_told() -> None:
     assert {each.group for each in moved} == {"reference_delay"}
     levels = [moved[0].before, *(each.after for each in moved)]
     assert levels == pytest.approx(late, abs=0.004)
+
+
+def test_an_askew_mount_that_changed_is_told_by_the_one_name_that_the_file_has() -> None:
+    """Beside its twin its angle was 0.16 ± 0.13 rad before and 0.15 ± 0.13 rad after."""
+    runs = session(0.0, count=4)
+    for index in (2, 3):
+        seen = runs[index].reference
+        assert seen is not None
+        runs[index] = replace(runs[index], reference=replace(seen, yaw=seen.yaw + 6e-3))
+    crab = find("sideways_drift").using(angle=1e-3)
+    given = replace(BUILT.entered(), effects=(crab,))
+    (moved,) = changes_between(diagnose(runs, given, COMMON), COMMON)
+    assert (moved.what, moved.from_run) == ("sideways_drift.angle", "drive_2")
+    assert moved.after - moved.before == pytest.approx(-6e-3, abs=1e-3)
+    assert moved.after_std < 1e-3
 
 
 @pytest.mark.evidence

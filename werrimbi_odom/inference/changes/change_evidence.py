@@ -66,7 +66,11 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
         Dispersion: factor by which squared innovations are too large.
     """
     robot = point.model.robot
-    held = {name for item in robot.effects for name in (item.name, item.effect.extends)}
+    held = {
+        name
+        for item in robot.effects
+        for name in (item.name, item.effect.extends, *item.effect.twins)
+    }
     white, flat = design.flat()
     columns = {number.name: flat[:, n] for n, (number, run) in enumerate(design.columns) if run < 0}
     own = flat[:, [n for n, (_, run) in enumerate(design.columns) if run >= 0]]
