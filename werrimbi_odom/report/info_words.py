@@ -188,6 +188,7 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
             ("held", "was held"),
             ("carried", "was carried or turned by hand"),
             ("lost", "drove with a heading that is not known"),
+            ("silent", "moved unrecorded"),
         )
         if what in times
     ]
