@@ -67,7 +67,9 @@ def driven(
         if state[begin] == "stood" and (end - begin) * _GRID < rules.REST_LASTS:
             state[begin:end] = "drove"
     middle = 0.5 * (grid[1:] + grid[:-1])
-    for index in np.flatnonzero(gaps_in(counters.time, counters.way(robot, 1.0, rules.QUARTER_TURN))):
+    for index in np.flatnonzero(
+        gaps_in(counters.time, counters.way(robot, 1.0, rules.QUARTER_TURN))
+    ):
         begin, end = counters.time[index : index + 2]
         state[(middle > begin) & (middle < end)] = "silent"
     for part in by_hand(no_driving):
