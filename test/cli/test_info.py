@@ -233,6 +233,22 @@ def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:
     assert "Its headings turn by -1.1°/s while the wheels stand: a gyro's bias" in printed
 
 
+@pytest.mark.parametrize("with_joints", [False, True])
+def test_that_a_driver_s_heading_may_be_the_gyro_s_is_told(
+    tmp_path: Path, werrimbi: Werrimbi, with_joints: bool
+) -> None:
+    """Of wheels that are the driver's odometry alone; joint angles are the wheels' own."""
+    ros, run = Messages(), run_of(ROBOT, 1, 40)
+    seen = run.reference
+    assert seen is not None
+    sent = [*gyro(ros, run), *(joints(ros, run) if with_joints else [])]
+    for time, x, y, yaw in zip(seen.time, seen.x, seen.y, seen.yaw, strict=True):
+        sent.append(("/odom", stamp_of(time), ros.odometry(stamp_of(time), x, y, yaw)))
+    bag = ros.write(tmp_path / "bag", sorted(sent, key=lambda entry: entry[1]))
+    printed = werrimbi("info", bag).words
+    assert ("put the gyro's heading into /odom" in printed) is not with_joints
+
+
 def test_silences_between_tests_in_one_file_are_no_driving(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
