@@ -122,8 +122,9 @@ def _gyro_in_odometry(held: Held) -> Iterator[str]:
     ):
         yield (
             "Many drivers (TurtleBot3's, Kobuki's) put the gyro's heading into "
-            f"{held.wheels.name}. If this one does, the gyro is judged by itself: it always agrees, and shows nothing "
-            "of base and wheels. Joint angles or counters, recorded too, do."
+            f"{held.wheels.name}. If this one does, the gyro is judged by itself: it always "
+            "agrees, and shows nothing of base and wheels. Joint angles or counters, recorded too, "
+            "do."
         )
 
 
