@@ -233,6 +233,35 @@ def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:
     assert "Its headings turn by -1.1°/s while the wheels stand: a gyro's bias" in printed
 
 
+@pytest.mark.parametrize("with_joints", [False, True])
+def test_that_a_driver_s_heading_may_be_the_gyro_s_is_told(
+    tmp_path: Path, werrimbi: Werrimbi, with_joints: bool
+) -> None:
+    """Of wheels that are the driver's odometry alone; joint angles are the wheels' own."""
+    ros, run = Messages(), run_of(ROBOT, 1, 40)
+    seen = run.reference
+    assert seen is not None
+    sent = [*gyro(ros, run), *(joints(ros, run) if with_joints else [])]
+    for time, x, y, yaw in zip(seen.time, seen.x, seen.y, seen.yaw, strict=True):
+        sent.append(("/odom", stamp_of(time), ros.odometry(stamp_of(time), x, y, yaw)))
+    bag = ros.write(tmp_path / "bag", sorted(sent, key=lambda entry: entry[1]))
+    printed = werrimbi("info", bag).words
+    assert ("put the gyro's heading into /odom" in printed) is not with_joints
+
+
+def test_silences_between_tests_in_one_file_are_no_driving(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """Two tests of 6 s, and the robot set back by hand, or driven, for a minute in between."""
+    time = np.concatenate([0.05 * np.arange(120), 66.0 + 0.05 * np.arange(120)])
+    counts = np.concatenate([40.0 * np.arange(120), 3000.0 + 40.0 * np.arange(120)])
+    rows = [f"{at:.2f},{each:.0f},{each:.0f}" for at, each in zip(time, counts, strict=True)]
+    (tmp_path / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + "\n".join(rows))
+    robot = Path(wo.__file__).parent / "recordings" / "square" / "robot.yaml"
+    printed = werrimbi("info", tmp_path, "--robot", robot).words
+    assert "In 72.0 s the robot drove for 12.0 s and moved unrecorded for 60.0 s." in printed
+
+
 def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> None:
     """A drive without a turn; by a size that nobody gave it would be any number of turns."""
     ros = Messages()

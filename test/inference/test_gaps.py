@@ -65,6 +65,22 @@ def parts(run: Run, which: str) -> Run:
     return replace(run, reference=replace(reference, **lacking[which]))
 
 
+@pytest.mark.parametrize("which", ["poses", "positions", "yaw"])
+def test_a_pose_that_waited_for_the_end_of_a_silence_begins_no_leg(which: str) -> None:
+    """Its stamp is of when it came: the robot was said to have been thrown half a metre ahead."""
+    run = silent(run_of(ROBOT, 1, 60))
+    seen = run.reference
+    assert seen is not None
+    first = [int(np.searchsorted(seen.time, end)) for _, end in SPANS]
+    poses = np.stack([seen.x, seen.y, seen.yaw])
+    poses[:, first] = poses[:, [row - 1 for row in first]] + 1e-4
+    late = replace(seen, x=poses[0], y=poses[1], yaw=poses[2])
+    for reference, more in ((seen, 0), (late, 1)):
+        record = record_of(parts(replace(run, reference=reference), which), ROBOT)
+        ends = [part.end for part in record.left_out if part.words.startswith("the reference is")]
+        assert ends == [pytest.approx(seen.time[row + more], abs=1e-9) for row in first]
+
+
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
     return runs_of(ROBOT, range(40, 44))

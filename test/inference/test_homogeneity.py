@@ -193,6 +193,25 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     assert _chance(gain, 1, free, rest, parts) > 1e-3
 
 
+def test_a_part_of_a_small_share_that_shows_the_pattern_by_itself_counts() -> None:
+    """Two turns tell nearly all of a late clock, and two more show it: one by six deviations."""
+    random = np.random.default_rng(1)
+    parts = np.repeat(np.arange(4), 20)
+    shares = np.array([0.84, 0.49, 0.2, 0.12])
+    free = random.normal(size=parts.size)
+    for part, share in enumerate(shares):
+        free[parts == part] *= share / np.linalg.norm(free[parts == part])
+    free /= np.linalg.norm(free)
+    noise = random.normal(size=parts.size)
+
+    def chance(of_others: float) -> float:
+        rest = noise + 30.0 * free * np.where(parts < 2, 1.0, of_others)
+        return _chance(float((free @ rest) ** 2), 1, free[:, None], rest, parts, 3.0)
+
+    assert 79 * chance(1.0) < 1.5e-4
+    assert 79 * chance(0.0) > 1e-3
+
+
 def late(seed: int, delay: float) -> Run:
     """Twelve slow seconds, seen to 6 mm and 12 mrad ten times a second by a clock that is off."""
     random = np.random.default_rng(seed)

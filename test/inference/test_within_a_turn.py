@@ -69,5 +69,15 @@ def test_legs_that_are_short_enough_already_are_left_alone(found: Result[Advised
     open_still = replace(found.found.diagnosis, verdict="ambiguous", rivals=("right_tread_bump",))
     assert shorter_leg(open_still, 1.0) == pytest.approx(0.1)
     assert shorter_leg(open_still, 0.15) is None
-    assert shorter_leg(replace(open_still, rivals=("track_width",)), 1.0) is None
     assert shorter_leg(found.found.diagnosis, 1.0) is None
+
+
+def test_few_legs_that_leave_it_open_are_cut_into_shorter_ones(
+    found: Result[AdvisedDiagnosis],
+) -> None:
+    """Of 12 m and two turns: the legs that `info` proposes for so little driving."""
+    open_still = replace(found.found.diagnosis, verdict="ambiguous", rivals=("track_width",))
+    assert shorter_leg(open_still, 1.0) == 0.25
+    assert shorter_leg(open_still, 0.5) is None, "there are thirty of them"
+    assert shorter_leg(open_still, 0.25) is None
+    assert shorter_leg(replace(open_still, verdict="unknown"), 1.0) is None

@@ -106,9 +106,26 @@ def _references(held: Held) -> Iterator[str]:
     yield from (
         f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
     )
+    yield from _gyro_in_odometry(held)
     if held.reference is None:
         but = " but its own wheels" if held.wheels is not None else ""
         yield f"Nothing that is read in the bag measures the robot{but}."
+
+
+def _gyro_in_odometry(held: Held) -> Iterator[str]:
+    """Warn where the wheels' headings may be those of the gyro that is to judge them."""
+    taken = (held.reference, held.beside)
+    if (
+        held.wheels is not None
+        and held.wheels.gives == "odometry"
+        and any(each is not None and each.measures == "yaw" for each in taken)
+    ):
+        yield (
+            "Many drivers (TurtleBot3's, Kobuki's) put the gyro's heading into "
+            f"{held.wheels.name}. If this one does, the gyro is judged by itself: it always "
+            "agrees, and shows nothing of base and wheels. Joint angles or counters, recorded too, "
+            "do."
+        )
 
 
 def _stamps(held: Held) -> Iterator[str]:
@@ -172,7 +189,7 @@ def _chosen(held: Held) -> list[Any]:
 
 
 def _ms(seconds: float) -> str:
-    return f"{1e3 * seconds:.0f} ms"
+    return f"{1e3 * seconds:.{1 if 0.05 <= 1e3 * seconds < 0.95 else 0}f} ms"
 
 
 def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
@@ -188,6 +205,7 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
             ("held", "was held"),
             ("carried", "was carried or turned by hand"),
             ("lost", "drove with a heading that is not known"),
+            ("silent", "moved unrecorded"),
         )
         if what in times
     ]

@@ -18,6 +18,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
@@ -255,7 +257,8 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     if score is not None and best is not None:
         support = support_of(score.candidate, runs.drive(this.before.point.model.robot))
         data, penalty = runs.data, this.before.penalty_of_one
-        fall = max(fall_of_cost(score.gain, data), this.before.cost - best.cost)
+        whole = float(np.sum(this.before.design.white**2))
+        fall = max(fall_of_cost(score.gain, data, whole), this.before.cost - best.cost)
         worth = fall - (best.penalty - this.before.penalty)
 
         def more_than_a_law_leaves(cell: Dependence) -> bool:
@@ -264,7 +267,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
             )
             share = rules.OWN_LAW_SHARE if own else rules.LAW_SHARE
             return (
-                share * (fall_of_cost(cell.gain, data) - penalty * cell.degrees)
+                share * (fall_of_cost(cell.gain, data, whole) - penalty * cell.degrees)
                 > worth + rules.RIVAL
             )
 

@@ -157,9 +157,20 @@ def dependences(
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
 
 
-def fall_of_cost(gain: float, data: int) -> float:
-    """Cost reduction for a fall of the squared innovations, with the noise re-estimated."""
-    return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
+def fall_of_cost(gain: float, data: int, whole: float = 0.0) -> float:
+    """Cost reduction for a fall of the squared innovations, with the noise re-estimated.
+
+    Parameters
+    ----------
+    gain
+        Fall of the squared innovations.
+    data
+        Number of innovations: the sum of their squares, where the noise was fitted to them.
+    whole
+        That sum, where it may be larger. By few data the noise stays above it for its prior, and a
+        pattern that explains nine tenths of the squares would be taken to explain all of them.
+    """
+    return -data * math.log1p(-min(max(gain / max(whole, data), 0.0), 0.999))
 
 
 def p_value_of_score(gain: float, degrees: int, whole: float, spare: float) -> float:

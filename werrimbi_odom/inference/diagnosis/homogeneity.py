@@ -12,6 +12,7 @@ specific to that drive.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -208,7 +209,9 @@ def _chance(
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0
-    heard = least_informative_share(parts)
+    # What a part of a small share would still show is a witness too.
+    shown = rules.LASTING_SEEN * math.sqrt(degrees / max(gain, 1e-12))
+    heard = min(least_informative_share(parts), shown)
     for part in range(parts.max() + 1):
         here = parts == part
         basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import NoDriving, Run
+from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
@@ -21,7 +21,7 @@ from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typic
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.stray_poses import stray_poses
 from werrimbi_odom.model.encoder_online import EncoderLimits
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -71,7 +71,7 @@ def record_of(
             f"(t_s {first:g}) and the last ({last:g}); are both clocks the same?"
         )
     measured = poses_at(reference, rows)
-    found = _silences(run, robot, counters, measured.time, taken_out, leg, turn)
+    found = _silences(run, robot, counters, measured, taken_out, leg, turn)
     gap = touched(measured.time, [*map(_surely_around, found), *taken_out])
     return AlignedRun(
         run.name,
@@ -104,22 +104,25 @@ def _silences(
     run: Run,
     robot: Robot,
     counters: Counters,
-    seen: Floats,
+    measured: Reference,
     taken_out: Sequence[tuple[float, float]],
     leg: float,
     turn: float,
 ) -> tuple[LeftOut, ...]:
     """Exclusions of a run: no driving, counter jumps, and gaps of ticks or reference."""
-    way = counters.way(robot, leg, turn)
+    way, seen = counters.way(robot, leg, turn), measured.time
     started = float(counters.time[0])
     inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
 
-    def unheard(time: Floats, gone: Floats) -> list[tuple[float, float]]:
+    def unheard(
+        time: Floats, gone: Floats, late: NDArray[np.bool_] | None = None
+    ) -> list[tuple[float, float]]:
         silent = np.flatnonzero(gaps_in(time, gone) & ~touched(time, taken_out))
-        return [(float(time[index]), float(time[index + 1])) for index in silent]
+        ends = silent + 1 if late is None else silent + 1 + late[silent]
+        return [(float(time[at]), float(time[end])) for at, end in zip(silent, ends, strict=True)]
 
     gaps = _named(
-        unheard(seen, np.interp(seen, counters.time, way)),
+        unheard(seen, np.interp(seen, counters.time, way), _caught_up(measured, leg, turn)),
         unheard(counters.time[inside], way[inside]),
     )
     found = [
@@ -142,6 +145,18 @@ def _silences(
         if part.end > seen[0] and part.begin < seen[-1]
     ]
     return tuple(sorted(found, key=lambda part: part.begin))
+
+
+def _caught_up(measured: Reference, leg: float, turn: float) -> NDArray[np.bool_]:
+    """After which intervals between poses the reference moves more than in them, shape (r - 1,).
+
+    A silence ends with such a pose if a message waited in a stalled network: it was stamped as it
+    came, and is of the silence's beginning.
+    """
+    ways = np.hypot(np.diff(measured.x), np.diff(measured.y)) / leg
+    turns = np.abs(wrap_all(np.diff(measured.yaw))) / turn
+    moved = np.nan_to_num(ways) + np.nan_to_num(turns)
+    return np.append(moved[1:] > moved[:-1], False)
 
 
 def _named(

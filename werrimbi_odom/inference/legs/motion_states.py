@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""States of a robot over time: standing, driving, held, carried, not known."""
+"""States of a robot over time: standing, driving, held, carried, not recorded, not known."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import NoDriving, by_hand
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
+from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.inference.legs.windows import standing_below
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # [s]
 LOST = "the robot drove, and its heading is not known: it was held or carried before or after"
-What = Literal["stood", "drove", "held", "carried", "lost"]
-"""`lost`: it drove, with a heading that is not known."""
+What = Literal["stood", "drove", "held", "carried", "lost", "silent"]
+"""`lost`: it drove, with a heading that is not known. `silent`: it moved, and no counts came."""
 
 
 class TimeSpan(NamedTuple):
@@ -33,7 +34,7 @@ class TimeSpan(NamedTuple):
 
 
 class DrivenAmount(NamedTuple):
-    """Total driving, without held and carried stretches."""
+    """Total driving, without stretches that are held, carried, or not recorded."""
 
     spans: tuple[TimeSpan, ...]
     way: float
@@ -66,6 +67,11 @@ def driven(
         if state[begin] == "stood" and (end - begin) * _GRID < rules.REST_LASTS:
             state[begin:end] = "drove"
     middle = 0.5 * (grid[1:] + grid[:-1])
+    for index in np.flatnonzero(
+        gaps_in(counters.time, counters.way(robot, 1.0, rules.QUARTER_TURN))
+    ):
+        begin, end = counters.time[index : index + 2]
+        state[(middle > begin) & (middle < end)] = "silent"
     for part in by_hand(no_driving):
         what = "lost" if part.words == LOST else part.why
         state[(middle >= part.begin) & (middle <= part.end)] = what

@@ -26,15 +26,19 @@ def shorter_leg(diagnosis: Diagnosis, leg: float) -> float | None:
     """Length of legs that may tell the rivals apart [m]; None where the legs are not the reason.
 
     Over whole turns of a wheel a bump on its tread is a larger radius, and an axle off the centre
-    is nothing: what tells them apart is seen within a turn alone.
+    is nothing: what tells them apart is seen within a turn alone. And few legs, as of one square,
+    hold a start, a stop and a turn each: a late clock is like play of a wheel.
 
     Parameters
     ----------
     leg
         Length of the legs of this diagnosis [m].
     """
-    if diagnosis.verdict != "ambiguous" or not _repeats_each_turn(diagnosis):
+    if diagnosis.verdict != "ambiguous":
         return None
+    if not _repeats_each_turn(diagnosis):
+        few = _legs(diagnosis, leg) < rules.LEGS_ENOUGH and leg > rules.SHORT_LEG
+        return rules.SHORT_LEG if few else None
     robot = diagnosis.robot
     turns = (
         robot.left_tick * robot.left_ticks_per_revolution,
@@ -52,6 +56,12 @@ def settles(shorter: Diagnosis, longer: Diagnosis) -> bool:
         and shorter.effect in longer.rivals
         and known.issuperset(shorter.found)
     )
+
+
+def _legs(diagnosis: Diagnosis, leg: float) -> float:
+    """Length of all drives in legs of `leg` [m] or a quarter turn."""
+    drives = [run.counters for run in diagnosis.runs.runs]
+    return sum(float(each.way(diagnosis.robot, leg, rules.QUARTER_TURN)[-1]) for each in drives)
 
 
 def _repeats_each_turn(diagnosis: Diagnosis) -> bool:

@@ -119,7 +119,8 @@ HARD_START = 2.5
 # ------------------------------------------------------------------- what a recording can show
 
 LEGS_ENOUGH, SHORT_LEG = 30, 0.25
-"""Legs of a metre or a quarter turn, below which shorter ones are proposed, and their length [m].
+"""Legs of a metre or a quarter turn, below which shorter ones are proposed, and tried where they
+leave a verdict *ambiguous*, and their length [m].
 Chosen: three times the fewest that are judged, as a part of them is held out."""
 
 TURN_SHOWS, WAY_SHOWS = 3.14, 2.0

@@ -67,6 +67,13 @@ pattern explains, as compared with the 28th that a part has on average. With mor
 shrinks in proportion, and with fewer it grows: of 60 drives none had a tenth, and an effect of 20
 standard deviations was put down to chance."""
 
+LASTING_SEEN = 5.0
+"""Standard deviations by which a part of a smaller share must show a pattern of the size that all
+parts together tell, to count as well. Chosen: of a late clock two turns in four parts told nearly
+all, which is too few by a tenth, though a third part shows it by five; with three deviations, three
+arcs that err alike made an effect (one of eleven sets), with five they are left to chance by far.
+"""
+
 DRIVES_TO_LEAVE_ONE = 3
 """Fewest drives for one to be called unlike the others: with two neither is."""
 

@@ -67,9 +67,9 @@ def _shorter(advised: AdvisedDiagnosis) -> list[str]:
     if advised.open_at is None:
         return []
     return [
-        f"Legs of {advised.open_at:g} m leave it open: over whole turns of a wheel it is like "
-        f"another error. Legs of {advised.leg:g} m show what happens within a turn; all that is "
-        "said here, and the command below, is of those."
+        f"Legs of {advised.open_at:g} m leave it open: it is like another error over whole turns "
+        f"of a wheel, or from a start to a stop. Legs of {advised.leg:g} m show what happens "
+        "within these; all that is said here, and the command below, is of those."
     ]
 
 
