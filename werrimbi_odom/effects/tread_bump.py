@@ -66,7 +66,9 @@ def left_tread_bump(
                is even but for one place
     Alike      right_tread_bump, as long as both wheels turn alike: drive curves. An axle off the
                centre (eccentric_left_wheel) swings once in a turn as well, but evenly: a small
-               bump is one to its drives, and more drives tell them apart
+               bump is one to its drives, and more drives tell them apart. A flat across
+               from it, with a radius that is larger by a third of its depth: what goes twice round
+               in a turn tells the sign, and of a small one no few drives do
     """
     return travel._replace(left=travel.left + height * _gained(drive.left_angle, place))
 
