@@ -47,6 +47,9 @@ class Judged:
     rivals: tuple[str, ...] = ()
     factor: str | None = None
     depends_on: tuple[tuple[str, str], ...] = ()
+    below_limit: bool = False
+    """Of a verdict of none: whether the diagnosis itself says that one of this size would not have
+    been seen in 95 of 100 cases."""
     next_manoeuvre: str | None = None
     minutes: float = 0.0
     """How long that is to be driven."""

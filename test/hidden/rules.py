@@ -81,6 +81,10 @@ def of_group(*groups: str) -> Callable[[Judged], bool]:
     return lambda line: line.group in groups
 
 
+def _rivals(line: Judged) -> bool:
+    return line.group == "rivals" and not line.below_limit
+
+
 def _strong(line: Judged) -> bool:
     return line.group == "effect" and matters(line)
 
@@ -137,14 +141,14 @@ RULES = (
         "rivals by construction: ambiguous, the hidden one among them",
         "rivals",
         1.0,
-        of_group("rivals"),
+        _rivals,
         lambda line: judgement(line) == "ambiguous" and line.next_manoeuvre is not None,
     ),
     Rule(
         "... and the proposed manoeuvres, driven, resolve them",
         "resolved",
         1.0,
-        of_group("rivals"),
+        _rivals,
         lambda line: line.resolved == ("named", *line.hidden),
     ),
     Rule(

@@ -23,6 +23,7 @@ from test.hidden.sets import HiddenSet, make, runs_of
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.simulation.hidden import find as hideable
 
 DRIVEN_ON = 3
 """Most manoeuvres that a user drives for one verdict."""
@@ -95,6 +96,7 @@ def _said(what: HiddenSet, told: Followed) -> Judged:
         rivals=tuple(first["rivals"]),
         factor=factors[0] if factors else None,
         depends_on=tuple((cell["channel"], cell["variable"]) for cell in first["depends_on"][:3]),
+        below_limit=first["verdict"] == "none" and below_limit(line, first),
         next_manoeuvre=None if move is None else move["name"],
         minutes=0.0 if move is None else move["minutes"],
         p_values=tuple((item["effect"], item["p_value"]) for item in first["ranking"]),
@@ -107,6 +109,16 @@ def _said(what: HiddenSet, told: Followed) -> Judged:
         fits=tuple(_fit(fit) for fit in told.fits),
         added=_added(told),
         drafted=told.drafted,
+    )
+
+
+def below_limit(line: Judged, said: Line) -> bool:
+    """Whether all that is hidden is smaller than what the diagnosis says that it sees."""
+    seen_from = {each["effect"]: each["seen_from"] for each in said["could_have_been_seen"]}
+    return all(
+        name in seen_from
+        and (seen_from[name] is None or abs(strength - hideable(name).null) < seen_from[name])
+        for name, strength in zip(line.hidden, line.strengths, strict=True)
     )
 
 

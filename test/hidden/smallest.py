@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from test.hidden.fisher import bound, detectable, unknown_numbers
+from test.hidden.fisher import LITTLE, bound, detectable, unknown_numbers
 from test.hidden.follow import follow
 from test.hidden.plan import EFFECTS
 from test.hidden.result_line import is_right, judgement
@@ -69,8 +69,9 @@ def work(task: Task) -> Line:
     name, seed = task
     entry = find(name)
     clean = HiddenSet("clean", (), seed, SETUP)
-    little = hide(name, entry.null + entry.low, seed=seed).peculiarity
-    sigma = bound(clean, name, asdict(little), entry.low)
+    size = LITTLE * entry.low
+    little = hide(name, entry.null + size, seed=seed).peculiarity
+    sigma = bound(clean, name, asdict(little), size)
     numbers = unknown_numbers(name, len(runs_of(make(clean), "train")))
     limit = detectable(sigma, len(EFFECTS), CHANCE, POWER, numbers)
     wrong = []
@@ -117,6 +118,9 @@ def claimed(clean: HiddenSet, name: str) -> float | None:
     for sight in said_of(clean).get("could_have_been_seen", ()):
         if sight["effect"] != name or sight["seen_from"] is None:
             continue
+        if name.endswith("tread_bump"):  # hidden by its thickness, told for a sixth of a turn
+            height = values_of(name, asdict(hide(name, 1.0, seed=clean.seed).peculiarity))["height"]
+            return float(sight["seen_from"]) / height
         if name == "radius_drift":  # hidden per drive: of 20 m, or of a minute
             return float(sight["seen_from"]) * (20.0 if sight["unit"] == "1/m" else 60.0)
         return float(sight["seen_from"]) if (sight["unit"] or "1") == entry.unit else None

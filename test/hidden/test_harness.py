@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from test.hidden import (
     margins,
     plan,
     resumable_jobs,
+    set_judging,
     smallest,
     survive,
 )
@@ -223,6 +225,20 @@ def test_work_goes_on_where_it_was_stopped_and_one_failure_is_not_the_end(tmp_pa
     file.write_text(file.read_text().rsplit("\n", 1)[0] + "\n")
     second = dict(resumable_jobs.done(file, {"two": 2, "three": 3}, _square, 1))
     assert second == {"three": {"square": 9}}, "what is known is not done again"
+
+
+@pytest.mark.parametrize(("seen_from", "below"), [(0.003, False), (0.008, True), (None, True)])
+def test_rivals_are_asked_for_where_the_diagnosis_says_that_it_sees_them(
+    seen_from: float | None, below: bool
+) -> None:
+    """A delay of 4 ms at one speed, in drives that show one of 3 ms, or only one of 8."""
+    none = replace(LINE, group="rivals", hidden=("reference_delay",), strengths=(0.004,),
+                   verdict="none", effect=None, found=())  # fmt: skip
+    sight = {"effect": "reference_delay", "seen_from": seen_from}
+    assert set_judging.below_limit(none, {"could_have_been_seen": [sight]}) is below
+    assert not set_judging.below_limit(none, {"could_have_been_seen": []})
+    (rule,) = (rule for rule in RULES if rule.short == "rivals")
+    assert rule.speaks_of(replace(none, below_limit=below)) is not below
 
 
 # ------------------------------------------------------------------ certainty that survives

@@ -143,9 +143,7 @@ _EXCHANGING = {"wheels_swapped", "reference_mirrored"}
 GIVES_WAY = (
     "left_backlash.travel",
     "right_backlash.travel",
-    "left_tread_bump.height",
-    "right_tread_bump.height",
 )
 """The engine's stops of a play are springs: of a play of 1, 2 or 5 mm the robot feels 0.22 mm more
 while it drives steadily, and less of that while it brakes. So the true one is not known to within
-what a fit states. Nor is the height of a bump that does not go a sixth of the way round."""
+what a fit states."""

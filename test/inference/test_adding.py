@@ -53,6 +53,17 @@ def test_the_size_is_found_within_its_error(creep: Added) -> None:
     assert abs(found.value - 0.02) < 4.0 * found.std < 0.004
 
 
+def test_a_size_is_stated_no_finer_than_its_law() -> None:
+    """Of ten starts by an engine, three had a slip within twice the ± of 1 % that was stated."""
+    true = {"coefficient": 0.1, "above": 0.4}
+    found = added("coulomb_slip", replace(PLAIN, effects=(find("coulomb_slip").using(**true),)))
+    for name, value in true.items():
+        each = found.parameters[name]
+        assert each.value == pytest.approx(value, rel=0.1)
+        assert each.std is not None
+        assert 0.028 * value < each.std < 0.06 * value
+
+
 def test_a_radius_in_degrees_is_found_as_well_as_one_that_is_right() -> None:
     """Legs of 57 m, of the file's metre, would be a handful of a drive of 40 m."""
     runs = runs_of(PLAIN, (1, 2))

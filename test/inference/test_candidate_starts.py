@@ -210,3 +210,15 @@ def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
     assert found.found == ("reference_delay",)
     (late,) = found.model.robot.effects
     assert late.values["delay"] == pytest.approx(0.02, abs=0.006)  # a message takes 10 ms
+
+
+@pytest.mark.parametrize("seed", [30, 50])
+def test_a_bump_is_fitted_beside_the_flat_across_from_it(seed: int) -> None:
+    """Once a turn they are the same; the flat alone was fitted, with another radius beside it."""
+    robot = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+    bump = find("left_tread_bump")
+    truth = replace(robot, effects=(bump.using(height=6e-4, place=1.0),))
+    drives = [run_of(truth, number, 60) for number in (seed, seed + 1)]
+    laid = concatenated(match_for_fit(drives, robot, 1.0))
+    (fit,) = search_round(laid, fit_calibration(laid, robot), [bump], robot).tried
+    assert fit.point.model.robot.effects[-1].values["height"] == pytest.approx(6e-4, abs=3e-4)

@@ -21,8 +21,13 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.manoeuvres.detection_limits import _calibrated, _limits, _typical
-from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment, sensitivities_of
+from werrimbi_odom.inference.manoeuvres.detection_limits import (
+    _calibrated,
+    _limits,
+    _looked_at,
+    _typical,
+)
+from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment
 from werrimbi_odom.model.pose import Floats
 
 TRIED = 60
@@ -42,7 +47,7 @@ def limits(
 ) -> dict[str, dict[str, float]]:
     """Distance from null of each parameter, beside calibration and per-run parameters alone."""
     candidates = [_typical(find(name)) for name in names]
-    look = sensitivities_of(drives_of(runs, options), candidates + _calibrated(), ())
+    look = _looked_at(drives_of(runs, options), candidates + _calibrated(), ())
     return {
         each.name: {
             limit.parameter: limit.minimum_detectable for limit in _limits(each, look, TRIED, power)
@@ -112,6 +117,26 @@ def test_a_phase_of_each_run_costs_two_numbers_a_run(runs: list[Run]) -> None:
         by_run = drives.each_run(signal[:, None])
         shown.append(float(np.sum((by_run - basis @ (basis.T @ by_run)) ** 2)))
     assert min(shown) == pytest.approx(wanted, rel=0.02)
+
+
+def test_a_bump_at_any_place_is_seen_beside_the_radius_that_it_is_too(runs: list[Run]) -> None:
+    """Each run by itself hides no radius behind its place; half the height was said to be seen."""
+    height = limits(("left_tread_bump",), runs)["left_tread_bump"]["height"]
+    drives, random = drives_of(runs), np.random.default_rng(7)
+    nuisance = np.concatenate(
+        [drives.nuisances(()), *(columns(drives, each) for each in CALIBRATED)], axis=-1
+    )
+    basis = np.linalg.svd(nuisance / np.linalg.norm(nuisance, axis=0), full_matrices=False)[0]
+    shown = []
+    for place in random.uniform(-np.pi, np.pi, 24):
+        signal = change(drives, "left_tread_bump", height=height, place=place)
+        by_run = drives.each_run(signal[:, None])
+        shown.append(by_run - basis @ (basis.T @ by_run))
+    anywhere = [
+        float(np.sum((shown[one][:, 0] + shown[other][:, 1]) ** 2))
+        for one, other in random.integers(len(shown), size=(200, 2))
+    ]
+    assert np.mean(anywhere) == pytest.approx(noncentrality(3, rules.SURE / TRIED, 0.95), rel=0.1)
 
 
 def test_more_noise_and_fewer_drives_show_less(runs: list[Run]) -> None:

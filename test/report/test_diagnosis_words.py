@@ -22,7 +22,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.adding.words import _headline
-from werrimbi_odom.report.diagnosis import phrases, words
+from werrimbi_odom.report.diagnosis import as_json, phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
 from werrimbi_odom.report.diagnosis.remarks import drowned, like_noise, nearest, not_shown
 from werrimbi_odom.report.diagnosis.words import how_long
@@ -242,3 +242,15 @@ def test_of_what_could_not_be_judged_no_number_is_told() -> None:
     assert said.startswith("What reference_lever_arm does to the error of the held-out drives")
     added.holdout.sides = Sides(0.1, 0.05)
     assert "50.00 mm where it was 100 mm (50 % lower" in _headline(added)
+
+
+def test_no_size_is_told_that_the_drives_do_not_determine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One drive of 7 m by positions: a base of 0.373 of the file's, beside the verdict none."""
+    sizes = {"base": (0.373, 0.3), "left": (1.002, 0.001), "right": (1.0, 0.0)}
+    monkeypatch.setattr(as_json, "best_sizes", lambda _: sizes)
+    sound: Any = SimpleNamespace(of_another_drive=None)
+    assert as_json._calibration(sound) == {
+        "base": {"value": None, "std": None},
+        "left": {"value": 1.002, "std": 0.001},
+        "right": {"value": 1.0, "std": None},
+    }

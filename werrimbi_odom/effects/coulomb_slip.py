@@ -11,6 +11,12 @@ from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
+READ = 0.1
+"""Width of what accelerations of counters leave open, of the size and of the threshold. The filter
+before them rounds off each start, and takes 2 to 3.5 % of what lies above a threshold; steps of the
+counters lift what lies just below it. Fits to starts of an engine, at 50 Hz and 2000 counts a turn,
+are 1 to 6 % above the truth."""
+
 
 @wheel_effect(
     sketch=Sketch(
@@ -24,6 +30,7 @@ from werrimbi_odom.model.motion import Number, WheelTravel
         typical=0.05,
         bounds=(0.0, 1.0),
         says="share of a wheel's travel that is lost per acceleration above the threshold",
+        grain=READ,
     ),
     above=Parameter(
         "m/s^2",
@@ -32,6 +39,7 @@ from werrimbi_odom.model.motion import Number, WheelTravel
         bounds=(0.02, 20.0),
         says="acceleration of the rim beyond which it slips",
         tries=(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0, 3.0, 5.0, 8.0),
+        grain=READ,
     ),
 )
 def coulomb_slip(

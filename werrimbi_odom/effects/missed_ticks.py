@@ -14,8 +14,11 @@ RAMP = 0.05
 """Width of the onset as a share of the threshold: a fit needs a slope to estimate the threshold,
 and counted speeds just below it may be true or reduced ones."""
 
+TYPICAL = 0.02
+"""Share of the counts; counted speeds between the threshold and this below it are of either."""
+
 FRACTION = Parameter(
-    "", null=0.0, typical=0.02, bounds=(0.0, 0.5), says="share of the counts that are lost"
+    "", null=0.0, typical=TYPICAL, bounds=(0.0, 0.5), says="share of the counts that are lost"
 )
 ABOVE = Parameter(
     "m/s",
@@ -24,7 +27,7 @@ ABOVE = Parameter(
     bounds=(0.01, 20.0),
     says="speed of the rim beyond which they are lost",
     tries=(0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0, 8.0),
-    grain=RAMP,
+    grain=RAMP + TYPICAL,
 )
 
 

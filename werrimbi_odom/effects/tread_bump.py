@@ -23,6 +23,7 @@ HEIGHT = Parameter(
     typical=1.5e-3,
     bounds=(-0.01, 0.01),
     says="of a bump that goes a sixth of the way round; below zero: the depth of a flat",
+    grain=1.0 / 3.0,
 )
 PLACE = Parameter(
     "rad",
@@ -54,8 +55,8 @@ def left_tread_bump(
     standing. While the wheel rolls on it, its hub stands higher and goes farther for the same
     angle; the radius of the robot file is that of the rest of the tread. A narrow high bump and a
     wide low one do the same to drives, so the height is told for a width of a sixth of a turn; of
-    one that covers 30 to 90 degrees it is then out by up to a sixth, whatever is stated. The place
-    belongs to the counter; where that starts anywhere, each drive has a place of its own.
+    one that covers 30 to 90 degrees it is then out by up to a sixth; its ± allows for that. The
+    place belongs to the counter; where that starts anywhere, each drive has a place of its own.
 
     Formula    left += height * angle that the left wheel turns while it stands on it    [m]
                (that is from -30 to 30 degrees of its angle + place, in each turn)
@@ -65,7 +66,9 @@ def left_tread_bump(
                is even but for one place
     Alike      right_tread_bump, as long as both wheels turn alike: drive curves. An axle off the
                centre (eccentric_left_wheel) swings once in a turn as well, but evenly: a small
-               bump is one to its drives, and more drives tell them apart
+               bump is one to its drives, and more drives tell them apart. A flat across
+               from it, with a radius that is larger by a third of its depth: what goes twice round
+               in a turn tells the sign, and of a small one no few drives do
     """
     return travel._replace(left=travel.left + height * _gained(drive.left_angle, place))
 

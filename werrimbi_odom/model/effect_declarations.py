@@ -37,8 +37,10 @@ class Parameter:
         The parameter is `wheel_separation_multiplier` of the robot file under another name: a fit
         changes that one and reports and writes the result as this one.
     grain : float
-        For a threshold: relative width of its smooth onset. Speeds and the like are too coarsely
-        quantised for a sharp edge, and a fit knows the threshold no better than this.
+        Relative width of the stretch in which the robot's own value lies, however well drives
+        determine the law's: a law is a form, and is driven by speeds and accelerations of counters.
+        Of a threshold the width of its smooth onset, since those are too coarsely quantised for a
+        sharp edge. A fit states no value more precisely than this.
     """
 
     unit: str

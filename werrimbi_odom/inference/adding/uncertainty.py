@@ -72,8 +72,8 @@ def with_spread(
     """The fit with standard deviations that allow for all choices made on the same drives.
 
     These are which sizes differ from the file's, which parameters effects need
-    (`model_averaged_stds`), and the noise (`Precision.widening`). A threshold is no more precise
-    than its law (`grain_of`). Lengths have the uncertainty of their logarithm, as scale parameters
+    (`model_averaged_stds`), and the noise (`Precision.widening`). No value is more precise than
+    its law (`grain_of`). Lengths have the uncertainty of their logarithm, as scale parameters
     do.
     """
     laws = [law for effect in effects if len(law := _optional(effect)) > 1]

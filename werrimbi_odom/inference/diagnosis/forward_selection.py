@@ -141,16 +141,14 @@ def search_round(
         return fitted(runs, start, (*before.names, score.candidate.name), numbers, given)
 
     def best_fit(score: Score, runs: Concatenated) -> list[Fitted]:
-        variants = [
-            other
-            for other in found
+        variants = {
+            other.variant: other
+            for other in sorted(found, key=lambda other: other.gain)
             if other.candidate.name == score.candidate.name
-            and other.candidate.per_run != score.candidate.per_run
+            and other.variant != score.variant
             and other.gain > rules.SAME_BY_RUN * score.gain
-        ]
-        options = [(point, score)]
-        if variants:
-            options.append((point, max(variants, key=lambda other: other.gain)))
+        }
+        options = [(point, each) for each in (score, *variants.values())]
         if score.candidate.name in instead:
             options.append((as_given(point, given), instead[score.candidate.name]))
         starts = [(started_with(runs, begin, option), option) for begin, option in options]

@@ -176,7 +176,7 @@ def fitted(
     wide = widening(*design.flat(), ways.matrix, runs)
     covariance = covariance_of(design, ways)
     doubt = variance_inflation_of_sizes(design, covariance, wide, result.robot)
-    covariance = covariance * np.outer(wide, wide) + np.diag(grain_of(design, result.robot))
+    covariance = covariance * np.outer(wide, wide)
     importance = {name: wald_statistic(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
@@ -211,7 +211,7 @@ def fitted(
             *([RATIO] if unequal_beyond_physics(result.robot, given) else []),
         ),
         importance,
-        covariance,
+        covariance + np.diag(grain_of(design, result.robot)),
         wide,
         freedom_of_sizes(runs, design, result.robot),
         ways.matrix,
@@ -246,10 +246,10 @@ def covariance_of(design: Design, ways: Directions) -> Floats:
 
 
 def grain_of(design: Design, robot: Robot) -> Floats:
-    """Variances (p,) that laws leave open for their own thresholds (`Parameter.grain`).
+    """Variances (p,) that laws leave open for the robot's own values (`Parameter.grain`).
 
-    The robot's own threshold lies anywhere in the stretch over which the law sets in: a uniform
-    distribution.
+    These lie anywhere in a stretch about the fitted value: a uniform distribution. Whether an
+    effect is there at all is no question of it.
     """
     declared = {
         f"{item.name}.{name}": item.effect.parameters[name].grain * float(np.mean(value))

@@ -59,6 +59,15 @@ class Score:
     """Angle round the wheel of a local effect, (1,) or (runs,) [rad]; else None."""
 
     @property
+    def variant(self) -> tuple[bool, bool]:
+        """Which of the variants of its effect: values of each run or not; a bump or a flat.
+
+        A flat across from a bump is the same once a turn, beside a radius that is larger by a third
+        of its depth; so each is fitted.
+        """
+        return self.candidate.per_run, self.places is not None and self.coefficients[0] < 0.0
+
+    @property
     def excess(self) -> float:
         """Gain above its null expectation, in units of its null standard deviation."""
         return (self.gain - self.degrees) / math.sqrt(2.0 * self.degrees)

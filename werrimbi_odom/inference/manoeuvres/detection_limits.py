@@ -27,7 +27,7 @@ from werrimbi_odom.inference.diagnosis.effect_support import able, askable
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import noncentrality
 from werrimbi_odom.inference.fitting.candidate import Candidate
-from werrimbi_odom.inference.fitting.free_parameters import STEP
+from werrimbi_odom.inference.fitting.free_parameters import STEP, FreeParameter
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.score_tests import OF_THE_MEASUREMENT
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
@@ -104,15 +104,36 @@ def _never(effect: Effect) -> DetectionLimit:
 
 
 def _typical(effect: Effect) -> Candidate:
-    shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
+    shape = {
+        name: item.typical
+        for name, item in effect.parameters.items()
+        if item.tries and not item.per_run
+    }
     return Candidate(effect, shape)
 
 
 def _seen(
     drives: Experiment, candidates: Sequence[Candidate], final: Fitted, tried: int
 ) -> dict[str, DetectionLimit]:
-    look = sensitivities_of(drives, candidates, final.numbers)
+    look = _looked_at(drives, candidates, final.numbers)
     return {item.name: _best(item, look, tried, final.held) for item in candidates}
+
+
+def _looked_at(
+    drives: Experiment, candidates: Sequence[Candidate], numbers: Sequence[FreeParameter]
+) -> Sensitivities:
+    """Jacobians; of an effect at one place of a wheel at four angles, which average to its mean."""
+    look = sensitivities_of(drives, candidates, numbers)
+    white = dict(look.white)
+    for item in candidates:
+        if item.place is not None:
+            angles = item.effect.parameters[item.place].tries
+            there = [
+                drives.marks(replace(item, shape={**item.shape, item.place: angle}))
+                for angle in angles[:: len(angles) // 4]
+            ]
+            white[item.name] = drives.whitened(np.concatenate(there, axis=-1))
+    return replace(look, white=white)
 
 
 def _best(
@@ -141,8 +162,17 @@ def _limits(
     free = frame.residual(marks)
     heard, before = (np.sum(columns**2, axis=0) for columns in (free, marks))
     heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
-    wanted = noncentrality(max(int(np.sum(heard > 0.0)), 1), rules.SURE / max(tried, 1), power)
+    degrees = int(np.sum(heard > 0.0))
     information = heard.reshape(-1, width).sum(axis=0)
+    if candidate.place is not None:
+        # One size, and an angle of its own in each run. What is the same at all angles adds up over
+        # the runs, and the calibration takes it: a bump is a larger radius, too.
+        around = np.where(heard > 0.0, free, 0.0).reshape(len(free), -1, width)
+        common = around.mean(axis=-1)
+        degrees = 1 + around.shape[1]
+        of_place = np.sum((around - common[..., None]) ** 2) / width
+        information = np.array([np.sum(common.sum(axis=-1) ** 2) + of_place])
+    wanted = noncentrality(max(degrees, 1), rules.SURE / max(tried, 1), power)
     if effect.quadrature is not None:  # the least observable phase
         names, information = [effect.quadrature[0]], information.min(keepdims=True)
     else:
@@ -164,7 +194,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
     for ideal in MANOEUVRES:
         drives, _ = imagined(ideal, diagnosis.runs, final.point, pace, better=better)
         beside = [item for item in _calibrated() if item.name not in _names(wanted)]
-        look = sensitivities_of(drives, [*wanted, *beside], final.numbers)
+        look = _looked_at(drives, [*wanted, *beside], final.numbers)
         for item in list(wanted):
             if not _best(item, look, diagnosis.rounds[-1].number, final.held).hidden:
                 found[item.name] = ideal.name

@@ -29,9 +29,9 @@ SCORE_FLOOR = 8.0
 among 60."""
 
 SAME_BY_RUN = 0.5
-"""Gain of the other variant of an effect (a phase in each run, or one for all) relative to the
-best, above which it is fitted as well. Chosen: one with half the gain may still be the cheaper
-model, as it has fewer parameters to pay for."""
+"""Gain of another variant of an effect (a phase in each run, or one for all; a bump or a flat of a
+tread) relative to the best, above which it is fitted as well. Chosen: one with half the gain may
+still be the cheaper model, as it has fewer parameters to pay for."""
 
 INSTEAD_FITTED = 8
 """Effects that are fitted in place of a calibration. Chosen: each costs a fit, and on one circle at

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
@@ -89,11 +90,16 @@ def json_of(
 
 
 def _calibration(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Wheel base and radii of the best model; no deviation for those kept from the robot file."""
+    """Wheel base and radii of the best model; no deviation for those kept from the robot file.
+
+    No value of those that the drives tell less of than a tape does.
+    """
     if diagnosis.of_another_drive:
         return {}
     return {
-        name: {"value": value, "std": std or None}
+        name: {"value": None, "std": None}
+        if (std or 0.0) > rules.CALIBRATION_KNOWN * value
+        else {"value": value, "std": std or None}
         for name, (value, std) in best_sizes(diagnosis).items()
     }
 
