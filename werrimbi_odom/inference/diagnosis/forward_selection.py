@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -207,13 +208,16 @@ def without_nested(tried: Sequence[Fitted]) -> list[Fitted]:
 
     Nested models are no rivals: both hold. The wider is taken where what it has beyond the other is
     beyond chance, whatever both explain together; beside the other, in a model that holds it, too.
+    It costs more only where its fit ended at a minimum of its own.
     """
     kept = list(tried)
     for wider in tried:
         if extended := effect_of(wider.point, wider.names[-1]).extends:
-            needed = extension_p_value(wider) < rules.SURE
-            needless = extended if needed else wider.names[-1]
-            kept = [fit for fit in kept if fit.names[-1] != needless]
+            nested = [fit.total for fit in tried if fit.names[-1] == extended]
+            dearer = wider.total > min(nested, default=math.inf)
+            needless = dearer or extension_p_value(wider) > rules.SURE
+            name = wider.names[-1] if needless else extended
+            kept = [fit for fit in kept if fit.names[-1] != name]
     return kept
 
 
