@@ -25,11 +25,13 @@ from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effects
+from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.loaded_input import opened
@@ -247,3 +249,17 @@ def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
     assert added["covariance"] == compared["verdict"]["covariance"] == "too small"
     assert "What remains is noise" not in said
     assert f"of the new file says of the held-out drives: {headline}" in said
+
+
+def test_calibrate_fit_fits_what_each_drive_has_of_its_own() -> None:
+    """It left such an effect out, and sent to `diagnose`, which found nothing missing."""
+    truth = replace(UNKNOWN_PHASE, effects=(ECCENTRIC.using(amplitude=0.004, phase=0.7),))
+    runs = [run_of(truth, seed) for seed in (1, 2)]
+    given = replace(ROBOT, effects=(ECCENTRIC.using(amplitude=0.004),))
+    found = calibrate(match_for_fit(runs, given, 1.0), given)
+    assert found.misfit == ()
+    base = found.multipliers["wheel_separation_multiplier"]
+    assert base.std is not None
+    assert abs(base.value - 1.01) < 3.0 * base.std
+    without = calibrate(match_for_fit(runs, given, 1.0), replace(given, effects=()))
+    assert without.misfit != (), "it shows in these drives"
