@@ -43,9 +43,9 @@ def by_tests(places: str, claim: str, *, long: bool = False) -> Shown:
 SECTIONS: dict[str, tuple[Shown, ...]] = {
     "Find out why": (
         Shown(
-            "Real robots, mended by following the tool's advice alone. A plain least squares of all "
-            "that was known to be wrong in them reached 1.9, 4, 3.3 and 26 mm; that the first has "
-            "two clocks was not known.",
+            "Real robots, mended by following the tool's advice alone. A plain least squares of "
+            "all that was known to be wrong in them reached 1.9, 4, 3.3 and 26 mm; that the first "
+            "has two clocks was not known.",
             "python docs/follow_advice.py",
         ),
         Shown(
