@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.effects import all_effects
+from test.inference.driven import run_of
+from test.model.drives import ROBOT
+from werrimbi_odom.effects import all_effects, find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -53,3 +55,19 @@ def test_a_mount_a_clock_and_a_drift_are_found_in_one_short_drive(tmp_path: Path
     values = {held.name: held.values for held in found.robot.effects}
     assert values["reference_lever_arm"]["x"] == pytest.approx(AHEAD, abs=2e-3)
     assert values["reference_heading_delay"]["delay"] == pytest.approx(-EARLY, abs=0.01)
+
+
+def test_the_more_important_is_told_first_though_half_of_its_law_is_not_determined() -> None:
+    """A payload that stays the same tells nothing; beside it the temperature counted for none."""
+    by_channel = find("radius_by_channel").using(temperature=-2e-3)
+    oval = find("oval_left_wheel").using(amplitude=1e-3, phase=0.4)
+    runs = []
+    for seed in (1, 2):
+        warmth = 20.0 + 5.0 * np.sin(np.linspace(0.0, 6.0 + seed, 90 * 20 + 1))
+        channels = {"wheel_temperature_c": warmth, "payload_kg": np.full(warmth.size, 3.0)}
+        truth = replace(ROBOT, effects=(by_channel, oval))
+        runs.append(run_of(truth, seed, channels=channels))
+    effects = [find(name) for name in ("radius_by_channel", "oval_left_wheel")]
+    found = diagnose(runs, ROBOT, effects)
+    assert found.found == ("radius_by_channel", "oval_left_wheel")
+    assert found.final.importance["radius_by_channel"] > 1e3

@@ -294,5 +294,8 @@ def _wald(
     if not chosen:
         return 0.0, 0
     spread = covariance[np.ix_(chosen, chosen)]
-    values = np.array(away)
-    return float(values @ np.linalg.pinv(spread, hermitian=True) @ values), len(chosen)
+    # Each in its own standard deviation: beside one that is not determined others are rounding.
+    stds = np.sqrt(np.where(np.diag(spread) > 0.0, np.diag(spread), 1.0))
+    values = np.array(away) / stds
+    correlation = spread / np.outer(stds, stds)
+    return float(values @ np.linalg.pinv(correlation, hermitian=True) @ values), len(chosen)
