@@ -38,7 +38,9 @@ __all__ = [
     "Twin",
     "after_stage",
     "always_twins",
+    "applied_of",
     "body_effect",
+    "extended_by",
     "reference_effect",
     "twin_of",
     "view_of",
@@ -327,6 +329,16 @@ def after_stage(
         if applied.effect.stage == stage and applied.ready:
             motion = applied.effect.apply(motion, drive, **applied.values)
     return motion
+
+
+def applied_of(effects: tuple[AppliedEffect, ...], name: str) -> AppliedEffect:
+    """The effect of that name, which must be one of them."""
+    return next(applied for applied in effects if applied.name == name)
+
+
+def extended_by(effects: tuple[AppliedEffect, ...]) -> frozenset[str]:
+    """Names of the effects that some of these extend."""
+    return frozenset(applied.effect.extends for applied in effects if applied.effect.extends)
 
 
 def view_of(effects: tuple[AppliedEffect, ...]) -> View:

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.fitting.noise import (
 )
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.fitting.run_phases import with_own_values
+from werrimbi_odom.inference.fitting.run_phases import own_parameters, with_own_values
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
@@ -95,9 +95,8 @@ def calibrate(
         What is known of the reference.
     """
     laid = concatenated(runs)
-    begin, of_effects = with_own_values(laid, start_point(laid, robot, options))
-    own = [number for number in of_effects if number.name in begin.model.own[0]]
-    numbers = (*CALIBRATION, *own, *begin.model.nuisance_parameters)
+    begin, _ = with_own_values(laid, start_point(laid, robot, options))
+    numbers = (*CALIBRATION, *own_parameters(begin), *begin.model.nuisance_parameters)
     fit = fit_model(laid, begin, numbers)
     held = options.sigmas_known
     local = [number for number in numbers if number.name != START_YAW]

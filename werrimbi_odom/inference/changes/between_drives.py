@@ -31,7 +31,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import Score, candidates, scores
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.effect import Effect, extended_by
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Pa
     if not found and first is not final:
         found = _beside(diagnosis, first, diagnosis.rounds[0].dependences, effects)
     # What an effect has anew in each drive is no change.
-    anew = {applied.effect.extends for applied in final.point.model.robot.effects}
+    anew = extended_by(final.point.model.robot.effects)
     return tuple(each for each in found if each.group not in anew)
 
 

@@ -21,6 +21,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import STEP, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import signatures
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point
+from werrimbi_odom.model.effect import extended_by
 from werrimbi_odom.model.pose import Floats
 
 
@@ -66,11 +67,8 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
         Dispersion: factor by which squared innovations are too large.
     """
     robot = point.model.robot
-    held = {
-        name
-        for item in robot.effects
-        for name in (item.name, item.effect.extends, *item.effect.twins)
-    }
+    held = {name for item in robot.effects for name in (item.name, *item.effect.twins)}
+    held |= extended_by(robot.effects)
     white, flat = design.flat()
     columns = {number.name: flat[:, n] for n, (number, run) in enumerate(design.columns) if run < 0}
     own = flat[:, [n for n, (_, run) in enumerate(design.columns) if run >= 0]]

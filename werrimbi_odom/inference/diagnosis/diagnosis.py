@@ -18,8 +18,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
@@ -257,7 +255,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     if score is not None and best is not None:
         support = support_of(score.candidate, runs.drive(this.before.point.model.robot))
         data, penalty = runs.data, this.before.penalty_of_one
-        whole = float(np.sum(this.before.design.white**2))
+        whole = this.before.squares
         fall = max(fall_of_cost(score.gain, data, whole), this.before.cost - best.cost)
         worth = fall - (best.penalty - this.before.penalty)
 

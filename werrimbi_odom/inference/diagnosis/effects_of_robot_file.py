@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_of_candidate, scores
-from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.effect import AppliedEffect, Effect, extended_by
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -36,7 +36,7 @@ def rivals_of_held(
 ) -> dict[str, tuple[str, ...]]:
     """Effects that explain the drives as well as an effect that the file holds, by its name."""
     found = {}
-    extended = {applied.effect.extends for applied in fit.point.model.robot.effects}
+    extended = extended_by(fit.point.model.robot.effects)
     for applied in fit.point.model.robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED or base_name(applied.effect):
             continue  # sizes are in every fit

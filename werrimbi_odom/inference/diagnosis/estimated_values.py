@@ -22,6 +22,7 @@ from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
+from werrimbi_odom.model.effect import applied_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if fit is None:
         return _as_twin(diagnosis, name) if diagnosis.runs.headings_alone else {}
     model = fit.point.model
-    applied = next(item for item in model.robot.effects if item.name == name)
+    applied = applied_of(model.robot.effects, name)
     spread = _spreads(fit)
     anew = set(model.own[0]) if model.own else set()
     found = {}

@@ -16,7 +16,6 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     Fitted,
-    effect_of,
     extension_p_value,
     fitted,
 )
@@ -212,7 +211,7 @@ def without_nested(tried: Sequence[Fitted]) -> list[Fitted]:
     """
     kept = list(tried)
     for wider in tried:
-        if extended := effect_of(wider.point, wider.names[-1]).extends:
+        if extended := wider.newest.extends:
             nested = [fit.total for fit in tried if fit.names[-1] == extended]
             dearer = wider.total > min(nested, default=math.inf)
             needless = dearer or extension_p_value(wider) > rules.SURE

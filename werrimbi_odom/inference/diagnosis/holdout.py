@@ -24,6 +24,7 @@ from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
+from werrimbi_odom.model.effect import extended_by
 from werrimbi_odom.model.robot import Robot
 
 
@@ -160,7 +161,7 @@ def begin(
         set_up = set_up_of(sides[0])
         judge = judge_of(sides[0], sides[1], given, options, set_up.on_its_clock(given))
     # What an effect of the file has anew in each drive is no mistake.
-    anew = {applied.effect.extends for applied in robot.effects}
+    anew = extended_by(robot.effects)
     told = tuple(each for each in set_up.findings if each.effect not in anew)
     return Begun(judge, replace(set_up, findings=told), otherwise)
 

@@ -36,6 +36,7 @@ from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import of_each_run, residual_innovations
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.linear import nuisance, score_test
+from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.model.pose import Floats
 
 
@@ -62,7 +63,7 @@ def homogeneity_of_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
     if parts is None:
         return 0.0
     model = fit.point.model
-    applied = next(item for item in model.robot.effects if item.name == name)
+    applied = applied_of(model.robot.effects, name)
     whose = [number.name.rpartition(".") for number, _ in fit.design.columns]
     own, away = [], []
     for column, (number, run) in enumerate(fit.design.columns):

@@ -32,8 +32,7 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 
 def chance_of_score(score: Score, before: Fitted, tried: int) -> float:
     """P-value of the score of an effect that was not fitted, corrected for all candidates tried."""
-    whole = float(np.sum(before.design.white**2))
-    p_value = p_value_of_score(score.gain, score.degrees, whole, before.spare)
+    p_value = p_value_of_score(score.gain, score.degrees, before.squares, before.spare)
     return bonferroni(max(tried, 1), p_value)
 
 

@@ -41,7 +41,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
 from werrimbi_odom.inference.set_up.factors import is_ordinary
-from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -110,13 +110,22 @@ class Fitted:
         )
 
     @property
+    def squares(self) -> float:
+        """Sum of the squared innovations."""
+        return float(np.sum(self.design.white**2))
+
+    @property
+    def newest(self) -> Effect:
+        """The last of its effects beyond those of the given robot."""
+        return applied_of(self.point.model.robot.effects, self.names[-1]).effect
+
+    @property
     def determined(self) -> bool:
         """Whether the runs determine the newest effect's parameters; otherwise it is no finding."""
         if not self.names or self.names[-1] in CALIBRATED:
             return True
-        name = self.names[-1]
-        applied = next(item for item in self.point.model.robot.effects if item.name == name)
-        own = [f"{name}.{key}" for key, item in applied.effect.parameters.items() if not item.tries]
+        effect = self.newest
+        own = [f"{effect.name}.{key}" for key, item in effect.parameters.items() if not item.tries]
         return any(key not in self.held for key in own)
 
     @property
@@ -262,23 +271,18 @@ def grain_of(design: Design, robot: Robot) -> Floats:
 
 def wald_statistic(name: str, design: Design, covariance: Floats, point: Point) -> float:
     """Rise of the cost without an effect, by the curvature at the fit (Wald statistic)."""
-    effect = effect_of(point, name)
+    effect = applied_of(point.model.robot.effects, name).effect
     freed = [key for key in effect.parameters if effect.has_null(key)]
     return _wald(effect, freed, design, covariance, point)[0]
 
 
 def extension_p_value(fit: Fitted) -> float:
     """P-value of what the newest effect of a model has beyond the one that it extends (Wald)."""
-    effect = effect_of(fit.point, fit.names[-1])
+    effect = fit.newest
     nested = find(effect.extends).parameters
     freed = [key for key in effect.parameters if key not in nested]
     rise, degrees = _wald(effect, freed, fit.design, fit.covariance, fit.point)
     return fisher_survival(rise / max(degrees, 1), max(degrees, 1), fit.spare)
-
-
-def effect_of(point: Point, name: str) -> Effect:
-    """Effect of a model, by its name."""
-    return next(item.effect for item in point.model.robot.effects if item.name == name)
 
 
 def _wald(

@@ -54,14 +54,18 @@ def fitted_per_run(model: Model, runs: Concatenated, kind: ReferenceKind) -> Poi
     robot = replace(model.robot, effects=effects)
     point = start_point(runs, robot, EvaluationOptions(reference_kind=kind))
     point, _ = with_own_values(runs, point)
-    numbers = point.model.nuisance_parameters
-    for applied in effects:
-        numbers += [
-            number
-            for number in parameters_to_fit(applied.effect)
-            if number.per_run and number.name in point.model.own[0]
-        ]
+    numbers = (*point.model.nuisance_parameters, *own_parameters(point))
     return fit_model(runs, point, numbers, find_jumps=False, rounds=1).point
+
+
+def own_parameters(point: Point) -> tuple[FreeParameter, ...]:
+    """Free parameters of effects that each run of a point has of its own."""
+    return tuple(
+        number
+        for applied in point.model.robot.effects
+        for number in parameters_to_fit(applied.effect)
+        if number.per_run and number.name in point.model.own[0]
+    )
 
 
 def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[FreeParameter, ...]]:

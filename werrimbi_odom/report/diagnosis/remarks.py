@@ -16,6 +16,7 @@ from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
+from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.number_format import (
@@ -222,7 +223,7 @@ def outdated_told(advised: AdvisedDiagnosis) -> list[str]:
     diagnosis, sides = advised.diagnosis, advised.diagnosis.holdout
     lines = []
     for name in diagnosis.outdated:
-        values = next(item.values for item in diagnosis.given.effects if item.name == name)
+        values = applied_of(diagnosis.given.effects, name).values
         file = ", ".join(
             f"{parameter} {quantity(values[parameter], math.nan, item.unit)}"
             for parameter, item in values_of(diagnosis, name).items()
