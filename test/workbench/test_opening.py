@@ -19,10 +19,11 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.workbench.job import CancelledError, Job, Open
+from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.loaded_input import opened
 from werrimbi_odom.workbench.saving import Target
 from werrimbi_odom.workbench.tab import Opening, Shared
+from werrimbi_odom.workbench.task import Open
 
 Day = tuple[RobotFile, list[Run], list[Run]]
 

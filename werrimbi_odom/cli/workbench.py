@@ -39,7 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, serve until interrupted; return 0."""
-    from werrimbi_odom.workbench.job import Job, Open
+    from werrimbi_odom.workbench.job import Job
+    from werrimbi_odom.workbench.task import Open
 
     job = Job(Open())
     job.start()  # first, so that it imports while the drives are read

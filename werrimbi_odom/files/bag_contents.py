@@ -20,7 +20,8 @@ from werrimbi_odom.files.bag import Bag, Topic
 from werrimbi_odom.files.derived_references import copies, second_hand
 from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
-from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
+from werrimbi_odom.files.frames import Edge, EdgeCollector, chains_to_base, frame
+from werrimbi_odom.files.measured_topic import Measured, Measures, preference
 from werrimbi_odom.files.own_odometry import (
     ODOMETRY,
     is_asked_for,
@@ -30,7 +31,6 @@ from werrimbi_odom.files.own_odometry import (
     why_from_wheels,
 )
 
-Measures = Literal["poses", "positions", "yaw"]
 Gives = Literal["counts", "positions", "velocities", "odometry"]
 """Kinds of wheel data: counters, joint angles, joint speeds only, or the firmware's own poses."""
 
@@ -86,30 +86,6 @@ class Wheels:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """A topic or chain of transforms that measures the robot, or seems to."""
-
-    name: str
-    """Value for --reference-topic: TOPIC, or /tf:PARENT:CHILD."""
-    kind: str
-    messages: int
-    """For a chain of transforms, the number of messages of the measured transform."""
-    measures: Measures
-    parent: str
-    """Frame in which it is given; "" if not stated."""
-    child: str
-    """Frame that it describes; "" if not stated."""
-    independent: bool
-    """Whether it is independent of the wheels, by name and frames."""
-    why: str
-    """Reason for `independent`: the end of a sentence."""
-    chain: Chain | None = None
-    """Transforms to compose."""
-    aboard: bool = False
-    """Whether it is given in a frame on the robot, and so rather of something that it sees."""
-
-
-@dataclass(frozen=True)
 class Contents:
     """Contents of a bag."""
 
@@ -132,11 +108,6 @@ class Contents:
     def preferred(self) -> tuple[Measured, ...]:
         """Those that are independent of the wheels; the one that measures most first."""
         return tuple(sorted(self.independent, key=preference))
-
-
-def preference(each: Measured) -> tuple[bool, int]:
-    """Sort key of references: what measures more comes first, and what the robot sees last."""
-    return each.aboard, ("poses", "positions", "yaw").index(each.measures)
 
 
 def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:

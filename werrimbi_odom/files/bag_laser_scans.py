@@ -11,8 +11,8 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.bag_chain import Mount, MountingCollector
-from werrimbi_odom.files.bag_contents import Measured
 from werrimbi_odom.files.frames import Chain
+from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.run import Collected, Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.beam_order import AnyOrder, Order

@@ -14,9 +14,10 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
-from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN, Measured
+from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
+from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind, integrated
 from werrimbi_odom.files.stamps import newest_of_bursts

@@ -24,7 +24,7 @@ from werrimbi_odom.files.own_odometry import ODOMETRY, names_a_sensor
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.bag import Bag
-    from werrimbi_odom.files.bag_contents import Measured
+    from werrimbi_odom.files.measured_topic import Measured
 
 
 _MOSTLY = 0.9  # of the stamps; a sensor's own stamps never equal another node's to the nanosecond

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_contents import SCAN, Contents, Measured, Wheels
+from werrimbi_odom.files.bag_contents import SCAN, Contents, Wheels
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, chain, frame, is_static
+from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.own_odometry import is_odometry_frame
 
 NONE = "none"

@@ -11,8 +11,9 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.files.bag_contents import Contents, Measured, Wheels
+from werrimbi_odom.files.bag_contents import Contents, Wheels
 from werrimbi_odom.files.first_robot import FirstRobot
+from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints

@@ -206,3 +206,11 @@ def places(at: NDArray[np.complex128]) -> tuple[NDArray[np.float32], NDArray[np.
 def small(values: NDArray[np.float64]) -> NDArray[np.float32]:
     """Values for drawing in single precision, which halves the size of the file."""
     return np.asarray(values, dtype=np.float32)
+
+
+def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) -> Figure:
+    """Axes with a line at zero; with `turn`, an axis of one turn in degrees."""
+    figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
+    figure.update_xaxes(title=variable, **({"dtick": 45, "range": [0, 360]} if turn else {}))
+    figure.update_yaxes(title=error)
+    return plain(figure, height=height)

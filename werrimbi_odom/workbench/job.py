@@ -22,7 +22,7 @@ from werrimbi_odom.errors import InputError
 if TYPE_CHECKING:
     from werrimbi_odom.effects.lookup import Collection
     from werrimbi_odom.files.recordings import Recordings
-    from werrimbi_odom.model.robot import Robot
+    from werrimbi_odom.workbench.task import Task
 
 
 def begin(asked: Connection) -> None:
@@ -102,7 +102,7 @@ class Job:
 
     def ask(self, given: Recordings) -> None:
         """Send the task to a process that was started."""
-        from werrimbi_odom.workbench.worker import packed
+        from werrimbi_odom.workbench.crossing import packed
 
         data = packed((self.task, given), {})
         # The process may still be importing, and a pipe blocks until it reads.
@@ -136,7 +136,7 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
-        from werrimbi_odom.workbench.worker import unpacked
+        from werrimbi_odom.workbench.crossing import unpacked
 
         while True:
             what, value, words = receiving.recv()
@@ -147,26 +147,3 @@ class Job:
             if what == "refused":
                 raise InputError(value)
             self.share, self.words = value, words
-
-
-@dataclass(frozen=True)
-class Diagnose:
-    """Diagnose what a robot's model is missing."""
-
-    robot: Robot
-
-
-@dataclass(frozen=True)
-class Add:
-    """Fit additional effects together, and compare."""
-
-    effects: tuple[str, ...]
-    robot: Robot
-
-
-@dataclass(frozen=True)
-class Open:
-    """Cut the drives into legs, and compare the robot as given."""
-
-
-Task = Diagnose | Add | Open

@@ -13,9 +13,9 @@ from werrimbi_odom.inference.comparison.dependence import ByVariable
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.report.comparison.figures import NAMES, legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
+from werrimbi_odom.report.comparison.over_variable import error_against_figure, variables_of
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.document import Document, Part, Shown, Table, paragraphs
-from werrimbi_odom.report.over_variable import error_against_figure, variables_of
 from werrimbi_odom.report.phrases import leg_words
 from werrimbi_odom.report.style import Figure
 

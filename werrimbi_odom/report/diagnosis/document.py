@@ -14,6 +14,7 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.report.diagnosis.before_after import before_after_figure
 from werrimbi_odom.report.diagnosis.dependence import label_of
 from werrimbi_odom.report.diagnosis.evidence_figures import (
     dependence_figure,
@@ -31,7 +32,6 @@ from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.events import on_the_path, over_time
 from werrimbi_odom.report.number_format import capital
-from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.report.sketches import effect_sketch
 
 _LISTED = 8

@@ -13,8 +13,8 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.report import style
+from werrimbi_odom.report.diagnosis.before_after import labelled
 from werrimbi_odom.report.diagnosis.dependence import VARIABLES, error_of, label_of, unit_of
-from werrimbi_odom.report.over_variable import labelled, over
 from werrimbi_odom.report.style import Figure
 
 FAINTEST = 150.0
@@ -148,7 +148,7 @@ def dependence_figure(cell: Dependence, run_names: Sequence[str]) -> Figure:
     else:
         _curve(figure, cell, unit, factor)
     error = f"{error_of(cell.amount)}<br>[{unit}]"
-    over(figure, labelled(cell), error, 360, turn=cell.form == "turns")
+    style.over(figure, labelled(cell), error, 360, turn=cell.form == "turns")
     if cell.variable.name == CONSTANT:
         figure.update_xaxes(showticklabels=False, title="whatever is driven")
     return figure

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of an error over one variable: leg errors, wheel errors over a turn, before and after."""
+"""Figures of an error over one variable: leg errors, and wheel errors over a turn."""
 
 from __future__ import annotations
 
@@ -16,13 +16,9 @@ from werrimbi_odom.inference.comparison.over_variable import (
     over_a_turn,
     wheel_errors,
 )
-from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.response_curve import BeforeAfter
-from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.comparison.figures import CHANNELS, measured_channels
-from werrimbi_odom.report.diagnosis.dependence import error_of, label_of, unit_of
 from werrimbi_odom.report.style import Figure
 
 WHEEL_ANGLES = ("left wheel's angle [°]", "right wheel's angle [°]")
@@ -40,14 +36,6 @@ _LOOKS = (
     (style.BLUE, "dash", "x"),
     (style.ORANGE, "dash", "cross"),
 )
-
-
-def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) -> Figure:
-    """Axes with a line at zero; with `turn`, an axis of one turn in degrees."""
-    figure.add_hline(y=0.0, line={"color": style.GREY, "width": 1})
-    figure.update_xaxes(title=variable, **({"dtick": 45, "range": [0, 360]} if turn else {}))
-    figure.update_yaxes(title=error)
-    return style.plain(figure, height=height)
 
 
 def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
@@ -82,7 +70,7 @@ def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
         middle = {"x": 0.5, "y": 0.5, "xref": "paper", "yref": "paper"}
         figure.add_annotation(text=words, showarrow=False, **middle)
     error = f"error of the {word} wheel's travel [mm per m]"
-    return over(figure, f"angle of the {word} wheel [°]", error, 480, turn=True)
+    return style.over(figure, f"angle of the {word} wheel [°]", error, 480, turn=True)
 
 
 def variables_of(comparison: Comparison) -> list[str]:
@@ -156,40 +144,3 @@ def _range(figure: Figure, values: Floats, place: int) -> None:
     low, high = np.quantile(values, [0.005, 0.995]).tolist()
     room = 0.15 * max(high - low, 1e-9)
     figure.update_yaxes(range=[min(low, 0.0) - room, max(high, 0.0) + room], row=place, col=1)
-
-
-def before_after_figure(found: BeforeAfter) -> Figure:
-    """Error over the variable with error bars, before (and after)."""
-    unit, factor = unit_of(found.cell.amount)
-    scale = float(np.degrees(1.0)) if found.turns else 1.0
-    figure = style.blank()
-    words = f"with {found.effect}" if found.effect else ""
-    before = "calibrated alone" if found.effect not in CALIBRATED else "as given"
-    for name, item, colour, symbol, dash in (
-        (f"before: {before}", found.before, style.ORANGE, "square", "dot"),
-        (f"after: {words}", found.after, style.BLUE, "circle", "solid"),
-    ):
-        if item is None:
-            continue
-        style.plot(
-            figure,
-            scale * item.centre,
-            factor * item.value,
-            name if found.effect else "what the error goes with",
-            hover=f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>",
-            line={"color": colour, "width": 2, "dash": dash},
-            marker={"color": colour, "symbol": symbol, "size": 9},
-            error_y=style.error_bars(2.0 * (factor * item.std), colour, 1.5),
-        )
-    label = labelled(found.cell)
-    if found.turns and found.aligned:
-        label = label.replace(" [°]", ", from where the fit puts its zero [°]")
-    error = f"{error_of(found.cell.amount)}<br>[{unit}]"
-    return over(figure, label, error, 430, turn=found.turns)
-
-
-def labelled(cell: Dependence) -> str:
-    """The variable with its unit."""
-    unit = "°" if cell.form == "turns" else cell.variable.unit
-    name = label_of(cell.variable.name)
-    return f"{name} [{unit}]" if unit else name

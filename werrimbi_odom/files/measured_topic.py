@@ -1,0 +1,41 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A topic of a bag that measures the robot, and which of several is preferred."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from werrimbi_odom.files.frames import Chain
+
+Measures = Literal["poses", "positions", "yaw"]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A topic or chain of transforms that measures the robot, or seems to."""
+
+    name: str
+    """Value for --reference-topic: TOPIC, or /tf:PARENT:CHILD."""
+    kind: str
+    messages: int
+    """For a chain of transforms, the number of messages of the measured transform."""
+    measures: Measures
+    parent: str
+    """Frame in which it is given; "" if not stated."""
+    child: str
+    """Frame that it describes; "" if not stated."""
+    independent: bool
+    """Whether it is independent of the wheels, by name and frames."""
+    why: str
+    """Reason for `independent`: the end of a sentence."""
+    chain: Chain | None = None
+    """Transforms to compose."""
+    aboard: bool = False
+    """Whether it is given in a frame on the robot, and so rather of something that it sees."""
+
+
+def preference(each: Measured) -> tuple[bool, int]:
+    """Sort key of references: what measures more comes first, and what the robot sees last."""
+    return each.aboard, ("poses", "positions", "yaw").index(each.measures)
