@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the intervals that are stated hold the truth as often as they say.
 
-Of the verbs add and calibrate fit, on the engine's sets: it shares no code with the model, so an
-interval misses where the law is not quite the engine's, too. An interval of 1.96 standard
-deviations holds the truth in 95 of 100 cases, and the truth's place in its own distribution is
-then even from 0 to 1.
+Of the verbs diagnose, add and calibrate fit, on the engine's sets: it shares no code with the
+model, so an interval misses where the law is not quite the engine's, too. An interval of 1.96
+standard deviations holds the truth in 95 of 100 cases, and the truth's place in its own
+distribution is then even from 0 to 1.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ WIDE = 1.96
 """Standard deviations."""
 
 RANKS = 10
+
+VERBS = ("diagnose", "add", "calibrate fit")
 
 Scores = dict[tuple[str, str], list[float]]
 """By verb and parameter: (stated - true) / stated standard deviation."""
@@ -64,12 +66,21 @@ def work(what: HiddenSet) -> Line:
 
 
 def scores(lines: Sequence[Judged], sets: Sequence[HiddenSet], fits: Mapping[str, Line]) -> Scores:
-    """Of all that was stated; of additions the last, where they led to the truth."""
+    """Of all that was stated; of additions the last, where they led to the truth.
+
+    Of diagnoses the first, where what it found is what was hidden.
+    """
     found: Scores = defaultdict(list)
     known = {each.name: each for each in sets}
     for line in lines:
-        if line.fits and line.name in known and at_the_truth(line):
-            for name, score in _of_addition(line, known[line.name].truth):
+        if line.name not in known:
+            continue
+        truth = known[line.name].truth
+        if line.hidden and set(line.found) == set(line.hidden):
+            for name, score in _against(truth, line.values):
+                found["diagnose", name].append(score)
+        if line.fits and at_the_truth(line):
+            for name, score in _of_addition(line.fits[-1], truth):
                 found["add", name].append(score)
     for each in fits.values():
         for name, score in each.get("scores", {}).items():
@@ -77,15 +88,7 @@ def scores(lines: Sequence[Judged], sets: Sequence[HiddenSet], fits: Mapping[str
     return found
 
 
-def _of_addition(line: Judged, truth: Mapping[str, object]) -> list[tuple[str, float]]:
-    fit = line.fits[-1]
-    hidden = truth["hidden"]
-    assert isinstance(hidden, list)
-    true = {
-        f"{each['effect']}.{name}": value
-        for each in hidden
-        for name, value in values_of(each["effect"], each["parameters"]).items()
-    }
+def _of_addition(fit: Line, truth: Mapping[str, object]) -> list[tuple[str, float]]:
     alone = fit["effects"][0] if len(fit["effects"]) == 1 else None
     stated = {
         name if "." in name or alone is None else f"{alone}.{name}": pair
@@ -95,7 +98,22 @@ def _of_addition(line: Judged, truth: Mapping[str, object]) -> list[tuple[str, f
                      for name in fit["effects"])  # fmt: skip
     stated |= fit["calibration"] if exotic else {}
     stated |= fit["noise"]
-    true |= {**multipliers_of(truth), **noises_of(truth, fit["effects"])}
+    return _against(truth, stated, {**multipliers_of(truth), **noises_of(truth, fit["effects"])})
+
+
+def _against(
+    truth: Mapping[str, object],
+    stated: Mapping[str, Sequence[float]],
+    more: Mapping[str, float] | None = None,
+) -> list[tuple[str, float]]:
+    """Of each parameter whose truth is known, here or by `more`: how far off it is stated."""
+    hidden = truth["hidden"]
+    assert isinstance(hidden, list)
+    true = {
+        f"{each['effect']}.{name}": value
+        for each in hidden
+        for name, value in values_of(each["effect"], each["parameters"]).items()
+    } | dict(more or {})
     return [
         (name, (value - true[name]) / std)
         for name, (value, std) in stated.items()
@@ -106,7 +124,7 @@ def _of_addition(line: Judged, truth: Mapping[str, object]) -> list[tuple[str, f
 def table(found: Scores) -> Table:
     """Each parameter of each verb."""
     rows = []
-    for verb in ("add", "calibrate fit"):
+    for verb in VERBS:
         own = {name: values for (of, name), values in found.items() if of == verb}
         everything = [value for values in own.values() for value in values]
         if not everything:
@@ -114,9 +132,10 @@ def table(found: Scores) -> Table:
         rows.append((verb, "all parameters", *_row(everything)))
         rows += [(verb, name, *_row(values)) for name, values in own.items()]
     words = (
-        f"Intervals of ± {WIDE} stated standard deviations; of additions the last of each set, "
-        "where all that was added is what was hidden. *Off*: (stated - true) / stated standard "
-        "deviation, mean and standard deviation over the sets; 0 and 1 where all is right."
+        f"Intervals of ± {WIDE} stated standard deviations; of diagnoses the first of each set, of "
+        "additions the last, where all that was found, or added, is what was hidden. *Off*: "
+        "(stated - true) / stated standard deviation, mean and standard deviation over the sets; 0 "
+        "and 1 where all is right."
     )
     columns = ("verb", "parameter", "intervals", "hold the truth", "95 % interval", "off")
     return Table("Intervals that hold the truth", columns, tuple(rows), words)
@@ -145,7 +164,7 @@ def ranks(found: Scores, verb: str) -> list[int]:
 def rank_table(found: Scores) -> Table:
     """The histograms, in numbers."""
     rows = []
-    for verb in ("add", "calibrate fit"):
+    for verb in VERBS:
         counts = ranks(found, verb)
         if sum(counts):
             rows.append((verb, *map(str, counts)))

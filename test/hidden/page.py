@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from test.hidden.coverage import RANKS, Scores, ranks
+from test.hidden.coverage import RANKS, VERBS, Scores, ranks
 from test.hidden.table_layout import Table
 
 HEAD = """# Evidence: effects hidden by a physics engine, and what the diagnosis made of them
@@ -142,7 +142,7 @@ def draw(
         save(figure, "evidence_smallest.png", title, "ratio", "", 200 + 24 * len(names))
     if sum(ranks(found, "add")):
         figure = go.Figure()
-        for verb, colour in (("add", BLUE), ("calibrate fit", ORANGE)):
+        for verb, colour in zip(VERBS, (GREY, BLUE, ORANGE), strict=True):
             counts = ranks(found, verb)
             if not any(counts):
                 continue  # its part of the evidence was not run

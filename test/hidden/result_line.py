@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from test.hidden.resumable_jobs import Line
@@ -44,6 +44,9 @@ class Judged:
     verdict: str
     effect: str | None = None
     found: tuple[str, ...] = ()
+    values: Line = field(default_factory=dict)
+    """Of all parameters of what was found, as the first diagnosis states them: value and standard
+    deviation."""
     rivals: tuple[str, ...] = ()
     factor: str | None = None
     depends_on: tuple[tuple[str, str], ...] = ()

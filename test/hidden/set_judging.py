@@ -93,6 +93,11 @@ def _said(what: HiddenSet, told: Followed) -> Judged:
         line,
         effect=first["effect"],
         found=tuple(each["effect"] for each in first["found"]),
+        values={
+            f"{each['effect']}.{name}": [item["value"], item["std"]]
+            for each in first["found"]
+            for name, item in each["parameters"].items()
+        },
         rivals=tuple(first["rivals"]),
         factor=factors[0] if factors else None,
         depends_on=tuple((cell["channel"], cell["variable"]) for cell in first["depends_on"][:3]),
