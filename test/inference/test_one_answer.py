@@ -15,7 +15,7 @@ import pytest
 
 from test.cli.commands import write_run
 from test.command_line import Werrimbi
-from test.inference.driven import run_of
+from test.inference.driven import COMMON, run_of
 from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
@@ -31,6 +31,7 @@ from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -141,6 +142,18 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
     assert whys == ({"gap"} if "gap" in case or "phase" in case else set()) | (
         {"reference"} if "jumps" in case else set()
     )
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_base_by_headings_alone_is_as_sure_by_add_as_by_diagnose(seed: int) -> None:
+    """Half a wider base and half smaller wheels were an estimate of both: ± ten times as much."""
+    runs = [parts(run, "yaw") for run in drives((seed,), WRONG)]
+    base = find("track_width")
+    (told,) = values_of(diagnose(runs, WRONG, COMMON), base.name).values()
+    (added,) = add_effects([base], runs, WRONG).fitted[base.name].values()
+    assert added.value == pytest.approx(told.value, abs=told.std)
+    assert added.std is not None
+    assert told.std <= added.std < 2.5 * told.std
 
 
 def test_a_phase_is_learnt_by_compare_as_well() -> None:

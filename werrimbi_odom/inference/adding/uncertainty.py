@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.calibration_parametrisation import with_sizes_in_multipliers
-from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes, choices
+from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
 from werrimbi_odom.inference.distributions import upper_part
@@ -88,9 +88,12 @@ def with_spread(
             if number.name in lacking
         ]
         design = stacked(drives.laid, fit.point, [*_local(fit), *more])
-    free = np.linalg.matrix_rank(fit.moves[[number.name in MULTIPLIERS for number, _ in columns]])
-    if free != sizes.free:  # the other sizes could not be reset (`with_sizes`)
-        *_, sizes = choices()
+    model = fit.point.model
+    now = np.array([[value_of(model.robot, name)] for name in MULTIPLIERS])
+    moved = fit.moves[[fit.design.names.index(name) for name in MULTIPLIERS]] / now
+    moved = moved[:, moved.any(axis=0)]
+    if moved.shape[1] != sizes.free:  # the other sizes could not be reset (`with_sizes`)
+        sizes = FreeSizes(("as fitted", "as fitted"), moved)
     spread = model_averaged_stds(fit, given, wanted, sizes, laws, design)
     told = [index for index, (_, run) in enumerate(columns) if run < 0 and fit.moves[index].any()]
     names = [columns[index][0].name for index in told]

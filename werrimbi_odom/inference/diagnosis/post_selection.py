@@ -21,7 +21,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes, c
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.fitting.whitened_innovations import Design
-from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance
+from werrimbi_odom.inference.linear import SILENT, admitted, covariance_of, nuisance
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -51,7 +51,7 @@ def model_averaged_stds(
         Robot with the sizes of the file.
     wanted : collection of str
         Calibration effects whose sizes are free in every choice.
-    told : Sizes
+    told : FreeSizes
         The chosen sizes, about which deviations are taken; of `laws`, the parameters in `fit`.
     laws : sequence of Law
         Optional parameters of effects.
@@ -78,7 +78,8 @@ def model_averaged_stds(
     kept_now = tuple(name for name in nulls if name in fitted and fitted[name].any())
     sized = [names.index(name) for name in MULTIPLIERS]
     found, there_now = [], np.zeros(len(names))
-    for sizes, kept in product(choices(wanted), dict.fromkeys([*_subsets(laws), kept_now])):
+    every = {each.parts: each for each in (*choices(wanted), told)}
+    for sizes, kept in product(every.values(), dict.fromkeys([*_subsets(laws), kept_now])):
         is_told = sizes.parts == told.parts and kept == kept_now
         moves = np.zeros((len(names), sizes.free + len(kept)))
         moves[sized, : sizes.free] = sizes.directions * now[sized, None]
@@ -86,9 +87,12 @@ def model_averaged_stds(
         moves = np.concatenate([moves, others], axis=1)
         heard = np.sum((marks @ moves) ** 2, axis=0) > SILENT**2
         limits = [rules.CALIBRATION_KNOWN] * sizes.free + [limit[name] for name in kept]
-        if not is_told and not heard[: len(limits)].all():
-            continue
         moves, columns = moves[:, heard], marks @ moves[:, heard]
+        mine = columns.shape[1] - int(heard[len(limits) :].sum())
+        # Headings know the wheels' size over the base alone: half of each is no estimate of either.
+        beside = nuisance(columns[:, mine:])
+        if not is_told and len(admitted(columns[:, :mine], beside)) < len(limits):
+            continue
         covariance = covariance_of(columns)
         if not is_told and not np.all(np.sqrt(np.diag(covariance))[: len(limits)] < limits):
             continue  # parameters that the data do not determine say nothing about the others
