@@ -20,8 +20,8 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of
 from werrimbi_odom.inference.adding.start_values import FitDrives
-from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
 from werrimbi_odom.inference.legs.cutting import match_for_fit

@@ -15,7 +15,7 @@ import pytest
 
 from test.cli.commands import write_run
 from test.command_line import Werrimbi
-from test.inference.driven import COMMON, run_of
+from test.inference.driven import COMMON, run_of, runs_of
 from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
@@ -154,6 +154,23 @@ def test_a_base_by_headings_alone_is_as_sure_by_add_as_by_diagnose(seed: int) ->
     assert added.value == pytest.approx(told.value, abs=told.std)
     assert added.std is not None
     assert told.std <= added.std < 2.5 * told.std
+
+
+def test_diagnose_states_what_add_will_write() -> None:
+    """Value and ± of an effect and of the base."""
+    hidden = find("lateral_slip").using(creep=0.02)
+    *train, held = runs_of(replace(ROBOT, effects=(hidden,)), (50, 51, 52), 60)
+    found = diagnose(train, WRONG, COMMON, holdout=[held])
+    assert found.verdict == "named"
+    assert set(found.found) == {hidden.name, "track_width"}
+    added = add_effects([found.effect_named(name) for name in found.found], train, WRONG,
+                        holdout=[held])  # fmt: skip
+    for name in found.found:
+        for parameter, told in values_of(found, name).items():
+            if told.reported:
+                written = added.fitted[name][parameter]
+                assert written.value == pytest.approx(told.value, abs=0.02 * told.std)
+                assert written.std == pytest.approx(told.std, rel=0.02)
 
 
 def test_a_phase_is_learnt_by_compare_as_well() -> None:

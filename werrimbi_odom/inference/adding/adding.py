@@ -24,7 +24,6 @@ from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of, to_write
 from werrimbi_odom.inference.adding.objection import Question
 from werrimbi_odom.inference.adding.start_values import FitDrives, drives_of, with_set_up
-from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.calibration_parametrisation import base_name, robot_for_cutting
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
@@ -40,9 +39,10 @@ from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
+from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
-from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
@@ -139,7 +139,7 @@ def add_effects(
     alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
     question = Question(tuple(effects), drives, fits, fit, robot, also, kept, alone, set_up)
     chances, objections = question.chances, question.objections
-    noises, remaining, misfit, sane = _noise(drives, as_written(drives, fit, robot))
+    noises, remaining, misfit, sane = _noise(drives.laid, as_written(drives.laid, fit, robot))
     explained = misfit is None and sane
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
@@ -147,7 +147,7 @@ def add_effects(
     if not holdout:
         show(0.9, "all runs")
         drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
-    known = with_spread(effects, drives, written, robot, wanted, sizes, noises)
+    known = with_spread(effects, drives.laid, written, robot, wanted, sizes, noises)
     of_file = {name: getattr(robot, name) for name in WHEEL_NOISES}
     final = replace(to_write(written.point.model, robot), **of_file)
     if explained:
@@ -237,15 +237,15 @@ def _legs(prepared: PreparedRuns, model: Model) -> Legs:
 
 
 def _noise(
-    drives: FitDrives, fit: Fitted
+    runs: Concatenated, fit: Fitted
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
     """Wheel noise, remaining dependences, misfit, and whether the noise is plausible."""
-    noises = noises_of(drives, fit)
-    found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.numbers))
+    noises = noises_of(runs, fit)
+    found = dependences(runs, fit.point, (*CALIBRATION, *fit.numbers))
     remaining = tuple(cell for cell in found if cell.p_value < rules.VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
     sane = not any(beyond_wheel_noise(item) for item in wheels)
-    return noises, remaining, misfit_of_found(fit, remaining, drives.laid), sane
+    return noises, remaining, misfit_of_found(fit, remaining, runs), sane
 
 
 def _told(noise: NoiseEstimate) -> NoiseEstimate:

@@ -150,12 +150,6 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: FreeSizes) 
     )
 
 
-def sizes_at(fit: Fitted, given: Robot, sizes: FreeSizes) -> dict[str, float]:
-    """Multipliers with only those sizes free, to first order; the others as given."""
-    marks, rest = _at_given(fit.design, fit.point.model.robot, given)
-    return _sized(given, sizes, -_solved(marks, sizes, rest))
-
-
 def choices(wanted: Collection[str] = ()) -> Iterator[FreeSizes]:
     """All choices of free sizes that move the `wanted` effects, the fewest parameters first."""
     every = [

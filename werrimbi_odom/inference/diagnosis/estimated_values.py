@@ -13,11 +13,9 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import base_told, sizes_of, std_as_effect
-from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_at, sizes_needed
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.p_values import chance
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import RATIO, Fitted
-from werrimbi_odom.inference.diagnosis.post_selection import model_averaged_stds
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -105,11 +103,11 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
     effect = find(name)
     item = next(iter(effect.parameters.values()))
     size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
-    names = diagnosis.final.design.names
+    names = diagnosis.told.design.names
     std = math.nan
-    if set(MULTIPLIERS) <= set(names) and name not in diagnosis.final.held:
+    if set(MULTIPLIERS) <= set(names) and name not in diagnosis.told.held:
         where = [names.index(multiplier) for multiplier in MULTIPLIERS]
-        spread = diagnosis.final.covariance[np.ix_(where, where)]
+        spread = diagnosis.told.covariance[np.ix_(where, where)]
         std = size * std_as_effect(name, diagnosis.robot, spread)
     return Value(size, std, item.unit, item.says, item.null)
 
@@ -139,12 +137,12 @@ def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
 
 
 def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
-    """The final fit if it has the effect, else the cheapest fit that was tried with it."""
+    """The reported fit if it has the effect, else the cheapest fit that was tried with it."""
     tried = [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
     return next(
         (
             fit
-            for fit in (diagnosis.final, *tried)
+            for fit in (diagnosis.told, *tried)
             if any(item.name == name for item in fit.point.model.robot.effects)
         ),
         None,
@@ -186,16 +184,12 @@ def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]
 
     The given ones where set-up mistakes were found, since sizes are reported together with them.
     """
-    given, final = diagnosis.given, diagnosis.final
     if mistakes(diagnosis):
-        return {name: (getattr(given, name), None) for name in MULTIPLIERS}
-    wanted = set(diagnosis.found) & set(CALIBRATED)
-    needed = sizes_needed(final, given, wanted)
-    values = sizes_at(final, given, needed)
-    spread = model_averaged_stds(final, given, wanted, needed)
+        return {name: (getattr(diagnosis.given, name), None) for name in MULTIPLIERS}
+    robot, spread = diagnosis.robot, _spreads(diagnosis.told)
+    same = {name for name in MULTIPLIERS if getattr(robot, name) == getattr(diagnosis.given, name)}
     return {
-        name: (values[name], spread[name] if moves.any() else 0.0)
-        for name, moves in zip(MULTIPLIERS, needed.directions, strict=True)
+        name: (getattr(robot, name), 0.0 if name in same else spread[name]) for name in MULTIPLIERS
     }
 
 

@@ -55,8 +55,9 @@ class Diagnosis:
     rounds: tuple[Round, ...]
     final: Fitted
     """The fit of everything found, with all sizes free."""
-    model: Model
-    """The reported model: sizes that do not pay their penalty are as given, as in `add`."""
+    told: Fitted
+    """The reported fit, as in `add`: sizes that do not pay their penalty are as given, and standard
+    deviations allow for what was chosen (`uncertainty.with_spread`)."""
     runs: Concatenated
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
@@ -91,6 +92,11 @@ class Diagnosis:
         """Whether wheels and reference have at most their turns in common: there is no result."""
         nothing = ("another_drive", "no_turn", "places")
         return any(remark.what in nothing for remark in self.remarks)
+
+    @property
+    def model(self) -> Model:
+        """The reported model."""
+        return self.told.point.model
 
     @property
     def robot(self) -> Robot:

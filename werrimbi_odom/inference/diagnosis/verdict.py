@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import NamedTuple
 
 from werrimbi_odom.inference import rules
@@ -33,10 +34,12 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     rivals_of_others,
     torn_by_halves,
 )
+from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.model.robot import Robot
 
 
@@ -83,16 +86,16 @@ def diagnosis_of(
     if not another:
         answer = _answer(begun, given, rounds, final, beyond, laid, instead)
     before = judge.of(as_given)
-    model = _as_told(final, mended, answer.found, laid)
-    after = judge.of(model)
+    told = _as_told(final, mended, answer.found, laid)
+    after = judge.of(told.point.model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)
     fell = of_set_up.to(after).fell and after.quiet[0] < of_set_up.quiet[0]
-    if further and not fell and far_above_noise(judge.train, model):
+    if further and not fell and far_above_noise(judge.train, told.point.model):
         # It suits a part of the drives alone, and what is left there is no noise.
         answer = answer._replace(found=mistakes) if mistakes else _Answer("unknown")
-        model = _as_told(rounds[0].before if mistakes else final, mended, answer.found, laid)
-        after = judge.of(model)
+        told = _as_told(rounds[0].before if mistakes else final, mended, answer.found, laid)
+        after = judge.of(told.point.model)
     return Diagnosis(
         verdict=answer.verdict,
         effect=answer.found[0] if answer.found else None,
@@ -109,7 +112,7 @@ def diagnosis_of(
         given=given,
         rounds=rounds,
         final=final,
-        model=model,
+        told=_with_spread(told, mended, answer.found, laid),
         runs=laid,
         train=Sides(before.train, after.train, before.unit),
         holdout=before.to(after),
@@ -195,9 +198,20 @@ def _plain(fit: Fitted, given: Robot) -> Model:
     return Model(changed(model.robot, back), model.own)
 
 
-def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Model:
-    """A fitted model, with only the reported sizes changed."""
+def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Fitted:
+    """A fit, with only the reported sizes changed."""
     if not (fit.calibrated or fit.names):
-        return _plain(fit, given)
-    sizes = sizes_needed(fit, given, set(found) & set(CALIBRATED))
-    return with_sizes(laid, fit, given, sizes).point.model
+        return replace(fit, point=replace(fit.point, model=_plain(fit, given)))
+    return with_sizes(laid, fit, given, sizes_needed(fit, given, set(found) & set(CALIBRATED)))
+
+
+def _with_spread(told: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Fitted:
+    """The reported fit with the standard deviations that are stated of what was found."""
+    if not (found and (told.calibrated or told.names)):
+        return told
+    wanted = set(found) & set(CALIBRATED)
+    effects = [applied_of(told.point.model.robot.effects, name).effect for name in told.names]
+    noises = noises_of(laid, as_written(laid, told, given))
+    return with_spread(
+        effects, laid, told, given, wanted, sizes_needed(told, given, wanted), noises
+    )

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Uncertainty of a model with added effects: its noise, and all standard deviations."""
+"""Uncertainty of a model with effects: its noise, and all standard deviations that are stated."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.calibration_parametrisation import with_sizes_in_multipliers
 from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
 from werrimbi_odom.inference.distributions import upper_part
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
@@ -35,14 +35,14 @@ from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 
-def noises_of(drives: FitDrives, fit: Fitted) -> dict[str, NoiseEstimate]:
+def noises_of(runs: Concatenated, fit: Fitted) -> dict[str, NoiseEstimate]:
     """Noise of a model as its file has it (`as_written`)."""
-    costs = Costs(drives.laid, fit.point)
-    information = _precision(drives, fit).information
-    return noise_estimates(costs, fit.point.variances, drives.options.sigmas_known, information)
+    costs = Costs(runs, fit.point)
+    information = _precision(runs, fit).information
+    return noise_estimates(costs, fit.point.variances, fit.point.options.sigmas_known, information)
 
 
-def as_written(drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
+def as_written(runs: Concatenated, fit: Fitted, given: Robot) -> Fitted:
     """The fit with its sizes as multipliers, and the noise fitted to that.
 
     A size that a search put in as an effect corrects the motion, but the covariance still uses the
@@ -54,15 +54,13 @@ def as_written(drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     if robot is model.robot:
         return fit
     point = replace(fit.point, model=Model(robot, model.own))
-    variances = map_variances(
-        Costs(drives.laid, point), point.variances, drives.options.sigmas_known
-    )
+    variances = map_variances(Costs(runs, point), point.variances, fit.point.options.sigmas_known)
     return replace(fit, point=replace(point, variances=variances))
 
 
 def with_spread(
     effects: Sequence[Effect],
-    drives: FitDrives,
+    runs: Concatenated,
     fit: Fitted,
     given: Robot,
     wanted: Collection[str],
@@ -87,7 +85,7 @@ def with_spread(
             for number in parameters_to_fit(effect)
             if number.name in lacking
         ]
-        design = stacked(drives.laid, fit.point, [*_local(fit), *more])
+        design = stacked(runs, fit.point, [*_local(fit), *more])
     model = fit.point.model
     now = np.array([[value_of(model.robot, name)] for name in MULTIPLIERS])
     moved = fit.moves[[fit.design.names.index(name) for name in MULTIPLIERS]] / now
@@ -97,7 +95,7 @@ def with_spread(
     spread = model_averaged_stds(fit, given, wanted, sizes, laws, design)
     told = [index for index, (_, run) in enumerate(columns) if run < 0 and fit.moves[index].any()]
     names = [columns[index][0].name for index in told]
-    wide = _precision(drives, as_written(drives, fit, given)).widening(noises, names)
+    wide = _precision(runs, as_written(runs, fit, given)).widening(noises, names)
     variances = (wide * [spread[name] for name in names]) ** 2
     variances += grain_of(fit.design, fit.point.model.robot)[told]
     scales = {
@@ -132,6 +130,6 @@ def _local(fit: Fitted) -> list[FreeParameter]:
     return [*CALIBRATION, *own_of(numbers), *shared_of(fit.numbers)]
 
 
-def _precision(drives: FitDrives, fit: Fitted) -> Precision:
+def _precision(runs: Concatenated, fit: Fitted) -> Precision:
     local = [number for number in _local(fit) if number.name != START_YAW]
-    return Precision.of(drives.laid, fit.point, local, fit.moves)
+    return Precision.of(runs, fit.point, local, fit.moves)
