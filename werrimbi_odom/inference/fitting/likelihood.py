@@ -192,7 +192,7 @@ def innovations(
     for index, given in enumerate(start_yaws or []):
         if given is not None:
             begun[runs.legs[index]] = given
-            start[runs.legs[index], 2] = np.nan
+    start = np.where(np.isfinite(begun)[:, None] & [False, False, True], np.nan, start)
     noise = wheel_covariance(prediction, runs, variances.left, variances.right)
     reading = _reading(robot, variances, runs, prediction, kind)
     if kind == "incremental":
