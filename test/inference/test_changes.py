@@ -21,10 +21,11 @@ from werrimbi_odom.inference.changes.between_drives import (
     ParameterChange,
     changes_between,
     is_within,
+    of_several,
 )
-from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes
+from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
-from werrimbi_odom.inference.changes.parameter_groups import groups_of
+from werrimbi_odom.inference.changes.parameter_groups import NumberGroup, groups_of
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS
@@ -126,6 +127,25 @@ def test_one_odd_drive_is_one_odd_drive() -> None:
     levels[7, LEFT:] += 8.0 * STD
     (step,) = found_in(drives_of(levels, random)).steps
     assert (step.group.what, step.shape) == ("both_wheels", Shape("alone", 7))
+
+
+@pytest.mark.parametrize(
+    ("what", "span", "told"),
+    [
+        ("left_backlash", (3, 4), True),
+        ("left_backlash", (5, 6), False),  # only the last drive is surely after it
+        ("left_backlash", (1, 3), False),
+        ("left_wheel", (5, 6), True),
+    ],
+)
+def test_an_effect_changes_only_between_several_drives(
+    what: str, span: tuple[int, int], told: bool
+) -> None:
+    """A drive of another kind gives another size of play, though nothing about the robot did."""
+    step = GroupChange(
+        NumberGroup(what, ("a number",), np.ones((1, 1))), Shape("step", span[0]), span=span
+    )
+    assert of_several(step, 7, "absolute") is told
 
 
 BUILT = WhiteNoiseRobot(left_noise=4e-4, right_noise=5.8e-4)

@@ -97,7 +97,7 @@ def _beside(
     steps = [
         step
         for step in found.steps
-        if _of_several(step, len(runs.runs), fit.point.options.reference_kind)
+        if of_several(step, len(runs.runs), fit.point.options.reference_kind)
         and _lasts(runs, evidence, found.steps, step, place)
     ]
     if not steps:
@@ -141,17 +141,17 @@ def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
     return np.arange(len(starts))
 
 
-def _of_several(step: GroupChange, drives: int, kind: ReferenceKind) -> bool:
+def of_several(step: GroupChange, drives: int, kind: ReferenceKind) -> bool:
     """Whether more than one drive is on either side of a change, where that is required.
 
     A reference with correlated or accumulating errors now and then errs differently in one drive.
     That is no robot that changed and changed back. And a drive of another kind (starts and stops
     among laps) gives another size of an effect, as far as the form of its law is not exact. So a
-    change of an effect must show in several drives on either side.
+    change of an effect must show in several drives on either side: surely before, and surely after.
     """
     if kind == "absolute" and step.group.what in PARTS:
         return True
-    several = rules.MOST_ALONE < step.shape.first < drives - rules.MOST_ALONE
+    several = step.span[0] > rules.MOST_ALONE and step.span[1] < drives - rules.MOST_ALONE
     return several and step.shape.kind != "alone"
 
 
