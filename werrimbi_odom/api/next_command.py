@@ -19,7 +19,6 @@ def next_command(
     robot: Path | None = None,
     effects: Sequence[Path] = (),
     out: str = "",
-    holdout: bool = True,
     one_line: bool = False,
 ) -> str:
     """Shell command over several indented lines.
@@ -34,8 +33,6 @@ def next_command(
         The robot file, if it differs from the input, and additional effects.
     out
         Value of --out; "" for none.
-    holdout
-        Whether to include the held-out drives.
     one_line
         For use within a sentence.
     """
@@ -45,7 +42,7 @@ def next_command(
     for file in dict.fromkeys((*given.how.effects, *effects)):
         words += ["--effects", str(file)]
     lines = [shlex.join(words), _paths(given.runs)]
-    if holdout and given.holdout:
+    if given.holdout:
         lines.append(f"--holdout {_paths(given.holdout)}")
     if out:
         lines.append(shlex.join(["--out", out]))

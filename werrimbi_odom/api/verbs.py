@@ -111,7 +111,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
         better = beside(given.source.path, "better")
         return NextSteps(
             add=lambda names: next_command(["add", ",".join(names)], given, out=better).strip(),
-            draft=next_command(["draft"], given, out="my_effect", holdout=False).strip(),
+            draft=next_command(["draft"], given, out="my_effect").strip(),
         )
 
     return Result(
