@@ -24,7 +24,13 @@ from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.adding.words import _headline
 from werrimbi_odom.report.diagnosis import as_json, phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
-from werrimbi_odom.report.diagnosis.remarks import drowned, like_noise, nearest, not_shown
+from werrimbi_odom.report.diagnosis.remarks import (
+    drowned,
+    instead_of_held,
+    like_noise,
+    nearest,
+    not_shown,
+)
 from werrimbi_odom.report.diagnosis.words import how_long
 
 
@@ -254,3 +260,14 @@ def test_no_size_is_told_that_the_drives_do_not_determine(monkeypatch: pytest.Mo
         "left": {"value": 1.002, "std": 0.001},
         "right": {"value": 1.0, "std": None},
     }
+
+
+def test_no_better_reference_is_promised_to_tell_twins_apart() -> None:
+    held = {"reference_yaw_offset": ("sideways_drift", "reference_delay")}
+    told: Any = SimpleNamespace(
+        rivals_of_held=held, effect_named=find, runs=SimpleNamespace(headings_alone=False)
+    )
+    twins, others = instead_of_held(told)
+    assert "turned by 90 degrees" in twins
+    assert "sideways_drift" not in others
+    assert "measures more often tells them apart" in others

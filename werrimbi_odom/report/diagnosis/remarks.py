@@ -209,13 +209,28 @@ def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
 
 
 def instead_of_held(diagnosis: Diagnosis) -> list[str]:
-    """Rivals of an effect in the robot file, and how to separate them."""
-    return [
-        f"But: that it is {name}, which the robot file holds, these drives do not show: "
-        f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
-        "how each is checked on the robot; a reference that measures more often tells them apart."
-        for name, others in diagnosis.rivals_of_held.items()
-    ]
+    """Rivals of an effect in the robot file, and how to separate them; twins by no drive."""
+    lines = []
+    for name, others in diagnosis.rivals_of_held.items():
+        effect = diagnosis.effect_named(name)
+        alike = {
+            twin.name: twin
+            for twin in (effect.indistinguishable_from if effect else ())
+            if twin.name in others and (diagnosis.runs.headings_alone or not twin.of_headings)
+        }
+        lines += [
+            f"But: whether it is {name}, which the robot file holds, or {twin.name}, these drives "
+            f"do not show: {twin.told_apart_by}."
+            for twin in alike.values()
+        ]
+        if rest := [other for other in others if other not in alike]:
+            lines.append(
+                f"But: that it is {name}, which the robot file holds, these drives do not show: "
+                f"{listed(rest, 'or')} in its place would explain them as well. `werrimbi explain` "
+                "says how each is checked on the robot; a reference that measures more often tells "
+                "them apart."
+            )
+    return lines
 
 
 def outdated_told(advised: AdvisedDiagnosis) -> list[str]:
