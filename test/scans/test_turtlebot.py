@@ -31,8 +31,9 @@ def test_what_is_wrong_with_a_turtlebot_is_found_by_its_lidar(tmp_path: Path) ->
 @pytest.mark.evidence
 def test_of_short_drives_a_lidars_place_is_as_sure_as_is_said(tmp_path: Path) -> None:
     """40 robots, each by two drives of a metre and two spins in one sense."""
-    place = {"reference_lever_arm.x": -0.032, "reference_lever_arm.y": 0.01}
-    lidar = replace(LIDAR, mount=sim.AxlePose(*place.values(), 0.03))
+    mount = sim.AxlePose(-0.032, 0.01, 0.03)
+    lidar = replace(LIDAR, mount=mount)
+    place = {"reference_lever_arm.x": mount.x, "reference_lever_arm.y": mount.y}
     off = []
     for seed in range(40):
         folder = tmp_path / str(seed)
