@@ -191,9 +191,10 @@ def _while_slowed(stretch: tuple[float, float], turns: Agreement) -> tuple[float
     """Extend a stretch while the robot, in sum, turns by less than any effect leaves of a turn.
 
     A hand grips and lets go gradually: it slows the robot by less than one window can show. Page's
-    cumulative sum (Biometrika 41, 1954) says where that ends.
+    cumulative sum (Biometrika 41, 1954) says where that ends; one that is less than the usual
+    deviation of a window is noise.
     """
-    time = turns.windows.time
+    time, usual = turns.windows.time, turns.windows.steps * float(np.nanmedian(turns.off))
     short = np.sign(turns.expected) * (turns.expected - turns.windows.measured)
     short -= rules.NO_DRIVING_SLOWED * turns.gross
     begin, end = stretch
@@ -203,7 +204,7 @@ def _while_slowed(stretch: tuple[float, float], turns: Agreement) -> tuple[float
         known = np.isfinite(short[rows])
         rows = rows[: known.size if known.all() else int(np.argmin(known))]
         total = np.cumsum(short[rows])
-        slowed = rows.size > 0 and total.max() > 0.0
+        slowed = rows.size > 0 and total.max() > usual
         return float(time[rows[int(np.argmax(total))]]) if slowed else at
 
     after = np.flatnonzero((time > end) & (time <= end + reach))
