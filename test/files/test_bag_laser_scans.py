@@ -229,6 +229,22 @@ def test_along_a_bare_corridor_it_says_so(tmp_path: Path, ros: Any, robot: Any) 
         read_run(bag, robot())
 
 
+@pytest.mark.parametrize("step", [0.0, np.nan])
+def test_scans_whose_beams_all_point_one_way_are_told_so(
+    step: float, tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """They were said to have been driven along a bare corridor."""
+    bag = ros.write(
+        tmp_path / "run",
+        [
+            (topic, time, (kind, replace(scan, angle_increment=step) if topic == "/scan" else scan))
+            for topic, time, (kind, scan) in entries(ros, sweeps())
+        ],
+    )
+    with pytest.raises(InputError, match="do not say where their beams point: angle_increment"):
+        read_run(bag, robot())
+
+
 def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
     """The recorder lost the scans of more than a second, as the robot drove."""
     seen, kept = sweeps(), (sweeps().time < 5.0) | (sweeps().time > 6.3)

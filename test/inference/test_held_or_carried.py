@@ -163,6 +163,24 @@ def test_a_hand_that_lets_a_spinning_robot_turn_by_half_holds_it(share: float) -
     assert why == {"held"}
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_hand_that_lets_go_gradually_holds_until_it_has_let_go(seed: int) -> None:
+    """By scans of 3 mrad no window shows a sixth of a slow turn: a second of it shows it."""
+    time = np.arange(0.0, 50.0, 0.05)
+    turning = np.where(time < 14.0, 0.0, -0.21)
+    speed = np.where((time >= 3.0) & (time < 13.0), 0.2, 0.0)
+    free = run_by(ROBOT, speed, turning, seed)
+    holds = (time > 30.0) & (time < 33.0)
+    lets_go = (time >= 33.0) & (time < 34.2)
+    hand = run_by(ROBOT, speed, turning * np.where(holds, 0.5, np.where(lets_go, 0.82, 1.0)), seed)
+    seen = at_10_hz(hand)
+    noise = 3e-3 * np.random.default_rng(seed).standard_normal(seen.time.size)
+    begin, end, why = span(replace(free, reference=replace(seen, yaw=seen.yaw + noise)))
+    assert begin == pytest.approx(30.0, abs=NEAR)
+    assert end == pytest.approx(34.2, abs=NEAR)
+    assert why == {"held"}
+
+
 def test_a_robot_that_is_held_on_a_line_and_turns_when_let_go_is_found() -> None:
     """All that it turns is in windows at the end, half driven: it says nothing of the hold."""
     time = 0.05 * np.arange(1200)

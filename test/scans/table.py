@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/scans.md, written there: `python -m test.scans.table` (two minutes)."""
+"""The table of docs/scans.md, written there: `python -m test.scans.table` (three minutes)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from test.scans.drives import ahead, in_circles, matched, rms
+from test.scans.drives import ahead, brisk, in_circles, matched, rms
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.lidar import Lidar, Room
 
@@ -19,6 +19,7 @@ PLAIN = Lidar()
 FINE = Lidar(noise=3e-3, noise_share=2e-3)
 HOKUYO = Lidar(beams=681, noise=0.01, noise_share=0.0)
 LONG = 90.0
+BRISK = brisk(LONG, seed=4)
 
 CASES = {
     "room of 6 x 5 m": (in_circles(LONG), rooms.living_room(), PLAIN),
@@ -30,6 +31,16 @@ CASES = {
         Lidar(noise=0.015, noise_share=0.01),
     ),
     "the same, 681 beams, 10 mm": (in_circles(LONG), rooms.living_room(), HOKUYO),
+    "the same, 681 beams, 5 mm": (
+        in_circles(LONG),
+        rooms.living_room(),
+        replace(HOKUYO, noise=0.005),
+    ),
+    "the same, 681 beams, 15 mm": (
+        in_circles(LONG),
+        rooms.living_room(),
+        replace(HOKUYO, noise=0.015),
+    ),
     "the same, ranges 20 mm too long": (in_circles(LONG), rooms.living_room(), Lidar(bias=0.02)),
     "the same, half of the edges' echoes mixed": (
         in_circles(LONG),
@@ -42,6 +53,17 @@ CASES = {
         Lidar(lost=0.2),
     ),
     "the same, three people walking": (in_circles(LONG), rooms.living_room(True), PLAIN),
+    "the same, 2 m of a wall are glass": (in_circles(LONG), rooms.living_room_with_glass(), PLAIN),
+    "the same, 10 mm too long, a tenth lost, a quarter mixed, people": (
+        in_circles(LONG),
+        rooms.living_room(True),
+        Lidar(bias=0.01, lost=0.1, mixed=0.25),
+    ),
+    "another room, up to 0.8 m/s and 2 rad/s": (
+        BRISK,
+        rooms.around(BRISK.x_m, BRISK.y_m, 4),
+        PLAIN,
+    ),
     "arena of 2.6 m": (in_circles(LONG, 0.12), rooms.arena(), PLAIN),
     "corridor with cupboards": (ahead(LONG), rooms.corridor_with_cupboards(), PLAIN),
     "the same corridor, 681 beams, 10 mm": (ahead(LONG), rooms.corridor_with_cupboards(), HOKUYO),

@@ -171,18 +171,14 @@ def test_a_path_is_cut_where_the_robot_is_carried_and_never_bridged() -> None:
 
 def test_a_door_that_opens_and_a_pane_of_glass_cost_little() -> None:
     """2 m of a wall are a door that opens, or a pane that three beams of ten see."""
-    lidar, path = Lidar(), in_circles(12.0)
-    closed = Room(np.vstack([rooms.living_room().walls, [[-3.0, -1.0, -3.0, 1.0]]]))
-    walls = np.array([wall for wall in closed.walls if not (wall[[0, 2]] == -3.0).all()])
-    sides = [[-3.0, -2.5, -3.0, -1.0], [-3.0, 1.0, -3.0, 2.5], [-5.5, -2.5, -5.5, 2.5]]
-    opened = Room(np.vstack([walls, sides]))
-    (shut, _), (through, _) = (seen(path, room, lidar) for room in (closed, opened))
-    shown = np.random.default_rng(1).random(shut.ranges.shape) < 0.3
-    for ranges in (
-        np.where(shut.time[:, None] < 6.0, shut.ranges, through.ranges),
-        np.where(shown, shut.ranges, through.ranges),
-    ):
-        found = of_sweeps(replace(shut, ranges=ranges), lidar)
+    lidar, path, glass = Lidar(), in_circles(12.0), rooms.living_room_with_glass()
+    opened, closed = Room(glass.walls), Room(np.vstack([glass.walls, glass.panes]))
+    (shut, _), (through, _), (pane, _) = (
+        seen(path, room, lidar) for room in (closed, opened, glass)
+    )
+    ranges = np.where(shut.time[:, None] < 6.0, shut.ranges, through.ranges)
+    for sweeps in (replace(shut, ranges=ranges), pane):
+        found = of_sweeps(sweeps, lidar)
         assert found.path.cuts == []
         assert found.path.time.size > 0.95 * found.path.scans
         position, heading = rms(found.legs()[0])

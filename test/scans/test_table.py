@@ -9,7 +9,7 @@ import math
 import pytest
 
 from test.scans.hour import hour
-from test.scans.table import CASES, ROOMS, row
+from test.scans.table import BRISK, CASES, ROOMS, row
 from werrimbi_odom.simulation.lidar import Lidar
 
 
@@ -20,7 +20,8 @@ def test_the_covariance_of_matches_is_consistent_in_every_room(name: str) -> Non
     assert 0.8 < seen.nees < 1.5
     assert 0.8 < seen.nees_of_legs < 1.5
     assert seen.none < 0.05 * seen.scans
-    if "15 mm" not in name and "corridor" not in name:  # those of an ordinary lidar, in rooms
+    calm = CASES[name][0] is not BRISK
+    if calm and "15 mm" not in name and "corridor" not in name:  # an ordinary lidar, in rooms
         # Fewer echoes measure worse, by the root of their number.
         echoes = (1.0 - CASES[name][2].lost) / (1.0 - Lidar().lost)
         assert max(seen.leg) < 2.5 / math.sqrt(echoes)

@@ -62,7 +62,7 @@ class Recorded(NamedTuple):
     """Wheels, and where the lidar truly was, to 0.5 mm and 0.5 mrad."""
 
 
-def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path) -> Recorded:
+def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path, lidar: Lidar = LIDAR) -> Recorded:
     """A drive of nobody's hands, in a room of its own."""
     path = sim.record(ROBOT, manoeuvre, seed=seed, start=sim.AxlePose(0.0, 0.0, 0.0)).true_path
     at = np.arange(0.01, path.t_s[-1], 0.05)
@@ -72,20 +72,20 @@ def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path) -> Recorded:
         for angle in (path.left_angle_rad, path.right_angle_rad)
     )
     nothing = np.column_stack([at, at, np.zeros(at.size)])
-    sweeps = scanned(path, around(path.x_m, path.y_m, seed), LIDAR, seed)
+    sweeps = scanned(path, around(path.x_m, path.y_m, seed), lidar, seed)
     drive = sim.FieldDrive(
         folder.name,
         np.column_stack([at, at, step * left, step * right]),
         nothing,
         np.column_stack([at, at, np.zeros((at.size, 3))]),
         np.zeros((at.size, 3)),
-        LIDAR,
+        lidar,
         sweeps,
     )
     run = folder.with_name(f"{folder.name}_true")
     run.mkdir()
     noise = 5e-4 * np.random.default_rng(seed).standard_normal(sweeps.truth.shape)
-    middle = sweeps.time + 0.5 * (LIDAR.beams - 1) * LIDAR.beam_interval
+    middle = sweeps.time + 0.5 * (lidar.beams - 1) * lidar.beam_interval
     for name, head, columns in (
         ("ticks", "t_s,left_ticks,right_ticks", (at, left, right)),
         ("reference", "t_s,x_m,y_m,yaw_rad", (middle, *(sweeps.truth + noise).T)),
@@ -93,6 +93,45 @@ def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path) -> Recorded:
         table = np.column_stack(columns)
         np.savetxt(run / f"{name}.csv", table, "%.7g", ",", header=head, comments="")
     return Recorded(sim.write_field_bag(drive, ROBOT, folder, mounting=False), run)
+
+
+def short(seed: int) -> sim.Manoeuvre:
+    """A metre and a quarter, and two slow spins, both clockwise, as a real one was driven."""
+    rng = np.random.default_rng([seed, 5])
+    knots = [(0.0, 0.0, 0.0)]
+    for rests, speed, turning in (
+        (3.0, 0.0, 0.0),
+        (rng.uniform(5.0, 7.0), 0.19, 0.0),
+        (rng.uniform(4.0, 7.0), 0.0, -0.21),
+        (rng.uniform(0.5, 1.5), 0.19, 0.0),
+        (rng.uniform(3.0, 5.0), 0.0, -0.21),
+        (1.0, 0.0, 0.0),
+    ):
+        begins = knots[-1][0] + 0.3
+        knots += [(begins, speed, turning), (begins + rests, speed, turning)]
+    return sim.Manoeuvre("short", tuple(knots))
+
+
+def place_by_two_short_drives(
+    seed: int, lidar: Lidar, folder: Path
+) -> dict[str, tuple[float, float]]:
+    """Values and standard deviations that `add` states, by their names; the delay is none."""
+    robot = wo.read_robot(sim.write_robot_file(ROBOT, folder / "robot.yaml"))
+    drives = [
+        recorded(short(number), number, folder / f"drive_{number}", lidar).bag
+        for number in (2 * seed, 2 * seed + 1)
+    ]
+    told = wo.add(
+        "reference_lever_arm,reference_yaw_offset,reference_delay,wheel_radius_scale",
+        robot,
+        drives,
+        force=True,
+        leg=0.25,
+        ticks_topic="/joint_states",
+        reference_topic="/scan",
+    )
+    every = told.to_dict()["parameters"]
+    return {name: (each["value"], each["std"] or math.nan) for name, each in every.items()}
 
 
 def found(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -48,6 +48,7 @@ class LidarCollector:
         self._base = mounting.parent if mounting else ""
         self._matcher = AnyOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
+        self._undirected = 0
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
 
     def take(self, message: BagMessage) -> None:
@@ -59,6 +60,9 @@ class LidarCollector:
         scan = message.content
         ranges = np.asarray(scan.ranges, dtype=np.float64)
         angles = float(scan.angle_min) + float(scan.angle_increment) * np.arange(float(ranges.size))
+        if float(scan.angle_increment) == 0.0 or not np.isfinite(angles).all():
+            self._undirected += 1
+            ranges, angles = np.zeros(0), np.zeros(0)
         interval = float(scan.time_increment)
         if not abs(interval) * ranges.size <= LONGEST_SWEEP:  # nor NaN
             interval = 0.0
@@ -79,7 +83,10 @@ class LidarCollector:
         """
         found = self._matcher.path()
         if found.time.size == 0:
-            words = _lost(found) if self._echoes else _blind(found, self._reach)
+            if 2 * self._undirected > found.scans:
+                words = _undirected(self._undirected, found)
+            else:
+                words = _lost(found) if self._echoes else _blind(found, self._reach)
             raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
         poses, sigma_xy, sigma_yaw = _of_base(found, mount)
@@ -163,6 +170,15 @@ def _because(found: ScanPath) -> str:
         return ""
     flag = max(found.flags, key=lambda each: found.flags[each])
     return f", mostly for {WHY[flag]}" if flag == "few" else f", mostly because {WHY[flag]}"
+
+
+def _undirected(count: int, found: ScanPath) -> str:
+    return (
+        "the scans do not say where their beams point: angle_increment, the angle from one beam to "
+        f"the next, is 0 or no number in {count} of {found.scans} scans (2 pi over the number of "
+        "beams, if they go once around). Mend that where the lidar's driver is set up, or choose "
+        "another reference"
+    )
 
 
 def _blind(found: ScanPath, reach: tuple[float, float]) -> str:

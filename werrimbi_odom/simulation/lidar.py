@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class Room:
     walls: Floats
     """Line segments from x, y to x, y [m], shape (k, 4)."""
     people: Sequence[Person] = ()
+    panes: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    """Panes of glass, as walls: some beams see them, the others see through, shape (k, 4) [m]."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,8 @@ class Lidar:
     """Whether each beam has its own time; otherwise all are simultaneous, as in some simulators."""
     upside_down: bool = False
     """Whether beams go clockwise, seen from above."""
+    sees_glass: float = 0.3
+    """Share of the beams at a pane of glass that it reflects."""
 
     @property
     def increment(self) -> float:
@@ -104,12 +108,18 @@ def sweeps_at(
     x, y, yaw = _lidar_at(path, lidar, at)
     sense = -1.0 if lidar.upside_down else 1.0
     direction = yaw + sense * lidar.increment * np.tile(number, start.size)
-    true = np.concatenate(
-        [
-            _distance(room, *(each[row : row + _BLOCK] for each in (x, y, direction, at)))
+
+    def first(obstacles: Room) -> Floats:
+        blocks = [
+            _distance(obstacles, *(each[row : row + _BLOCK] for each in (x, y, direction, at)))
             for row in range(0, at.size, _BLOCK)
         ]
-    ).reshape(start.size, -1)
+        return np.concatenate(blocks).reshape(start.size, -1)
+
+    true = first(room)
+    if len(room.panes):
+        pane = np.where(rng.random(true.shape) < lidar.sees_glass, first(Room(room.panes)), np.inf)
+        true = np.minimum(true, pane)
     beside = np.roll(true, 1, axis=1)
     apart = np.zeros(true.shape)
     np.subtract(beside, true, out=apart, where=np.isfinite(true) & np.isfinite(beside))

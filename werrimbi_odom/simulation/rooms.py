@@ -28,6 +28,14 @@ def living_room(people: bool = False) -> Room:
     return Room(np.vstack(walls), walking if people else ())
 
 
+def living_room_with_glass() -> Room:
+    """The same; 2 m of a wall are a pane, and behind it is another room."""
+    walls = living_room().walls
+    left = (walls[:, [0, 2]] == -3.0).all(axis=1) & (np.abs(walls[:, 3] - walls[:, 1]) > 4.0)
+    sides = [[-3.0, -2.5, -3.0, -1.0], [-3.0, 1.0, -3.0, 2.5], [-5.5, -2.5, -5.5, 2.5]]
+    return Room(np.vstack([walls[~left], sides]), panes=np.array([[-3.0, -1.0, -3.0, 1.0]]))
+
+
 def arena(side: float = 2.6) -> Room:
     """A square with a bar in it."""
     half = 0.5 * side

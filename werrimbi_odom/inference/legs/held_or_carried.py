@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from werrimbi_odom.errors import InputError
@@ -90,6 +91,8 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
         )
     doubted = [_stretches(each) for each in seen]
     found = sorted(_reaching(stretch, seen) for each in doubted for stretch in each)
+    if by_turns is not None:
+        found = sorted(_while_slowed(stretch, by_turns) for stretch in found)
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     if by_turns is not None:
         slid = (part for part in parts if part.why == "held" and not _among(part, doubted[0]))
@@ -182,6 +185,31 @@ def _reaching(stretch: tuple[float, float], seen: Sequence[MeasuredMotion]) -> t
     own = group[(off >= begin) & (off <= end)]
     reached = off[(group >= own[0]) & (group <= own[-1])] if own.size else np.array(stretch)
     return min(begin, float(reached[0])), max(end, float(reached[-1]))
+
+
+def _while_slowed(stretch: tuple[float, float], turns: Agreement) -> tuple[float, float]:
+    """Extend a stretch while the robot, in sum, turns by less than any effect leaves of a turn.
+
+    A hand grips and lets go gradually: it slows the robot by less than one window can show. Page's
+    cumulative sum (Biometrika 41, 1954) says where that ends; one that is less than the usual
+    deviation of a window is noise.
+    """
+    time, usual = turns.windows.time, turns.windows.steps * float(np.nanmedian(turns.off))
+    short = np.sign(turns.expected) * (turns.expected - turns.windows.measured)
+    short -= rules.NO_DRIVING_SLOWED * turns.gross
+    begin, end = stretch
+    reach = rules.NO_DRIVING_SPLIT
+
+    def last(rows: NDArray[np.intp], at: float) -> float:
+        known = np.isfinite(short[rows])
+        rows = rows[: known.size if known.all() else int(np.argmin(known))]
+        total = np.cumsum(short[rows])
+        slowed = rows.size > 0 and total.max() > usual
+        return float(time[rows[int(np.argmax(total))]]) if slowed else at
+
+    after = np.flatnonzero((time > end) & (time <= end + reach))
+    before = np.flatnonzero((time < begin) & (time >= begin - reach))[::-1]
+    return last(before, begin), last(after, end)
 
 
 def _joined(

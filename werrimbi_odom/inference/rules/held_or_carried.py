@@ -102,6 +102,12 @@ third. The time is three windows, so that neither jitter of stamps nor a kick ca
 NO_DRIVING_EDGE = 0.25
 """The deviation for windows beside such ones: at the ends of a stretch a window is half driven."""
 
+NO_DRIVING_SLOWED = 0.06
+"""Share of the most that both wheels could do, by which the robot must turn too little, in sum, for
+the time beside a stretch to belong to it: no effect of the library in its realistic range changes a
+wheel's travel by more. A hand that let a TurtleBot go slowed it by 0.12 to 0.24 for another second;
+in that second the robot went aside too, and the lidar was found 7 mm beside its place."""
+
 NO_DRIVING_NOISE = 5.0
 """Least deviation in multiples of the typical scatter: 5.7 times the median of Gaussian noise is
 beyond 3.8 sigma, and a stretch is many windows."""
