@@ -227,7 +227,7 @@ def test_a_part_of_a_small_share_that_shows_the_pattern_by_itself_counts() -> No
     def chance(of_others: float) -> float:
         rest = noise + 30.0 * free * np.where(parts < 2, 1.0, of_others)
         gain = float((free @ rest) ** 2)
-        return _chance(gain, 1, free[:, None], rest, parts, rules.LASTING_NOISE)
+        return _chance(gain, 1, free[:, None], rest, parts, rules.LASTING_NOISE - 4)
 
     assert 79 * chance(1.0) < 1e-3
     assert 79 * chance(0.0) > 1e-3

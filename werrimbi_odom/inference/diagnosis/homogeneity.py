@@ -192,9 +192,9 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats
     return None if chi2_survival(gain, own.shape[1]) < rules.SURE_WHEN_ASKED else first
 
 
-def noise_known(runs: Concatenated, parts: NDArray[np.intp]) -> float:
-    """Worth of the likelihood's noise as a prior of the scatter between parts, in parts."""
-    return rules.LASTING_NOISE if few_parts(runs, parts) else 0.0
+def noise_known(runs: Concatenated, parts: NDArray[np.intp]) -> int:
+    """Number of parts for which the likelihood's noise stands, where short drives have few."""
+    return max(rules.LASTING_NOISE - int(parts.max()) - 1, 0) if few_parts(runs, parts) else 0
 
 
 def _chance(
@@ -203,7 +203,7 @@ def _chance(
     free: Floats,
     rest: Floats,
     parts: NDArray[np.intp],
-    known: float = 0.0,
+    known: int = 0,
 ) -> float:
     """P-value of a pattern's gain, relative to the disagreement between the parts.
 

@@ -55,11 +55,12 @@ LASTING_LEGS = 5
 """Fewest legs of a part of a short drive, as of one turn; with fewer in a whole drive (two poses)
 errors have no time to be correlated."""
 
-LASTING_NOISE = 2.0
-"""Where drives are too short for four parts each, worth of the noise by the likelihood as a prior
-of the scatter between parts, in parts. Derived: the least with which four parts, of which two know
-nearly all, show an effect of 25 standard deviations beyond one in a thousand with 79 candidates
-(6e-4; with one part it is 5e-3, with none 4e-2). Each more makes what parts draw anew surer."""
+LASTING_NOISE = 6
+"""Parts of short drives, with fewer than which the noise by the likelihood stands for those that
+are missing, as if they showed nothing else. Derived: the least with which four parts, of which two
+know nearly all, show an effect of 25 standard deviations beyond one in a thousand with 79
+candidates (6e-4; with five 5e-3, with none 4e-2). More would make surer what parts draw anew: with
+two beside the nine parts of a sound Kobuki, three arcs that err alike made an effect."""
 
 LASTING_HEARD = 0.1
 """Share of a pattern's norm that a part must have, to count in the scatter that widens a standard
