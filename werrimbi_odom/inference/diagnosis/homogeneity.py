@@ -249,7 +249,7 @@ def _chance(
     squares = np.sum(witness**2) + known * silent**2
     witnesses = float((np.sum(witness) + known * silent) ** 2 / squares)
     freedom = max(witnesses - degrees, 1.0)
-    ratio = math.expm1(min((alone - common) / witnesses, 100.0))
+    ratio = math.expm1(min((alone - common) / witnesses, math.log(1e40)))
     return fisher_survival(ratio * freedom / degrees, degrees, freedom)
 
 
