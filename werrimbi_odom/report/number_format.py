@@ -89,8 +89,12 @@ def in_unit(value: float, std: float, unit: str) -> tuple[str, str]:
     return with_std(factor * value, factor * std), small
 
 
-def quantity(value: float, std: float, unit: str) -> str:
-    """Value, standard deviation and unit; an angle also in degrees."""
+def quantity(
+    value: float, std: float, unit: str, or_else: tuple[float, float] | None = None
+) -> str:
+    """Value, standard deviation and unit; an angle also in degrees; then what it may be instead."""
+    if or_else is not None:
+        return f"{quantity(value, std, unit)} or as well {quantity(*or_else, unit)}"
     text, small = in_unit(value, std, unit)
     angle = f", {math.degrees(value):.3g}°" if unit == "rad" and math.isfinite(value) else ""
     return f"{text} {small}".rstrip() + angle

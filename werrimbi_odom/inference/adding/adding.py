@@ -21,7 +21,12 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
-from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of, to_write
+from werrimbi_odom.inference.adding.fitted_parameters import (
+    parameters_of,
+    std_of,
+    to_write,
+    with_other_sign,
+)
 from werrimbi_odom.inference.adding.objection import Question
 from werrimbi_odom.inference.adding.start_values import FitDrives, drives_of, with_set_up
 from werrimbi_odom.inference.calibration_parametrisation import base_name, robot_for_cutting
@@ -157,7 +162,12 @@ def add_effects(
     compared = compare(kept_back if holdout else runs, final, options)
     return Added(
         effects=tuple(effects),
-        fitted={effect.name: parameters_of(effect, known, robot) for effect in effects},
+        fitted={
+            effect.name: with_other_sign(
+                parameters_of(effect, known, robot), effect.name, fits.either.get(effect.name)
+            )
+            for effect in effects
+        },
         also=tuple(name for name in also if name not in chances),
         given=robot,
         robot=final,

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.adding.start_values import (
     starts,
 )
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of
 from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import Model, changed
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -44,6 +44,8 @@ class Fits:
     all: Fitted
     without: dict[str, Fitted]
     """With all but one of several effects; empty for a single effect."""
+    either: dict[str, Fitted]
+    """By the name of an effect, a fit with it in which another sign fits as well (`or_else`)."""
 
 
 def fits_without_jumps(
@@ -100,7 +102,7 @@ def fits_of(
     if not sought:
         start = start_of_held(drives, begun, also)
         fit = drives.fit(start.point, also, start.numbers, given)
-        return Fits(fit, fit, {})
+        return Fits(fit, fit, {}, {})
     names = {effect.name for effect in sought}
     others = tuple(item for item in begun.effects if item.name not in (*names, *also))
     bare = replace(begun if not also else given, effects=others)
@@ -124,6 +126,7 @@ def fits_of(
         fit = _well(drives, replace(start, numbers=numbers), given)
     waiting = [effect for effect in sought if effect not in mended and effect.name not in also]
     count = len(waiting)
+    either: dict[str, Fitted] = {}
     while waiting:
         show(0.65 - 0.3 * len(waiting) / count, ", ".join(effect.name for effect in waiting))
         options = {
@@ -140,16 +143,18 @@ def fits_of(
                 "them, or is the same to them as calibration"
             )
         fits = [_well(drives, option, given) for option in options[best.name]]
-        fit = min(fits, key=lambda each: each.total)
+        fit = cheapest_of(fits)
+        if fit.or_else is not None:
+            either[best.name] = fit
         waiting.remove(best)
     show(0.65, "pruning")
     for effect in sought:
         fit = _pruned(effect, drives, fit, given)
     if len(sought) == 1 and (not also or sought[0].name in also):
-        return Fits(none, fit, {})
+        return Fits(none, fit, {}, either)
     tested = [effect for effect in sought if effect.name not in also]
     without = {effect.name: _without(effect, drives, fit, given) for effect in tested}
-    return Fits(none, fit, without)
+    return Fits(none, fit, without, either)
 
 
 def _without(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:

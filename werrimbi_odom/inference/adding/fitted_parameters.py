@@ -19,6 +19,7 @@ from werrimbi_odom.inference.calibration_parametrisation import (
     sizes_of,
     std_as_effect,
 )
+from werrimbi_odom.inference.diagnosis.estimated_values import of_other_sign
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,
@@ -46,6 +47,8 @@ class FittedParameter:
     """null: kept at its null value, because the data show no other."""
     of_runs: tuple[float, ...] = ()
     """Values of the fitted runs, for a per-run parameter."""
+    or_else: tuple[float, float] | None = None
+    """Value and standard deviation of the other sign, where the drives do not tell which."""
 
     @property
     def written(self) -> bool:
@@ -86,6 +89,18 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
                 item, applied.values[name], std, _remark(applied.values[name], std, number, effect)
             )
     return found
+
+
+def with_other_sign(
+    found: Mapping[str, FittedParameter], name: str, fit: Fitted | None
+) -> dict[str, FittedParameter]:
+    """An effect's parameters with their values in the fit of the other sign, if there is one."""
+    return {
+        key: item
+        if item.std is None or item.declared.tries
+        else replace(item, or_else=of_other_sign(fit, name, key))
+        for key, item in found.items()
+    }
 
 
 def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> Remark:

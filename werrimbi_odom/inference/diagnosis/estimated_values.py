@@ -41,6 +41,8 @@ class Value:
     """Whether the drives determine it; otherwise its fitted value means nothing."""
     of_runs: tuple[float, ...] = ()
     """Value in each fitted drive, of a per-run parameter that has a null value: no phase."""
+    or_else: tuple[float, float] | None = None
+    """Value and standard deviation of the other sign, where the drives do not tell which."""
 
     @property
     def reported(self) -> bool:
@@ -89,8 +91,15 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             tuple(own[f"{name}.{parameter}"] for own in model.own)
             if per_run and applied.effect.has_null(parameter)
             else (),
+            _other_sign(diagnosis, name, parameter) if applied.effect.has_null(parameter) else None,
         )
     return found
+
+
+def _other_sign(diagnosis: Diagnosis, name: str, parameter: str) -> tuple[float, float] | None:
+    """Value and standard deviation of a parameter in the fit of the other sign, if there is one."""
+    tried = [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
+    return of_other_sign(tried[-1] if tried else None, name, parameter)
 
 
 def ranked_of(diagnosis: Diagnosis, name: str) -> Ranked | None:
@@ -147,6 +156,15 @@ def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
         ),
         None,
     )
+
+
+def of_other_sign(fit: Fitted | None, name: str, parameter: str) -> tuple[float, float] | None:
+    """Value and standard deviation of a shared parameter of an effect in `or_else` of a fit."""
+    other = None if fit is None else fit.or_else
+    std = _spreads(other).get(f"{name}.{parameter}") if other is not None else None
+    if other is None or std is None:
+        return None
+    return float(applied_of(other.point.model.robot.effects, name).values[parameter]), std
 
 
 def _spreads(fit: Fitted) -> dict[str, float]:

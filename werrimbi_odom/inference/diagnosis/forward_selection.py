@@ -10,12 +10,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     Fitted,
+    cheapest_of,
     extension_p_value,
     fitted,
 )
@@ -153,7 +156,7 @@ def search_round(
             options.append((as_given(point, given), instead[score.candidate.name]))
         starts = [(started_with(runs, begin, option), option) for begin, option in options]
         fits = [fit for fit in (fitted_from(runs, *start) for start in starts) if fit.determined]
-        return [min(fits, key=lambda fit: fit.total)] if fits else []
+        return [cheapest_of(fits)] if fits else []
 
     tried = []
     chosen = worth_fitting(ordered)
@@ -169,7 +172,7 @@ def search_round(
     cheapest: dict[str, Fitted] = {}
     for fit in sorted(tried, key=lambda fit: fit.total):
         cheapest.setdefault(fit.names[-1], fit)
-    tried = without_nested(list(cheapest.values()))
+    tried = without_nested(runs, list(cheapest.values()))
     return Round(
         before,
         tuple(ordered),
@@ -202,20 +205,26 @@ def _scores_in_place_of_sizes(
     return {score.candidate.name: score for score in best}
 
 
-def without_nested(tried: Sequence[Fitted]) -> list[Fitted]:
+def without_nested(runs: Concatenated, tried: Sequence[Fitted]) -> list[Fitted]:
     """Of an effect and one that extends it, the one that the data ask for.
 
     Nested models are no rivals: both hold. The wider is taken where what it has beyond the other is
-    beyond chance, whatever both explain together; beside the other, in a model that holds it, too.
-    It costs more only where its fit ended at a minimum of its own.
+    beyond chance, by the noise and by the parts of the drives, whatever both explain together;
+    beside the other, in a model that holds it, too. It costs more only where its fit ended at a
+    minimum of its own.
     """
     kept = list(tried)
     for wider in tried:
         if extended := wider.newest.extends:
             nested = [fit.total for fit in tried if fit.names[-1] == extended]
             dearer = wider.total > min(nested, default=math.inf)
-            needless = dearer or extension_p_value(wider) > rules.SURE
-            name = wider.names[-1] if needless else extended
+            name = wider.names[-1]
+            needless = (
+                dearer
+                or extension_p_value(wider) > rules.SURE
+                or homogeneity_of_effect(runs, wider, name, find(extended).parameters) > rules.SURE
+            )
+            name = name if needless else extended
             kept = [fit for fit in kept if fit.names[-1] != name]
     return kept
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -91,6 +91,8 @@ class Fitted:
     held: tuple[str, ...]
     """Shared directions (of `CALIBRATED`, or parameters) that the runs do not determine: held as
     given."""
+    or_else: Fitted | None = None
+    """The newest effect of the other sign, where that fits as well: a flat for a bump."""
 
     @property
     def sizes_held(self) -> bool:
@@ -132,6 +134,34 @@ class Fitted:
     def total(self) -> float:
         """Cost with all penalties."""
         return self.cost + self.needless_gain + self.penalty * self.scatter
+
+
+def cheapest_of(fits: Sequence[Fitted]) -> Fitted:
+    """The cheapest of the fits of one effect, with the cheapest of the other sign as `or_else`.
+
+    A bump, and a flat across from it beside a larger radius, do the same once a turn. Where either
+    may be true, a standard deviation about one of them says nothing of the other.
+    """
+    best, *others = sorted(fits, key=lambda fit: fit.total)
+    effect = best.newest
+    signs = [name for name in effect.parameters if effect.has_null(name)]
+
+    def side(fit: Fitted, name: str) -> float:
+        value = applied_of(fit.point.model.robot.effects, effect.name).values[name]
+        return (
+            math.copysign(1.0, value - effect.nulls[name]) if value != effect.nulls[name] else 0.0
+        )
+
+    other = next(
+        (
+            fit
+            for fit in others
+            if fit.total - best.total < rules.RIVAL * best.scatter
+            and any(side(fit, name) * side(best, name) < 0.0 for name in signs)
+        ),
+        None,
+    )
+    return replace(best, or_else=other)
 
 
 def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:

@@ -48,31 +48,33 @@ is then tested with 27 degrees of freedom, for which F must be 13.6 where chi-sq
 
 LASTING_FEWEST, LASTING_MOST = 4, 12
 """Fewest and most parts of one run. With three degrees of freedom F would have to be 167, so fewer
-than four are never significant by themselves (short drives: `LASTING_NOISE`); more than twelve of
-one drive are shorter than the correlation of errors."""
+than four are hardly ever significant by themselves (short drives: `LASTING_NOISE`); more than
+twelve of one drive are shorter than the correlation of errors."""
 
 LASTING_LEGS = 5
 """Fewest legs of a part of a short drive, as of one turn; with fewer in a whole drive (two poses)
 errors have no time to be correlated."""
 
-LASTING_NOISE = 3.0
-"""Where drives are too short for four parts each, worth of the noise by the likelihood as a prior
-of the scatter between parts, in degrees of freedom. Chosen: with none a delay of twenty standard
-deviations is left to chance in drives of three metres; with as many as there are parts, three turns
-that err alike make an effect."""
+LASTING_NOISE = 6
+"""Parts of short drives, with fewer than which the noise by the likelihood stands for those that
+are missing, as if they showed nothing else. Derived: the least with which four parts, of which two
+know nearly all, show an effect of 25 standard deviations beyond one in a thousand with 79
+candidates (6e-4; with five 5e-3, with none 4e-2). More would make surer what parts draw anew: with
+two beside the nine parts of a sound Kobuki, three arcs that err alike made an effect."""
 
 LASTING_HEARD = 0.1
-"""Share of a pattern's norm that a part must have, to count in the test: a hundredth of what the
-pattern explains, as compared with the 28th that a part has on average. With more parts the share
-shrinks in proportion, and with fewer it grows: of 60 drives none had a tenth, and an effect of 20
-standard deviations was put down to chance."""
+"""Share of a pattern's norm that a part must have, to count in the scatter that widens a standard
+deviation, or as what other drives show: a hundredth of what the pattern explains, as compared with
+the 28th that a part has on average. With more parts the share shrinks in proportion, and with fewer
+it grows: of 60 drives none had a tenth, and an effect of 20 standard deviations was put down to
+chance."""
 
-LASTING_SEEN = 5.0
-"""Standard deviations by which a part of a smaller share must show a pattern of the size that all
-parts together tell, to count as well. Chosen: of a late clock two turns in four parts told nearly
-all, which is too few by a tenth, though a third part shows it by five; with three deviations, three
-arcs that err alike made an effect (one of eleven sets), with five they are left to chance by far.
-"""
+LASTING_SPREADS = (1e-2, 1e12, 85)
+"""Least and greatest variance of what each part of the drives draws anew, and their number, in
+units of what all parts together know: from a hundredth of the noise to a pattern of a million
+standard deviations, six to a decade. Simulated with the shares of a Kobuki's nine parts, of three
+among nine, two among four, of 28 that are alike or fall as 1 / k: what each draws anew, of 0, 3, 30
+or 1000 standard deviations, is told to last in 0.9 % of cases at one in a hundred, at most 3 %."""
 
 DRIVES_TO_LEAVE_ONE = 3
 """Fewest drives for one to be called unlike the others: with two neither is."""

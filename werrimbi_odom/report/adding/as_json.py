@@ -22,6 +22,11 @@ def json_of(added: Added) -> dict[str, Any]:
             name: {
                 **picked(item, "value std remark of_runs"),
                 **picked(item.declared, "unit null says"),
+                **(
+                    {"or_else": dict(zip(("value", "std"), item.or_else, strict=True))}
+                    if item.or_else is not None
+                    else {}
+                ),
             }
             for name, item in added.parameters.items()
         },

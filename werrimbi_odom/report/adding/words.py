@@ -85,7 +85,7 @@ def value_told(item: FittedParameter) -> str:
         own = () if item.declared.unit == "rad" else item.of_runs
         return each_its_own(own, item.declared.unit)
     std = math.nan if item.std is None else item.std
-    return quantity(item.value, std, item.declared.unit)
+    return quantity(item.value, std, item.declared.unit, item.or_else)
 
 
 def remark_told(item: FittedParameter) -> str:

@@ -127,9 +127,14 @@ def _values(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
             **(picked(value, "value std") if value.determined else {"value": None, "std": None}),
             **picked(value, "unit per_run"),
             **({"of_runs": list(value.of_runs)} if value.of_runs else {}),
+            **({"or_else": _as_value(value.or_else)} if value.or_else is not None else {}),
         }
         for parameter, value in values_of(diagnosis, name).items()
     }
+
+
+def _as_value(told: tuple[float, float]) -> dict[str, float]:
+    return dict(zip(("value", "std"), told, strict=True))
 
 
 def _limit(limit: DetectionLimit) -> dict[str, Any]:

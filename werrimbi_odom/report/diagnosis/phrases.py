@@ -174,7 +174,7 @@ def _value(value: Value) -> str:
         return each_its_own(value.of_runs, value.unit)
     if not value.determined:
         return "not determined by these drives"
-    return quantity(value.value, value.std, value.unit)
+    return quantity(value.value, value.std, value.unit, value.or_else)
 
 
 def cost(advised: AdvisedDiagnosis, name: str) -> list[str]:

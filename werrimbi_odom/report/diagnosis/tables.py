@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.estimated_values import values_of
+from werrimbi_odom.inference.diagnosis.estimated_values import Value, values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
@@ -33,7 +33,7 @@ def _parameters(diagnosis: Diagnosis) -> list[Part]:
         [
             f"{name}.{parameter}",
             *(
-                in_unit(item.value, item.std, item.unit)
+                _told(item)
                 if item.reported
                 else ("each drive its own" if item.per_run else "not determined", item.unit)
             ),
@@ -43,6 +43,13 @@ def _parameters(diagnosis: Diagnosis) -> list[Part]:
     ]
     title = "Fitted values (± one standard deviation)"
     return [Table(title, ("parameter", "value", "unit"), rows)] if rows else []
+
+
+def _told(item: Value) -> tuple[str, str]:
+    text, unit = in_unit(item.value, item.std, item.unit)
+    if item.or_else is None:
+        return text, unit
+    return f"{text} or {in_unit(*item.or_else, item.unit)[0]}", unit
 
 
 def _ranking(diagnosis: Diagnosis) -> Table:
