@@ -67,6 +67,10 @@ class Fitted:
     """Penalty of all free parameters, without the needless calibration effects."""
     penalty_of_one: float
     """Penalty of one free parameter."""
+    penalty_of_own: float
+    """Penalty of one that each run has of its own."""
+    paid: int
+    """Number of free parameters in `penalty`, each run's own counted for itself."""
     scatter: float
     """Dispersion: factor by which costs are too large where few data determine the noise."""
     spare: float
@@ -144,9 +148,16 @@ def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
     return not is_ordinary(ratio)
 
 
-def penalty_of_one(runs: Concatenated) -> float:
-    """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor."""
-    return max(rules.PENALTY_FLOOR, math.log(max(runs.data, 2)))
+def penalty_of_one(runs: Concatenated, *, own: bool = False) -> float:
+    """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor.
+
+    Parameters
+    ----------
+    own : bool
+        Each run has its own value (a phase, a rate): of the data, only those of one run tell it.
+    """
+    data = runs.data / len(runs.runs) if own else runs.data
+    return max(rules.PENALTY_FLOOR, math.log(max(data, 2)))
 
 
 def scatter_of(runs: Concatenated, design: Design) -> float:
@@ -176,7 +187,8 @@ def fitted(
     result = fit_model(runs, point, every, given=nothing, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
     ways = determined(design, result.robot, result.held)
-    penalty, scatter = penalty_of_one(runs), scatter_of(runs, design)
+    penalty, of_own = penalty_of_one(runs), penalty_of_one(runs, own=True)
+    scatter = scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)
     totals = {each.kept: each.rise / scatter + penalty * len(each.kept) for each in rises}
     kept, rise, *_ = min(
@@ -191,11 +203,13 @@ def fitted(
         without = tuple(other for other in kept if other != name)
         rest = next(each.rise for each in rises if each.kept == without)
         importance[name] = (rest - rise) / max(scatter, doubt[name])
-    counted = sum(
-        1
-        for number, _ in design.columns
+    counted = [
+        run
+        for number, run in design.columns
         if number.name not in MULTIPLIERS and number.name not in NUISANCES
-    )
+    ]
+    shared = len(kept) + sum(run < 0 for run in counted)
+    owned = sum(run >= 0 for run in counted)
     return Fitted(
         tuple(names),
         result.point,
@@ -210,8 +224,10 @@ def fitted(
             and totals[each.kept] - totals[kept] < rules.RIVAL
             and each.believed
         ),
-        penalty * (len(kept) + counted),
+        penalty * shared + of_own * owned,
         penalty,
+        of_own,
+        shared + owned,
         scatter,
         residual_degrees_of(runs, design),
         rise,
