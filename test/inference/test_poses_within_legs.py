@@ -121,6 +121,32 @@ def test_where_each_pose_is_a_leg_restarts_of_the_filter_lose_little(
     assert 0.9 * never < restarted < never
 
 
+def added_up(run: Run, sigma: float) -> Run:
+    """A reference whose increments err, each for itself, and not its poses."""
+    reference, random = run.reference, np.random.default_rng(int(run.name[-1]))
+    assert reference is not None
+    x, y, yaw = (
+        clean + np.cumsum(sigma * random.standard_normal(clean.size))
+        for clean in (reference.x, reference.y, reference.yaw)
+    )
+    return replace(run, reference=replace(reference, x=x, y=y, yaw=yaw))
+
+
+@pytest.mark.parametrize("of_poses", [True, False], ids=["poses", "increments"])
+def test_legs_that_share_a_pose_of_an_incremental_reference_are_less_sure(of_poses: bool) -> None:
+    """What goes twice round within a leg fits the poses' noise: its gain is too large by chance."""
+    noise = {} if of_poses else {"sigma_xy": 0.0, "sigma_yaw": 0.0}
+    runs = [run if of_poses else added_up(run, 1e-3) for run in drives(every=10, **noise)]
+    laid = finely(prepared(runs, reference_kind="incremental"))
+    given = ROBOT.entered()
+    before = fit_calibration(laid, given, EvaluationOptions(reference_kind="incremental"))
+    tried = candidates([find("oval_left_wheel")], (), (), len(laid.runs))[-1]
+    (score,) = scores(laid, before.point, CALIBRATION, [tried])
+    start = replace(before.point, model=with_candidate(before.point.model, score))
+    fit = fitted(laid, start, (tried.name,), parameters_of_candidate(tried), given, rounds=1)
+    assert (fit.neighbours > 1.25) if of_poses else (fit.neighbours < 1.2)
+
+
 def test_what_each_drive_has_of_its_own_costs_what_its_own_data_are_worth() -> None:
     """By BIC: a rate of one drive is told by that drive alone, a size by all of them."""
     runs = finely(prepared(drives()))

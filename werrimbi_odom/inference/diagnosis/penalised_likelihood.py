@@ -40,6 +40,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
+from werrimbi_odom.inference.linear import SILENT, nuisance
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.pose import Floats
@@ -75,6 +76,9 @@ class Fitted:
     """Dispersion: factor by which costs are too large where few data determine the noise."""
     spare: float
     """Degrees of freedom of `scatter`; infinite where the noise was fitted."""
+    neighbours: float
+    """Factor by which the newest effect's gain is too large by chance, as legs that share a pose of
+    an incremental reference err against one another; else 1."""
     needless_gain: float
     """Rise of the cost when needless calibration effects are reset to the given values."""
     at_bound: tuple[str, ...]
@@ -172,6 +176,36 @@ def residual_degrees_of(runs: Concatenated, design: Design) -> float:
     return float(max(runs.data - len(design.columns), 1))
 
 
+def inflation_by_neighbours(runs: Concatenated, design: Design, effect: str) -> float:
+    """Factor on the gain that an effect makes of innovations which depend on their neighbours.
+
+    Legs of an incremental reference are judged each by itself. Where its increments come from poses
+    with an error each, two legs share that of the pose between them, with opposite signs: a pattern
+    that changes its sign from leg to leg (an oval wheel) fits such noise, by up to twice as much as
+    independent noise. This is the largest eigenvalue of the gain's covariance with the correlation
+    of next neighbours, in each axis, as the innovations have it (Newey, West, Econometrica 55,
+    1987).
+    """
+    own = [number.name.rpartition(".")[0] == effect for number, _ in design.columns]
+    if not any(own):
+        return 1.0
+    _, flat = design.flat()
+    free = nuisance(flat[:, np.logical_not(own)]).residual(flat[:, own])
+    basis, values, _ = np.linalg.svd(free, full_matrices=False)
+    heard = basis[:, values > SILENT * max(values[0], 1.0)].reshape(*design.white.shape, -1)
+    after = np.flatnonzero(runs.run_of_leg[1:] == runs.run_of_leg[:-1]) + 1
+    shared = np.sum(design.white[after] * design.white[after - 1], axis=0)
+    correlation = shared / np.maximum(np.sum(design.white**2, axis=0), 1e-12)
+    beside = np.einsum(
+        "ma,mai,maj->ij",
+        np.broadcast_to(correlation, (after.size, 3)),
+        heard[after],
+        heard[after - 1],
+    )
+    together = np.eye(heard.shape[-1]) + beside + beside.T
+    return max(1.0, float(np.linalg.eigvalsh(together).max(initial=0.0)))
+
+
 def fitted(
     runs: Concatenated,
     point: Point,
@@ -194,6 +228,7 @@ def fitted(
     kept, rise, *_ = min(
         (each for each in rises if each.fitted), key=lambda each: totals[each.kept]
     )
+    by_increments = point.options.reference_kind == "incremental" and not runs.headings_alone
     wide = widening(*design.flat(), ways.matrix, runs)
     covariance = covariance_of(design, ways)
     doubt = variance_inflation_of_sizes(design, covariance, wide, result.robot)
@@ -230,6 +265,7 @@ def fitted(
         shared + owned,
         scatter,
         residual_degrees_of(runs, design),
+        inflation_by_neighbours(runs, design, names[-1]) if by_increments and names else 1.0,
         rise,
         (
             *(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
