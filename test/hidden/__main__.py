@@ -107,7 +107,7 @@ SECONDS = {
     "scans": 60.0,
     "survive": 4.5,
     "coverage": 6.0,
-    "smallest": 23.0,
+    "smallest": 30.0,
     "gaps": 4.5,
     "margins": 4.5,
 }
@@ -206,7 +206,7 @@ def pictures(
     """Drawn to a folder."""
     lines = judged_lines(wanted)
     scores = coverage.scores(lines, wanted, _own("coverage", there["coverage"]))
-    found = smallest.ratios(_own("smallest", there["smallest"]))
+    found = smallest.ratios(_own("smallest", there["smallest"]), "named")
     sure = margins.constants().get("SURE", 1e-3)
     return draw(scores, found, *margins.sureness(lines), sure, folder)
 

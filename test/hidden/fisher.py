@@ -5,14 +5,20 @@
 From what `werrimbi odom --as-reference` predicts with a little of the effect and without: the paths
 differ, and the difference is weighed with the wheels' noise, which adds up along the way, and the
 reference's, which is new in each pose. Start poses and the three calibration numbers are unknown.
+
+To be told from a rival is more than to be seen: what the rival, fitted in its place, would explain
+of it does not count. So the bound is also worked out with each rival's numbers unknown.
 """
 
 from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
+from functools import cache
 from pathlib import Path
+from statistics import NormalDist
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +32,7 @@ from test.hidden.plan import CALIBRATION
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.hidden.true_values import values_of
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference.fitting.score_tests import candidates
 
 Floats = NDArray[np.float64]
 
@@ -34,12 +41,30 @@ LITTLE = 1e-6
 Headings are sums: at a thousandth one turns by 0.06 rad in 20 m, and the square of that, which no
 shorter way has, passed for information (a third of the size of lost counts was to be seen)."""
 
+SILENT = 1e-6
+"""Share of a change below which it is rounding, and no direction of its own."""
+
 ANYWHERE = 10.0
 """Standard deviation of a start pose that is unknown [m, rad]."""
 
 
-def bound(clean: HiddenSet, effect: str, peculiarity: Mapping[str, object], size: float) -> float:
-    """Standard deviation that an unbiased estimate of an effect's size has at the least.
+class Bounds(NamedTuple):
+    """Standard deviations that an unbiased estimate of an effect's size has at the least."""
+
+    alone: float
+    """With the calibration unknown."""
+    beside: dict[str, float]
+    """By rival: with what the rival can do unknown, too."""
+
+
+def bounds(
+    clean: HiddenSet,
+    effect: str,
+    peculiarity: Mapping[str, object],
+    size: float,
+    rivals: Collection[str] = (),
+) -> Bounds:
+    """How well the size of an effect can be known at the best, alone and beside each rival.
 
     Parameters
     ----------
@@ -50,34 +75,82 @@ def bound(clean: HiddenSet, effect: str, peculiarity: Mapping[str, object], size
         known, its size alone as unknown.
     size : float
         Distance from null, in the unit in which the bound is wanted.
+    rivals
+        Effects that may be fitted in its place, in each of their shapes.
     """
-    folder = make(clean)
-    sensor = machine(clean.setup, clean.seed).reference
-    noise = np.array([sensor.sigma_xy, sensor.sigma_xy, sensor.sigma_yaw])
     values = values_of(effect, peculiarity)
     # Where a counter starts anywhere, any angle of a wheel is as good as another.
     angles = {name: 0.0 for name, item in find(effect).parameters.items() if item.per_run}
-    values = angles | dict(values)
-    blocks = [{effect: values}]
-    others = [name for name in CALIBRATION if name != effect]
-    scales = [size] + [LITTLE] * len(others)
+    own = np.concatenate(_change(clean, effect, tuple({**angles, **values}.items()), size))
+    sizes = [name for name in CALIBRATION if name != effect]
     parameter = {"unequal_wheel_radii": "ratio"}
-    blocks += [{name: {parameter.get(name, "multiplier"): 1.0 + LITTLE}} for name in others]
-    information = np.zeros((len(blocks), len(blocks)))
+    known = [
+        np.concatenate(
+            _change(clean, name, ((parameter.get(name, "multiplier"), 1.0 + LITTLE),), LITTLE)
+        )
+        for name in sizes
+    ]
+    beside = {
+        rival: 1.0 / min(_left(own, [*known, *shape]) for shape in _shapes(clean, rival))
+        for rival in rivals
+        if rival not in CALIBRATION
+    }
+    return Bounds(1.0 / _left(own, known), beside)
+
+
+def _left(own: Floats, others: Sequence[Floats]) -> float:
+    """Size of a change once what others can do of it is taken off."""
+    sizes = [float(np.linalg.norm(other)) for other in others]
+    scaled = np.stack(
+        [other / size for other, size in zip(others, sizes, strict=True) if size > 0.0], axis=-1
+    )
+    told = np.linalg.lstsq(scaled, own, rcond=SILENT)[0]
+    return float(np.linalg.norm(own - scaled @ told))
+
+
+@cache
+def _shapes(clean: HiddenSet, rival: str) -> list[list[Floats]]:
+    """What a rival can change of some drives, in each of its shapes (a threshold, a length)."""
+    drives = len(runs_of(make(clean), "train"))
+    effect, found = find(rival), []
+    for candidate in candidates([effect], (), (), drives):
+        if not candidate.per_run and any(item.per_run for item in effect.parameters.values()):
+            continue  # an angle that is the same in each drive: a part of one that is not
+        null, columns = effect.nulls | dict(candidate.shape), []
+        for coordinate in candidate.coordinates:
+            values = candidate.with_value(coordinate, LITTLE).values
+            change = _change(clean, rival, tuple(values.items()), LITTLE)
+            moved = [name for name in null if coordinate[name] != null[name]]
+            own = effect.quadrature is not None or candidate.place is not None
+            if candidate.per_run and (own or any(effect.parameters[n].per_run for n in moved)):
+                alone = [[part * (a == b) for b, part in enumerate(change)] for a in range(drives)]
+                columns += [np.concatenate(parts) for parts in alone]
+            else:
+                columns.append(np.concatenate(change))
+        found.append(columns)
+    return found
+
+
+@cache
+def _change(
+    clean: HiddenSet, effect: str, values: tuple[tuple[str, float], ...], size: float
+) -> list[Floats]:
+    """What a little of an effect changes in each drive, in units of what is not known."""
+    folder = make(clean)
+    sensor = machine(clean.setup, clean.seed).reference
+    noise = np.array([sensor.sigma_xy, sensor.sigma_xy, sensor.sigma_yaw])
+    found = []
     for drive in runs_of(folder, "train"):
-        when = np.loadtxt(drive / "reference.csv", delimiter=",", skiprows=1, usecols=0)
-        plain, covariance = _predicted(folder, drive, {}, when)
-        changes = [
-            (_predicted(folder, drive, block, when)[0] - plain) / scale
-            for block, scale in zip(blocks, scales, strict=True)
-        ]
-        white = whitened(np.stack(changes, axis=-1), plain, covariance, noise)
-        information += white.T @ white
-    return float(np.linalg.inv(information)[0, 0] ** 0.5)
+        plain, covariance = _predicted(folder, drive, ())
+        changed, _ = _predicted(folder, drive, ((effect, values),))
+        change = (changed - plain)[:, :, None] / size
+        found.append(whitened(change, plain, covariance, noise)[:, 0])
+    return found
 
 
+@cache
 def _predicted(
-    folder: Path, drive: Path, effects: Mapping[str, Mapping[str, float]], when: Floats
+    folder: Path, drive: Path, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]
 ) -> tuple[Floats, Floats]:
     """Poses (n, 3) and covariances (n, 3, 3) by the readings of the counters nearest to some times.
 
@@ -87,8 +160,9 @@ def _predicted(
     yaml = YAML()
     text = yaml.load((folder / "robot.yaml").read_text(encoding="utf-8"))
     (values,) = (node["ros__parameters"] for node in text.values())
-    values["effects"] = list(effects)
-    values |= {name: dict(block) for name, block in effects.items()}
+    values["effects"] = [name for name, _ in effects]
+    values |= {name: dict(block) for name, block in effects}
+    when = np.loadtxt(drive / "reference.csv", delimiter=",", skiprows=1, usecols=0)
     with tempfile.TemporaryDirectory() as place:
         robot, out = Path(place) / "robot.yaml", Path(place) / "odom.csv"
         with robot.open("w", encoding="utf-8") as file:
@@ -158,6 +232,27 @@ def detectable(sigma: float, tests: int, chance: float, power: float, numbers: i
     """
     least = chi2.isf(chance / tests, numbers)
     return sigma * math.sqrt(float(chndtrinc(least, numbers, 1.0 - power)))
+
+
+def tellable(sigma: float, chance: float, power: float) -> float:
+    """Size at which an effect is told from a rival that is fitted in its place.
+
+    The cost of the rival's model less that of the right one is about normal, with mean r and
+    standard deviation 2 sqrt(r), where r is the noncentrality of what the rival leaves (Vuong,
+    Econometrica 57, 1989). A difference of z(chance)^2 comes about with that chance at the most
+    where the rival is the true one, however much it leaves.
+
+    Parameters
+    ----------
+    sigma : float
+        Bound of the size's standard deviation beside the rival.
+    chance : float
+        Of the wrong one of the two being told.
+    power : float
+        Share in which the right one is told.
+    """
+    sure, often = NormalDist().inv_cdf(1.0 - chance), NormalDist().inv_cdf(power)
+    return sigma * (often + math.hypot(often, sure))
 
 
 def unknown_numbers(effect: str, drives: int) -> int:

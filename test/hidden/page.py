@@ -107,8 +107,8 @@ def draw(
     Parameters
     ----------
     ratios
-        By effect: the size that is named over the smallest that could be seen, and the factor by
-        which that may be wrong.
+        By effect: the size that is named over the smallest that could be, and the factor by which
+        that may be wrong.
     true, false
         Minus log10 of p-values, of what is hidden and of the likeliest where nothing is.
     sure : float
@@ -138,7 +138,7 @@ def draw(
         bars = go.Bar(x=values, y=names, orientation="h", marker_color=BLUE, error_x=error)
         figure = go.Figure(bars)
         figure.add_vline(x=1.0, line={"color": GREY, "dash": "dash"})
-        title = "Size named in 95 of 100 cases, over the smallest that could be seen at all"
+        title = "Size named in 95 of 100 cases, over the smallest that could be named at all"
         save(figure, "evidence_smallest.png", title, "ratio", "", 200 + 24 * len(names))
     if sum(ranks(found, "add")):
         figure = go.Figure()

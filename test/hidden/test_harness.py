@@ -473,6 +473,30 @@ def test_whitened_changes_hold_what_the_whole_covariance_says() -> None:
     assert white.T @ white == pytest.approx(flat.T @ np.linalg.solve(whole, flat), rel=1e-4)
 
 
+def test_effects_are_told_apart_from_the_size_on_that_is_printed() -> None:
+    """By simulation: of two columns at an angle, the wrong one told seldom, the right one often."""
+    chance, power, angle, cases = 1e-2, 0.95, 0.7, 200_000
+    random = np.random.default_rng(3)
+    rival = np.array([np.cos(angle), np.sin(angle)])
+    size = fisher.tellable(1.0 / np.sin(angle), chance, power)
+    sure = 2.3263**2
+
+    def ahead(truth: np.ndarray) -> np.ndarray:
+        """Cost of the rival's model less that of the effect's, which is along the first axis."""
+        seen = truth + random.standard_normal((cases, 2))
+        return seen[:, 0] ** 2 - (seen @ rival) ** 2
+
+    assert np.mean(ahead(np.array([size, 0.0])) > sure) == pytest.approx(power, abs=0.01)
+    wrong = [np.mean(ahead(other * rival) > sure) for other in (2.0, 4.0, 6.0)]
+    assert 0.5 * chance < max(wrong) < 1.3 * chance
+
+
+def test_what_a_rival_leaves_is_what_it_cannot_do() -> None:
+    own, known = np.array([3.0, 4.0, 1.0]), np.array([0.0, 2.0, 0.0])
+    assert fisher._left(own, [known]) == pytest.approx(math.hypot(3.0, 1.0))
+    assert fisher._left(own, [known, own + 1e-9]) == pytest.approx(0.0, abs=1e-6)
+
+
 @pytest.mark.parametrize("truth", [0.2, 0.51, 1.0, 2.7, 4.6])
 def test_the_size_from_which_an_effect_is_named_is_closed_in_upon(truth: float) -> None:
     asked: list[float] = []
@@ -481,10 +505,10 @@ def test_the_size_from_which_an_effect_is_named_is_closed_in_upon(truth: float) 
         asked.append(size)
         return size >= truth
 
-    found = smallest.first_named(is_named)
+    found = smallest.first_that_is(is_named)
     assert found == pytest.approx(max(truth, smallest.LADDER[0]), rel=smallest.STEP - 1.0)
     assert len(asked) <= 4
-    assert smallest.first_named(lambda size: False) is None
+    assert smallest.first_that_is(lambda size: False) is None
 
 
 def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100() -> None:
@@ -493,12 +517,14 @@ def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100
     results = {
         f"{name} {session}": {
             "effect": name,
-            "named_from": true_ratio[name] * math.exp(0.2 * (chance.normal() - 1.645)),
+            "named_from": 2.0 * true_ratio[name] * math.exp(0.2 * (chance.normal() - 1.645)),
+            "limit": 1.0,
+            "limit_named": 2.0,
         }
         for name in true_ratio
         for session in range(25)
     }
-    found = smallest.ratios(results)
+    found = smallest.ratios(results, "named")
     off = [
         math.log(ratio / true_ratio[name]) / math.log(error)
         for name, (ratio, error) in found.items()
@@ -507,7 +533,7 @@ def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100
     assert max(map(abs, off)) < 3.5
     assert 0.6 < float(np.std(off)) < 1.5
     results["never"] = {"effect": plan.EFFECTS[0], "named_from": None}
-    left_out = set(found) - set(smallest.ratios(results))
+    left_out = set(found) - set(smallest.ratios(results, "named"))
     assert left_out == {plan.EFFECTS[0]}
 
 

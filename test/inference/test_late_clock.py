@@ -19,7 +19,9 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.start_values import drives_of
+from werrimbi_odom.inference.comparison.judged_legs import figures_of, statistics_of
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
@@ -180,3 +182,18 @@ def test_a_jump_is_left_out_of_a_fit_by_another_clock(delay: float) -> None:
         stamps = legs.measured.time + legs.delay
         with_jump = (stamps[:-1] < jump - 0.01) & (stamps[1:] > jump - 0.01)
         np.testing.assert_array_equal(skipped & ~at_edges([legs])[0], with_jump)
+
+
+def test_add_and_compare_judge_a_late_clocks_drives_alike() -> None:
+    """By the delay that is written, not by the rough one of the set-up search."""
+    robot, random = WhiteNoiseRobot(left_noise=4e-4, right_noise=5e-4), np.random.default_rng(5)
+    runs = [
+        replace(later(drive(robot, wandering(random, 30.0), random), 0.413), name=f"drive {number}")
+        for number in range(3)
+    ]
+    added = add_effects([find("reference_delay")], runs[:2], robot.entered(), holdout=runs[2:])
+    here = statistics_of(added.holdout.after)
+    there = figures_of(prepare(runs[2:], added.robot), added.robot)
+    assert here.count == there.count
+    assert here.rmse_position_m == pytest.approx(there.rmse_position_m, rel=1e-5)
+    assert here.nees == pytest.approx(there.nees, rel=5e-3)

@@ -16,6 +16,17 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, prepare
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import fitted
+from werrimbi_odom.inference.fitting import filtering, likelihood
+from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
+from werrimbi_odom.inference.fitting.score_tests import (
+    candidates,
+    parameters_of_candidate,
+    scores,
+    signatures,
+)
 
 ROBOT = WhiteNoiseRobot(left_noise=4e-4, right_noise=5e-4)
 
@@ -89,3 +100,61 @@ def test_each_pose_tells_where_the_marker_points(monkeypatch: pytest.MonkeyPatch
     assert ends.std is not None
     assert abs(every.value - askew) < 4.0 * every.std
     assert every.std < 0.6 * ends.std
+
+
+@pytest.mark.parametrize("name", ["sideways_drift", "lateral_slip"])
+def test_where_each_pose_is_a_leg_restarts_of_the_filter_lose_little(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the robot is the poses before tell it: thirty of them, not the last one alone."""
+    runs = finely(prepared(drives()))
+    point = fit_calibration(runs, ROBOT.entered()).point
+    tried = candidates([find(name)], (), runs.channels, len(runs.runs))
+    told = []
+    for stretch in (filtering.STRETCH, runs.count):
+        monkeypatch.setitem(likelihood.innovations.__kwdefaults__ or {}, "stretch", stretch)
+        runs.cache.forget_steps()
+        other = replace(point)
+        ((_, _, free),) = signatures(runs, other, CALIBRATION, tried)[1]
+        told.append(float(np.sum(free**2)))
+    restarted, never = told
+    assert 0.9 * never < restarted < never
+
+
+def added_up(run: Run, sigma: float) -> Run:
+    """A reference whose increments err, each for itself, and not its poses."""
+    reference, random = run.reference, np.random.default_rng(int(run.name[-1]))
+    assert reference is not None
+    x, y, yaw = (
+        clean + np.cumsum(sigma * random.standard_normal(clean.size))
+        for clean in (reference.x, reference.y, reference.yaw)
+    )
+    return replace(run, reference=replace(reference, x=x, y=y, yaw=yaw))
+
+
+@pytest.mark.parametrize("of_poses", [True, False], ids=["poses", "increments"])
+def test_legs_that_share_a_pose_of_an_incremental_reference_are_less_sure(of_poses: bool) -> None:
+    """What goes twice round within a leg fits the poses' noise: its gain is too large by chance."""
+    noise = {} if of_poses else {"sigma_xy": 0.0, "sigma_yaw": 0.0}
+    runs = [run if of_poses else added_up(run, 1e-3) for run in drives(every=10, **noise)]
+    laid = finely(prepared(runs, reference_kind="incremental"))
+    given = ROBOT.entered()
+    before = fit_calibration(laid, given, EvaluationOptions(reference_kind="incremental"))
+    tried = candidates([find("oval_left_wheel")], (), (), len(laid.runs))[-1]
+    (score,) = scores(laid, before.point, CALIBRATION, [tried])
+    start = replace(before.point, model=with_candidate(before.point.model, score))
+    fit = fitted(laid, start, (tried.name,), parameters_of_candidate(tried), given, rounds=1)
+    assert (fit.neighbours > 1.25) if of_poses else (fit.neighbours < 1.2)
+
+
+def test_what_each_drive_has_of_its_own_costs_what_its_own_data_are_worth() -> None:
+    """By BIC: a rate of one drive is told by that drive alone, a size by all of them."""
+    runs = finely(prepared(drives()))
+    before = fit_calibration(runs, ROBOT.entered())
+    (tried,) = candidates([find("reference_gyro_drift")], (), runs.channels, len(runs.runs))[:1]
+    (score,) = scores(runs, before.point, CALIBRATION, [tried])
+    start = replace(before.point, model=with_candidate(before.point.model, score))
+    names, numbers = (tried.name,), parameters_of_candidate(tried)
+    fit = fitted(runs, start, names, numbers, ROBOT.entered(), rounds=1)
+    assert fit.paid - before.paid == len(runs.runs) == 4
+    assert fit.penalty - before.penalty == pytest.approx(4.0 * np.log(runs.data / 4.0))

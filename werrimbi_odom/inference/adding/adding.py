@@ -9,11 +9,9 @@ and only the user can put the effect in.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -40,7 +38,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
     with_sizes,
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
+from werrimbi_odom.inference.diagnosis.holdout import Begun, Judge, begin
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -63,10 +61,9 @@ from werrimbi_odom.progress import Show, silent
 
 
 class _Together(NamedTuple):
-    """Effects fitted to drives, and the judge of the fits."""
+    """Effects fitted to drives, and what they were prepared for."""
 
-    judge: Judge
-    set_up: SetUp
+    started: Begun
     also: tuple[str, ...]
     """Set-up mistakes that are corrected with them."""
     drives: FitDrives
@@ -131,21 +128,26 @@ def add_effects(
         told(0.15, "calibration")
         drives = drives_of(judge.train, robot_for_cutting(begun, robot), options)
         drives, fits = fits_without_jumps(effects, drives, begun, robot, also, told)
-        found = _Together(judge, set_up, also, drives, fits)
+        found = _Together(started, also, drives, fits)
         return found, events_beside(drives.laid, fits.all.point, judge)
 
-    (judge, set_up, also, drives, fits), happened = refit_without_events(fit_them, runs, holdout)
-    fit = fits.all
+    (started, also, drives, fits), happened = refit_without_events(fit_them, runs, holdout)
+    fit, set_up = fits.all, started.set_up
     wanted = _calibrations_wanted(effects, set_up)
     sizes = sizes_needed(fit, robot, wanted)
     fit = with_sizes(drives.laid, fit, robot, sizes)
     show(0.75, "judging")
-    train, kept = _judged(judge, fits.none, fit)
-    alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
-    question = Question(tuple(effects), drives, fits, fit, robot, also, kept, alone, set_up)
-    chances, objections = question.chances, question.objections
+    judge = started.by_the_clock_of(fit.point.model.robot)
     noises, remaining, misfit, sane = _noise(drives.laid, as_written(drives.laid, fit, robot))
     explained = misfit is None and sane
+    noisy = with_noise(robot, {name: _told(noises[name]) for name in WHEEL_NOISES})
+    noise: dict[str, Any] = {
+        name: getattr(noisy if explained else robot, name) for name in WHEEL_NOISES
+    }
+    train, kept = _judged(judge, fits.none, fit, noise)
+    alone = {name: _at_home(judge, each, kept, noise) for name, each in fits.without.items()}
+    question = Question(tuple(effects), drives, fits, fit, robot, also, kept, alone, set_up)
+    chances, objections = question.chances, question.objections
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
     written = fit
@@ -153,10 +155,7 @@ def add_effects(
         show(0.9, "all runs")
         drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
     known = with_spread(effects, drives.laid, written, robot, wanted, sizes, noises)
-    of_file = {name: getattr(robot, name) for name in WHEEL_NOISES}
-    final = replace(to_write(written.point.model, robot), **of_file)
-    if explained:
-        final = with_noise(final, {name: _told(noises[name]) for name in WHEEL_NOISES})
+    final = replace(to_write(written.point.model, robot), **noise)
     show(0.95, "comparing")
     kept_back = [replace(run, happened=()) for run in judge.kept_back]
     compared = compare(kept_back if holdout else runs, final, options)
@@ -208,38 +207,35 @@ def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
             )
 
 
-def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[JudgedSide, JudgedSide]:
+def _judged(
+    judge: Judge, base: Fitted, fit: Fitted, noise: Mapping[str, Any]
+) -> tuple[JudgedSide, JudgedSide]:
     """Legs of the fitted and the held-out drives; per-run parameters are fitted run by run."""
     plain = Model(judge.given, judge.nothing_of_own)
     train = JudgedSide(
         _legs(judge.train, in_runs(judge.train, plain)),
         _legs(judge.train, base.point.model),
-        _legs(judge.train, _noisy(fit)),
+        _legs(judge.train, _noisy(fit, noise)),
     )
     kept = JudgedSide(
         *(
             _legs(judge.holdout, judge.fitted_per_run(model).model)
-            for model in (plain, base.point.model, _noisy(fit))
+            for model in (plain, base.point.model, _noisy(fit, noise))
         )
     )
     return train, kept
 
 
-def _at_home(judge: Judge, without: Fitted, kept: JudgedSide) -> Sides:
+def _at_home(judge: Judge, without: Fitted, kept: JudgedSide, noise: Mapping[str, Any]) -> Sides:
     """Change of the held-out error from a model without one effect to that with all."""
-    legs = _legs(judge.holdout, judge.fitted_per_run(_noisy(without)).model)
+    legs = _legs(judge.holdout, judge.fitted_per_run(_noisy(without, noise)).model)
     return sides_of(legs, kept.after, kept.unit)
 
 
-def _noisy(fit: Fitted) -> Model:
-    """The fitted model with its fitted wheel noise."""
-    model, variances = fit.point.model, fit.point.variances
-    robot = replace(
-        model.robot,
-        left_wheel_noise=float(np.sqrt(variances.left[0])),
-        right_wheel_noise=float(np.sqrt(variances.right[0])),
-    )
-    return Model(robot, model.own)
+def _noisy(fit: Fitted, noise: Mapping[str, Any]) -> Model:
+    """The fitted model with the wheel noise of the file that is written."""
+    model = fit.point.model
+    return Model(replace(model.robot, **noise), model.own)
 
 
 def _legs(prepared: PreparedRuns, model: Model) -> Legs:

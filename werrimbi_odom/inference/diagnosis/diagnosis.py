@@ -254,7 +254,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
     certain = [cell for cell in this.dependences if cell.p_value < rules.VERY_SURE]
     if score is not None and best is not None:
         support = support_of(score.candidate, runs.drive(this.before.point.model.robot))
-        data, penalty = runs.data, this.before.penalty_of_one
+        data, of_one, of_own = runs.data, this.before.penalty_of_one, this.before.penalty_of_own
         whole = this.before.squares
         fall = max(fall_of_cost(score.gain, data, whole), this.before.cost - best.cost)
         worth = fall - (best.penalty - this.before.penalty)
@@ -264,10 +264,9 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
                 support.inputs & set(cell.variable.looks_at)
             )
             share = rules.OWN_LAW_SHARE if own else rules.LAW_SHARE
-            return (
-                share * (fall_of_cost(cell.gain, data, whole) - penalty * cell.degrees)
-                > worth + rules.RIVAL
-            )
+            penalty = cell.degrees * (of_own if cell.variable.per_run else of_one)
+            left = share * (fall_of_cost(cell.gain, data, whole) - penalty)
+            return left > worth + rules.RIVAL
 
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     numbers = (*CALIBRATION, *this.before.numbers)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +23,7 @@ from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
-from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
+from werrimbi_odom.inference.set_up.search import DELAY, SetUp, look_for_mistakes
 from werrimbi_odom.model.effect import extended_by
 from werrimbi_odom.model.robot import Robot
 
@@ -98,6 +98,20 @@ class Begun:
     """Set-up, found in the fitted drives alone."""
     otherwise: tuple[RecordedOtherwise, ...]
     """Drives recorded with another set-up; left out wherever others remain."""
+    prepared_by: Callable[[Robot], Judge]
+    """The same judge, of the drives prepared anew by a robot's clock."""
+
+    def by_the_clock_of(self, robot: Robot) -> Judge:
+        """The judge by the delay of a fit, where the clocks differ: as `compare` by its file.
+
+        The set-up search, by whose delay the drives were prepared, knows it to some hundredths of a
+        second.
+        """
+        late = next((item for item in robot.effects if item.name == DELAY), None)
+        if late is None or self.judge.train.robot is self.judge.given:
+            return self.judge
+        others = (item for item in self.judge.given.effects if item.name != DELAY)
+        return self.prepared_by(replace(self.judge.given, effects=(late, *others)))
 
 
 def begin(
@@ -163,7 +177,14 @@ def begin(
     # What an effect of the file has anew in each drive is no mistake.
     anew = extended_by(robot.effects)
     told = tuple(each for each in set_up.findings if each.effect not in anew)
-    return Begun(judge, replace(set_up, findings=told), otherwise)
+
+    def prepared_by(cutter: Robot) -> Judge:
+        kept = ({run.name for run in side} for side in sides)
+        both = zip(divided(cutter), kept, strict=True)
+        some, others = ([run for run in side if run.name in names] for side, names in both)
+        return judge_of(some, others, given, options, cutter)
+
+    return Begun(judge, replace(set_up, findings=told), otherwise, prepared_by)
 
 
 def _refuse_standing(runs: Sequence[Run]) -> None:

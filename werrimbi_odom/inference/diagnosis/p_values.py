@@ -25,8 +25,9 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 
     A likelihood-ratio test; where few data determine the noise, by Fisher's F.
     """
-    gain = (before.cost + before.needless_gain - fit.cost - fit.needless_gain) / fit.scatter
-    numbers = max(round((fit.penalty - before.penalty) / fit.penalty_of_one), 1)
+    gain = before.cost + before.needless_gain - fit.cost - fit.needless_gain
+    gain /= fit.scatter * fit.neighbours
+    numbers = max(fit.paid - before.paid, 1)
     return bonferroni(max(tried, 1), fisher_survival(gain / numbers, numbers, fit.spare))
 
 

@@ -40,6 +40,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
+from werrimbi_odom.inference.linear import SILENT, nuisance
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.pose import Floats
@@ -67,10 +68,17 @@ class Fitted:
     """Penalty of all free parameters, without the needless calibration effects."""
     penalty_of_one: float
     """Penalty of one free parameter."""
+    penalty_of_own: float
+    """Penalty of one that each run has of its own."""
+    paid: int
+    """Number of free parameters in `penalty`, each run's own counted for itself."""
     scatter: float
     """Dispersion: factor by which costs are too large where few data determine the noise."""
     spare: float
     """Degrees of freedom of `scatter`; infinite where the noise was fitted."""
+    neighbours: float
+    """Factor by which the newest effect's gain is too large by chance, as legs that share a pose of
+    an incremental reference err against one another; else 1."""
     needless_gain: float
     """Rise of the cost when needless calibration effects are reset to the given values."""
     at_bound: tuple[str, ...]
@@ -174,9 +182,16 @@ def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
     return not is_ordinary(ratio)
 
 
-def penalty_of_one(runs: Concatenated) -> float:
-    """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor."""
-    return max(rules.PENALTY_FLOOR, math.log(max(runs.data, 2)))
+def penalty_of_one(runs: Concatenated, *, own: bool = False) -> float:
+    """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor.
+
+    Parameters
+    ----------
+    own : bool
+        Each run has its own value (a phase, a rate): of the data, only those of one run tell it.
+    """
+    data = runs.data / len(runs.runs) if own else runs.data
+    return max(rules.PENALTY_FLOOR, math.log(max(data, 2)))
 
 
 def scatter_of(runs: Concatenated, design: Design) -> float:
@@ -189,6 +204,36 @@ def residual_degrees_of(runs: Concatenated, design: Design) -> float:
     if runs.data >= rules.NOISE_NUMBERS:
         return math.inf
     return float(max(runs.data - len(design.columns), 1))
+
+
+def inflation_by_neighbours(runs: Concatenated, design: Design, effect: str) -> float:
+    """Factor on the gain that an effect makes of innovations which depend on their neighbours.
+
+    Legs of an incremental reference are judged each by itself. Where its increments come from poses
+    with an error each, two legs share that of the pose between them, with opposite signs: a pattern
+    that changes its sign from leg to leg (an oval wheel) fits such noise, by up to twice as much as
+    independent noise. This is the largest eigenvalue of the gain's covariance with the correlation
+    of next neighbours, in each axis, as the innovations have it (Newey, West, Econometrica 55,
+    1987).
+    """
+    own = [number.name.rpartition(".")[0] == effect for number, _ in design.columns]
+    if not any(own):
+        return 1.0
+    _, flat = design.flat()
+    free = nuisance(flat[:, np.logical_not(own)]).residual(flat[:, own])
+    basis, values, _ = np.linalg.svd(free, full_matrices=False)
+    heard = basis[:, values > SILENT * max(values[0], 1.0)].reshape(*design.white.shape, -1)
+    after = np.flatnonzero(runs.run_of_leg[1:] == runs.run_of_leg[:-1]) + 1
+    shared = np.sum(design.white[after] * design.white[after - 1], axis=0)
+    correlation = shared / np.maximum(np.sum(design.white**2, axis=0), 1e-12)
+    beside = np.einsum(
+        "ma,mai,maj->ij",
+        np.broadcast_to(correlation, (after.size, 3)),
+        heard[after],
+        heard[after - 1],
+    )
+    together = np.eye(heard.shape[-1]) + beside + beside.T
+    return max(1.0, float(np.linalg.eigvalsh(together).max(initial=0.0)))
 
 
 def fitted(
@@ -206,12 +251,14 @@ def fitted(
     result = fit_model(runs, point, every, given=nothing, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
     ways = determined(design, result.robot, result.held)
-    penalty, scatter = penalty_of_one(runs), scatter_of(runs, design)
+    penalty, of_own = penalty_of_one(runs), penalty_of_one(runs, own=True)
+    scatter = scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)
     totals = {each.kept: each.rise / scatter + penalty * len(each.kept) for each in rises}
     kept, rise, *_ = min(
         (each for each in rises if each.fitted), key=lambda each: totals[each.kept]
     )
+    by_increments = point.options.reference_kind == "incremental" and not runs.headings_alone
     wide = widening(*design.flat(), ways.matrix, runs)
     covariance = covariance_of(design, ways)
     doubt = variance_inflation_of_sizes(design, covariance, wide, result.robot)
@@ -221,11 +268,13 @@ def fitted(
         without = tuple(other for other in kept if other != name)
         rest = next(each.rise for each in rises if each.kept == without)
         importance[name] = (rest - rise) / max(scatter, doubt[name])
-    counted = sum(
-        1
-        for number, _ in design.columns
+    counted = [
+        run
+        for number, run in design.columns
         if number.name not in MULTIPLIERS and number.name not in NUISANCES
-    )
+    ]
+    shared = len(kept) + sum(run < 0 for run in counted)
+    owned = sum(run >= 0 for run in counted)
     return Fitted(
         tuple(names),
         result.point,
@@ -240,10 +289,13 @@ def fitted(
             and totals[each.kept] - totals[kept] < rules.RIVAL
             and each.believed
         ),
-        penalty * (len(kept) + counted),
+        penalty * shared + of_own * owned,
         penalty,
+        of_own,
+        shared + owned,
         scatter,
         residual_degrees_of(runs, design),
+        inflation_by_neighbours(runs, design, names[-1]) if by_increments and names else 1.0,
         rise,
         (
             *(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
