@@ -23,6 +23,7 @@ from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.candidate_starts import (
     looked_for,
     looked_for_delay,
+    started_as_nested,
     started_with,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -166,10 +167,13 @@ def search_round(
     works: list[Callable[[Concatenated], Any]] = [partial(best_fit, score) for score in chosen]
     cells, *best = runs.side_by_side([lambda runs: dependences(runs, point, turned), *works])
     tried += [fit for fits in best for fit in fits]
-    cheapest: dict[str, Fitted] = {}
-    for fit in sorted(tried, key=lambda fit: fit.total):
-        cheapest.setdefault(fit.names[-1], fit)
-    tried = without_nested(list(cheapest.values()))
+    cheapest = cheapest_of_each(tried)
+    for score in ordered:
+        nested = cheapest.get(score.candidate.effect.extends)
+        wider = cheapest.get(score.candidate.name)
+        if nested is not None and wider is not None and nested.total < wider.total:
+            tried.append(fitted_from(runs, started_as_nested(nested.point, score), score))
+    tried = without_nested(list(cheapest_of_each(tried).values()))
     return Round(
         before,
         tuple(ordered),
@@ -200,6 +204,14 @@ def _scores_in_place_of_sizes(
     numbers = (*before.numbers, *point.model.nuisance_parameters)
     best = best_of_each(scores(runs, point, numbers, looked_at))
     return {score.candidate.name: score for score in best}
+
+
+def cheapest_of_each(tried: Sequence[Fitted]) -> dict[str, Fitted]:
+    """The cheapest fit of each effect, by its name, the cheapest effect first."""
+    cheapest: dict[str, Fitted] = {}
+    for fit in sorted(tried, key=lambda fit: fit.total):
+        cheapest.setdefault(fit.names[-1], fit)
+    return cheapest
 
 
 def without_nested(tried: Sequence[Fitted]) -> list[Fitted]:
