@@ -118,7 +118,7 @@ def started_as_nested(nested: Point, score: Score) -> Point:
         if item.per_run and name not in score.candidate.shared
     }
     robot = replace(nested.model.robot, effects=(*others, AppliedEffect(effect, values)))
-    return replace(nested, model=Model(robot, tuple(mine | anew for mine in nested.model.own)))
+    return replace(nested, model=Model(robot, tuple({**mine, **anew} for mine in nested.model.own)))
 
 
 def _delay_of(score: Score) -> Parameter | None:
