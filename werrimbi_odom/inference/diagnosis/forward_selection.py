@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     extension_p_value,
     fitted,
 )
-from werrimbi_odom.inference.fitting.candidate import Candidate
+from werrimbi_odom.inference.fitting.candidate import Candidate, names_with
 from werrimbi_odom.inference.fitting.candidate_starts import (
     looked_for,
     looked_for_delay,
@@ -33,7 +33,7 @@ from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,
     candidates,
-    parameters_of_candidate,
+    parameters_with,
     scores,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
@@ -117,7 +117,7 @@ def instead_of_calibration(
     best = sorted(best_of_each(found), key=lambda score: penalty * score.degrees - score.gain)
     for score in worth_fitting(best, rules.INSTEAD_FITTED):
         start = started_with(runs, point, score)
-        numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
+        numbers = (*parameters_with(calibrated.numbers, score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
             paid = penalty * len(fit.free) * calibrated.scatter
@@ -138,8 +138,8 @@ def search_round(
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
 
     def fitted_from(runs: Concatenated, start: Point, score: Score) -> Fitted:
-        numbers = (*before.numbers, *parameters_of_candidate(score.candidate))
-        return fitted(runs, start, (*before.names, score.candidate.name), numbers, given)
+        numbers = parameters_with(before.numbers, score.candidate)
+        return fitted(runs, start, names_with(before.names, score.candidate), numbers, given)
 
     def best_fit(score: Score, runs: Concatenated) -> list[Fitted]:
         variants = {

@@ -155,7 +155,10 @@ def _turned_with_the_headings(runs: Concatenated, point: Point, score: Score) ->
 
 
 def with_candidate(model: Model, score: Score) -> Model:
-    """Add a candidate to the model, at the values that its score suggests."""
+    """Add a candidate to the model, at the values that its score suggests.
+
+    It takes the place of an effect that it extends, with that one's values.
+    """
     candidate = score.candidate
     effect = candidate.effect
     start = dict(effect.nulls) | dict(candidate.shape)
@@ -188,5 +191,14 @@ def with_candidate(model: Model, score: Score) -> Model:
             if candidate.per_run:
                 for mine, place in zip(own, places.tolist(), strict=True):
                     mine[f"{effect.name}.{candidate.place}"] = place
-    robot = replace(model.robot, effects=(*model.robot.effects, AppliedEffect(effect, start)))
+    others = []
+    for held in model.robot.effects:
+        if held.name != effect.extends:
+            others.append(held)
+            continue
+        for values, prefix in ((start, ""), *((mine, f"{effect.name}.") for mine in own)):
+            for name, value in held.values.items():
+                if prefix + name in values:
+                    values[prefix + name] += value - effect.nulls[name]
+    robot = replace(model.robot, effects=(*others, AppliedEffect(effect, start)))
     return Model(robot, tuple(own))
