@@ -21,7 +21,7 @@ from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
-from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_of_candidate, scores
+from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_with, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -93,7 +93,7 @@ class Floor:
         fits = []
         for score in best:
             start = replace(fit.point, model=with_candidate(fit.point.model, score))
-            own = (*fit.numbers, *parameters_of_candidate(score.candidate))
+            own = parameters_with(fit.numbers, score.candidate)
             names = (*fit.names, effect.name)
             fits.append(fitted(self.laid, start, names, own, robot, rounds=3))
         # A weak phase may differ from run to run or be one for all: the price tells.

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import run_by
+from test.inference.driven import run_by, run_of
 from test.inference.test_gyro_bias import BIAS, INCREMENTAL, by_gyro, short_drive
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
@@ -114,6 +114,27 @@ def test_of_one_square_a_late_gyro_is_named(seed: int) -> None:
     assert set(found.found) == {"reference_delay", "track_width"}
     values = {item.name: item.values for item in found.final.point.model.robot.effects}
     assert values["reference_delay"]["delay"] == pytest.approx(0.06, abs=0.004)
+
+
+def test_a_late_clock_that_drifts_is_one_effect() -> None:
+    """The mean delay was told as a mistake, and the drift beside it: both were added."""
+    starts, rates = (0.55, 0.6, 0.7), (1e-3, -5e-4, 2e-3)
+    runs = []
+    for seed, (start, rate) in enumerate(zip(starts, rates, strict=True)):
+        run = run_of(ROBOT, seed, 60)
+        assert run.reference is not None
+        time = start + (1.0 + rate) * run.reference.time
+        runs.append(replace(run, reference=replace(run.reference, time=time)))
+    found = diagnose(runs, ROBOT, LIBRARY, EvaluationOptions(leg=0.5))
+    assert found.found == ("reference_clock_drift",)
+    assert not found.set_up.findings
+    (drift,) = found.final.point.model.robot.effects
+    assert drift.name == "reference_clock_drift"
+    for key, truth in (("delay", starts), ("rate", rates)):
+        values = [own[f"reference_clock_drift.{key}"] for own in found.final.point.model.own]
+        assert values == pytest.approx(truth, abs={"delay": 0.01, "rate": 3e-4}[key])
+    mended = replace(ROBOT, effects=(find("reference_clock_drift").using(),))
+    assert diagnose(runs, mended, LIBRARY, EvaluationOptions(leg=0.5)).verdict == "none"
 
 
 def kept(runs: list[Run]) -> list[Run]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import werrimbi_odom as wo
@@ -17,6 +18,7 @@ from test.cli.commands import ROBOT_FILE, write_run
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
@@ -163,6 +165,33 @@ def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:
     (said,) = not_shown(told)
     assert "tyre_squash (arcs would show it)" in said
     assert "track_width" not in said
+
+
+@pytest.mark.parametrize(
+    ("kind", "interval", "words"),
+    [
+        (
+            "absolute",
+            0.05,
+            "errs by 1.0 mm and 0.11° would: the poses of this one",
+        ),
+        ("absolute", 0.5, "measures more finely, and more often, does (motion capture)"),
+        ("local_map", 0.05, "measures more finely, and more often, does (motion capture)"),
+    ],
+)
+def test_motion_capture_is_not_advised_to_who_has_it(
+    kind: str, interval: float, words: str
+) -> None:
+    time = np.arange(100.0)
+    measured, counters = (SimpleNamespace(time=step * time) for step in (interval, 0.05))
+    run = SimpleNamespace(counters=counters, measured=measured, intervals=np.ones(99))
+    runs = SimpleNamespace(runs=[run], own_axes=False, start=np.zeros((1, 3)))
+    noise = SimpleNamespace(xy=np.array([8e-4**2]), yaw=np.array([6e-3**2]))
+    point = SimpleNamespace(variances=noise, options=EvaluationOptions(reference_kind=kind))  # type: ignore[arg-type]
+    diagnosis = SimpleNamespace(found=(), runs=runs, final=SimpleNamespace(point=point))
+    sight = SimpleNamespace(effect="lateral_slip", hidden=True, shown_by=None, needs_more=True)
+    (said,) = not_shown(SimpleNamespace(diagnosis=diagnosis, sights=(sight,)))  # type: ignore[arg-type]
+    assert words in said
 
 
 def value(size: float, std: float, *, determined: bool = True) -> Value:

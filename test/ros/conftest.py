@@ -109,6 +109,7 @@ class Launched:
         self._clients: dict[str, Any] = {}
         self.odometry: list[Odometry] = []
         self.diagnostics: list[DiagnosticStatus] = []
+        self._read = 0  # of them, by the last `counts`
         self._listen(Odometry, "odom", self.odometry.append)
         self._listen(DiagnosticArray, "/diagnostics", lambda m: self.diagnostics.extend(m.status))
 
@@ -254,26 +255,43 @@ class Launched:
         self.catch_up()
         if not self.diagnostics:
             self.report()
+        self._read = len(self.diagnostics)
         pairs = ((item.key, item.value) for item in self.diagnostics[-1].values)
         return Counter({key: int(value) for key, value in pairs if value.isdigit()})
 
-    def counted(self, before: Counter[str], **expected: int) -> tuple[bytes, str]:
-        """Wait until /diagnostics counts so much more than before; returns level and words.
+    def stand(self) -> None:
+        """Publish the counters of a robot that does not move."""
+        self.step(0, 0)
 
+    def counted(
+        self,
+        before: Counter[str],
+        send: Callable[[], None] | None = None,
+        **expected: int,
+    ) -> tuple[bytes, str]:
+        """Wait for the first /diagnostics since `before` that counts so much more; level and words.
+
+        Its words are of what came since the one before it, and the next one no longer has them.
+        `send` goes on publishing meanwhile, as a driver does: an input that ends is told as silent.
         Underscores stand for spaces and colons where a count has those in its name.
         """
         new: dict[str, int] = {}
         self.catch_up()
-        for _ in range(4):
-            level, words, values = self.report()
-            new = {
-                key.replace(": ", "_").replace(" ", "_"): int(value) - before[key]
-                for key, value in values.items()
-                if value.isdigit()
-            }
-            if all(new.get(key) == count for key, count in expected.items()):
-                return level, words
-        raise AssertionError(f"not {expected} but {new}; {self.stderr()}")
+        end = time.monotonic() + 10.0
+        while True:
+            for status in self.diagnostics[self._read :]:
+                new = {
+                    item.key.replace(": ", "_").replace(" ", "_"): int(item.value)
+                    - before[item.key]
+                    for item in status.values
+                    if item.value.isdigit()
+                }
+                if all(new.get(key) == count for key, count in expected.items()):
+                    return status.level, status.message
+            assert time.monotonic() < end, f"not {expected} but {new}; {self.stderr()}"
+            if send is not None:
+                send()
+            self.rest(0.05)
 
     def stderr(self) -> str:
         """What the node has said."""

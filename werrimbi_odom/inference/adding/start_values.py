@@ -20,6 +20,7 @@ from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidate import names_with
 from werrimbi_odom.inference.fitting.candidate_starts import looked_for_delay, started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
@@ -33,7 +34,7 @@ from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,
     candidates,
-    parameters_of_candidate,
+    parameters_with,
     scores,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
@@ -180,9 +181,9 @@ def start_at(
     runs: Concatenated, before: Fitted, score: Score, numbers: Sequence[FreeParameter]
 ) -> Start:
     """A start at the values that a score suggests."""
-    own = parameters_of_candidate(score.candidate)
     point = started_with(runs, before.point, score)
-    return Start(point, (*before.names, score.candidate.name), (*numbers, *own), score.gain)
+    names = names_with(before.names, score.candidate)
+    return Start(point, names, parameters_with(numbers, score.candidate), score.gain)
 
 
 def _best_shapes(found: Sequence[Score]) -> list[Score]:

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
-from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_of_candidate, scores
+from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_with, scores
 from werrimbi_odom.model.effect import AppliedEffect, Effect, extended_by
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -66,7 +66,7 @@ def _rivals(
     found = {}
     for score in near[: rules.INSTEAD_FITTED]:
         start = started_with(runs, point, score)
-        free = (*numbers, *parameters_of_candidate(score.candidate))
+        free = parameters_with(numbers, score.candidate)
         other = fitted(runs, start, (score.candidate.name,), free, given)
         if (
             other.determined

@@ -22,10 +22,11 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     extension_p_value,
     fitted,
 )
-from werrimbi_odom.inference.fitting.candidate import Candidate
+from werrimbi_odom.inference.fitting.candidate import Candidate, names_with
 from werrimbi_odom.inference.fitting.candidate_starts import (
     looked_for,
     looked_for_delay,
+    started_as_nested,
     started_with,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -35,7 +36,7 @@ from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,
     candidates,
-    parameters_of_candidate,
+    parameters_with,
     scores,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
@@ -119,7 +120,7 @@ def instead_of_calibration(
     best = sorted(best_of_each(found), key=lambda score: penalty * score.degrees - score.gain)
     for score in worth_fitting(best, rules.INSTEAD_FITTED):
         start = started_with(runs, point, score)
-        numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
+        numbers = (*parameters_with(calibrated.numbers, score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
             paid = penalty * len(fit.free) * calibrated.scatter
@@ -140,8 +141,8 @@ def search_round(
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
 
     def fitted_from(runs: Concatenated, start: Point, score: Score) -> Fitted:
-        numbers = (*before.numbers, *parameters_of_candidate(score.candidate))
-        return fitted(runs, start, (*before.names, score.candidate.name), numbers, given)
+        numbers = parameters_with(before.numbers, score.candidate)
+        return fitted(runs, start, names_with(before.names, score.candidate), numbers, given)
 
     def best_fit(score: Score, runs: Concatenated) -> list[Fitted]:
         variants = {
@@ -169,10 +170,13 @@ def search_round(
     works: list[Callable[[Concatenated], Any]] = [partial(best_fit, score) for score in chosen]
     cells, *best = runs.side_by_side([lambda runs: dependences(runs, point, turned), *works])
     tried += [fit for fits in best for fit in fits]
-    cheapest: dict[str, Fitted] = {}
-    for fit in sorted(tried, key=lambda fit: fit.total):
-        cheapest.setdefault(fit.names[-1], fit)
-    tried = without_nested(runs, list(cheapest.values()))
+    cheapest = cheapest_of_each(tried)
+    for score in ordered:
+        nested = cheapest.get(score.candidate.effect.extends)
+        wider = cheapest.get(score.candidate.name)
+        if nested is not None and wider is not None and nested.total < wider.total:
+            tried.append(fitted_from(runs, started_as_nested(nested.point, score), score))
+    tried = without_nested(runs, list(cheapest_of_each(tried).values()))
     return Round(
         before,
         tuple(ordered),
@@ -203,6 +207,14 @@ def _scores_in_place_of_sizes(
     numbers = (*before.numbers, *point.model.nuisance_parameters)
     best = best_of_each(scores(runs, point, numbers, looked_at))
     return {score.candidate.name: score for score in best}
+
+
+def cheapest_of_each(tried: Sequence[Fitted]) -> dict[str, Fitted]:
+    """The cheapest fit of each effect, by its name, the cheapest effect first."""
+    cheapest: dict[str, Fitted] = {}
+    for fit in sorted(tried, key=lambda fit: fit.total):
+        cheapest.setdefault(fit.names[-1], fit)
+    return cheapest
 
 
 def without_nested(runs: Concatenated, tried: Sequence[Fitted]) -> list[Fitted]:

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.fitting.free_parameters import STEP
@@ -95,6 +95,11 @@ class Candidate:
             value = null[name] + factor * (coordinate[name] - null[name])
             values[name] = min(max(value, item.bounds[0]), item.bounds[1])
         return AppliedEffect(self.effect, values)
+
+
+def names_with(names: Sequence[str], candidate: Candidate) -> tuple[str, ...]:
+    """Names of effects, with that of a candidate in place of what it extends."""
+    return (*(each for each in names if each != candidate.effect.extends), candidate.name)
 
 
 def usual_view(effect: Effect) -> View:

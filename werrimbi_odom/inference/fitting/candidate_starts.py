@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.candidate import usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -22,8 +23,8 @@ from werrimbi_odom.inference.fitting.start_headings import (
     turned_to_the_first_legs,
 )
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.model.effect import AppliedEffect
-from werrimbi_odom.model.pose import wrap_all
+from werrimbi_odom.model.effect import AppliedEffect, Parameter
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.reference_view import View
 
 _SHARES = np.array([1.0, 0.5, 0.25])
@@ -68,38 +69,67 @@ def looked_for_delay(
 
     Noise that was fitted without the delay has taken most of it, and between the steps of a coarse
     counter the likelihood has minima of its own. So where `any_seen` effect might be named instead,
-    it is looked for. Where the jitter of the stamps was found to be large, the delay may stand
-    behind it: the jitter is then typical.
+    it is looked for, and in each run where each has its own. Where the jitter of the stamps was
+    found to be large, the delay may stand behind it: the jitter is then typical.
     """
     jitter = math.sqrt(float(point.variances.stamp.max()))
     behind_jitter = runs.has_stamp_noise and jitter > rules.MOST_STAMP_NOISE
-    if not (_is_a_delay(score) and (any_seen or behind_jitter)):
+    item = _delay_of(score)
+    if item is None or not (any_seen or behind_jitter):
         return None
     if behind_jitter:
         usual = np.full_like(point.variances.stamp, rules.TYPICAL_STAMP_NOISE**2)
         point = replace(point, variances=replace(point.variances, stamp=usual))
-    (item,) = score.candidate.effect.parameters.values()
     tried = rules.DELAYS_TRIED[:: 1 if runs.has_coarse_counters else 2]
-    starts = []
-    for delay in np.concatenate([-tried, tried]) / (STEP * item.scale):
-        model = with_candidate(point.model, replace(score, coefficients=np.array([delay])))
-        start = replace(point, model=model)
-        starts.append((np.sum(squares_of_runs(runs, start)), start))
-    squares, best = min(starts, key=lambda start: start[0])
+    steps = np.concatenate([-tried, [0.0], tried]) / (STEP * item.scale)
+
+    def started(delays: Floats) -> Point:
+        """With delays in steps: one for all, or of each run."""
+        coefficients = np.zeros_like(score.coefficients)
+        coefficients[..., 0] = delays
+        return replace(
+            point, model=with_candidate(point.model, replace(score, coefficients=coefficients))
+        )
+
+    squares = np.array([squares_of_runs(runs, started(delay)) for delay in steps])
+    if score.coefficients.ndim < 2:
+        squares = squares.sum(axis=1, keepdims=True)
+    chosen = steps[np.argmin(squares, axis=0)]
+    best = started(chosen if chosen.size > 1 else chosen[0])
     if behind_jitter:
         return best
     told = (point, started_with(runs, point, score))
     least = min(np.sum(squares_of_runs(runs, each)) for each in told)
-    return best if squares < least - rules.RIVAL else None
+    return best if squares.min(axis=0).sum() < least - rules.RIVAL else None
 
 
-def _is_a_delay(score: Score) -> bool:
-    """Whether all that an effect does is that the reference's stamps are late."""
+def started_as_nested(nested: Point, score: Score) -> Point:
+    """Start a candidate at the fit of the effect that it extends, which is the last of the model.
+
+    What it has beyond that one is null, so the fit cannot end dearer: in the steps of a coarse
+    counter the likelihood of a clock's rate has minima of its own, the farther the more of them.
+    """
+    (*others, held) = nested.model.robot.effects
     effect = score.candidate.effect
-    if effect.stage != "reference":
-        return False
-    view = usual_view(effect)
-    return view != View() and view._replace(delay=0.0) == View()
+    values = {**effect.nulls, **score.candidate.shape, **held.values}
+    anew = {
+        f"{effect.name}.{name}": values[name]
+        for name, item in effect.parameters.items()
+        if item.per_run and name not in score.candidate.shared
+    }
+    robot = replace(nested.model.robot, effects=(*others, AppliedEffect(effect, values)))
+    return replace(nested, model=Model(robot, tuple({**mine, **anew} for mine in nested.model.own)))
+
+
+def _delay_of(score: Score) -> Parameter | None:
+    """The delay of the reference's stamps, if an effect is that or extends it: its first number."""
+    effect = score.candidate.effect
+    nested = find(effect.extends) if effect.extends else effect
+    if nested.stage != "reference":
+        return None
+    view = usual_view(nested)
+    late = view != View() and view._replace(delay=0.0) == View()
+    return next(iter(effect.parameters.values())) if late else None
 
 
 def _is_of_a_point(score: Score) -> bool:
@@ -125,7 +155,10 @@ def _turned_with_the_headings(runs: Concatenated, point: Point, score: Score) ->
 
 
 def with_candidate(model: Model, score: Score) -> Model:
-    """Add a candidate to the model, at the values that its score suggests."""
+    """Add a candidate to the model, at the values that its score suggests.
+
+    It takes the place of an effect that it extends, with that one's values.
+    """
     candidate = score.candidate
     effect = candidate.effect
     start = dict(effect.nulls) | dict(candidate.shape)
@@ -158,5 +191,14 @@ def with_candidate(model: Model, score: Score) -> Model:
             if candidate.per_run:
                 for mine, place in zip(own, places.tolist(), strict=True):
                     mine[f"{effect.name}.{candidate.place}"] = place
-    robot = replace(model.robot, effects=(*model.robot.effects, AppliedEffect(effect, start)))
+    others = []
+    for held in model.robot.effects:
+        if held.name != effect.extends:
+            others.append(held)
+            continue
+        for values, prefix in ((start, ""), *((mine, f"{effect.name}.") for mine in own)):
+            for name, value in held.values.items():
+                if prefix + name in values:
+                    values[prefix + name] += value - effect.nulls[name]
+    robot = replace(model.robot, effects=(*others, AppliedEffect(effect, start)))
     return Model(robot, tuple(own))

@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.score_tests import Score, scores
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.effect import AppliedEffect, extended_by
 
 
 def model_in_runs(model: Model, runs: Concatenated, kind: ReferenceKind) -> Model:
@@ -74,9 +74,10 @@ def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Free
     A phase can be anywhere, so it is found by its score, which needs no start value.
     """
     numbers: list[FreeParameter] = []
+    extended = extended_by(point.model.robot.effects)
     for applied in point.model.robot.effects:
-        if applied.effect.is_mistake or applied.name in CALIBRATED:
-            continue
+        if applied.effect.is_mistake or applied.name in (*CALIBRATED, *extended):
+            continue  # sizes are in every fit, and what extends an effect holds all of it
         shared = tuple(
             name
             for name, item in applied.effect.parameters.items()

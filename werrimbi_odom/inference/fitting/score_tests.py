@@ -240,6 +240,10 @@ def _slope(
     return np.asarray(0.5 * (poses[0] - poses[1]))
 
 
-def parameters_of_candidate(candidate: Candidate) -> tuple[FreeParameter, ...]:
-    """Parameters of a candidate that a fit may change."""
-    return parameters_to_fit(candidate.effect, candidate.shared)
+def parameters_with(
+    numbers: Sequence[FreeParameter], candidate: Candidate
+) -> tuple[FreeParameter, ...]:
+    """Parameters that a fit may change, with those of a candidate in place of what it extends."""
+    replaced = candidate.effect.extends
+    others = [each for each in numbers if each.name.rpartition(".")[0] != replaced]
+    return (*others, *parameters_to_fit(candidate.effect, candidate.shared))

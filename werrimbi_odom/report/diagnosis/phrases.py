@@ -77,10 +77,6 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     every = values_of(diagnosis, name)
     if not every:
         return []
-    others = [diagnosis.effect_named(other) for other in diagnosis.found]
-    wider = [effect.name for effect in others if effect is not None and effect.extends == name]
-    if wider and not any(value.reported for value in every.values()):
-        return [f"How large: another one in each drive, see {wider[0]}."]
     values = {key: value for key, value in every.items() if not _unseen(value)} or every
     parts = [
         f"{parameter} is {each_its_own(value.of_runs, value.unit)} ({value.says})"

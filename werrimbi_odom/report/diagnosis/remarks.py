@@ -16,6 +16,7 @@ from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
+from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
 from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
@@ -173,15 +174,30 @@ def not_shown(advised: AdvisedDiagnosis) -> list[str]:
         )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
-        runs, better = advised.diagnosis.runs, "positions and headings does (motion capture, scans)"
-        if runs.own_axes:
-            better = "finely, in axes of the floor, does (motion capture)"
-        elif np.isfinite(runs.start).all(axis=1).any():
-            better = "more finely, and more often, does (motion capture)"
         lines.append(
-            f"No drive shows {listed(needing)} with such a reference; one that measures {better}."
+            f"No drive shows {listed(needing)} with such a reference; one "
+            f"{_better_reference(advised.diagnosis)}."
         )
     return lines
+
+
+def _better_reference(diagnosis: Diagnosis) -> str:
+    """What motion capture has over the reference of these drives, which may be one."""
+    runs, point = diagnosis.runs, diagnosis.final.point
+    if runs.own_axes:
+        return "that measures finely, in axes of the floor, does (motion capture)"
+    if not np.isfinite(runs.start).all(axis=1).any():
+        return "that measures positions and headings does (motion capture, scans)"
+    _, interval = rates_of(runs)
+    as_often = interval < math.sqrt(2.0) * rules.MOTION_CAPTURE_INTERVAL
+    if point.options.reference_kind != "absolute" or not as_often:
+        return "that measures more finely, and more often, does (motion capture)"
+    xy, yaw = (math.sqrt(float(part[0])) for part in (point.variances.xy, point.variances.yaw))
+    return (
+        f"that errs by {error_words(rules.MOTION_CAPTURE_XY, 'm')} and "
+        f"{error_words(rules.MOTION_CAPTURE_YAW, 'rad')} would: the poses of this one are off by "
+        f"{error_words(xy, 'm')} and {error_words(yaw, 'rad')} each, as fitted"
+    )
 
 
 def coarse_counters(diagnosis: Diagnosis) -> list[str]:
