@@ -110,7 +110,8 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     Raises
     ------
     InputError
-        If there are too few runs, or their dispersion is no more than the reference's noise.
+        If there are too few runs, their dispersion is no more than the reference's noise, or more
+        than that of any wheels; if the headings are in degrees.
     """
     runs = len(errors)
     if runs < rules.LEAST_RUNS:
@@ -131,6 +132,17 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     squared = float(mean @ np.linalg.solve(data / runs, mean))
     written = (left.value**2, right.value**2)
     misfit_p = likelihood.misfit_p(*written, 2 if split_known else 1)
+    if misfit_p < rules.VERY_SURE and _fits_in_degrees(likelihood):
+        raise InputError(
+            "the headings look like degrees: divided by 57.3 they scatter as wheels make them that "
+            "scatter x and y so, and as radians they do not; eyaw_rad is in radians"
+        )
+    if min(left.low, right.low) > rules.STRANGE_NOISE:
+        raise InputError(
+            f"k would be {left.value:.2g} and {right.value:.2g} m^0.5, and no rolling wheels err "
+            f"by more than {rules.STRANGE_NOISE:g}: are the errors in metres and radians, is "
+            "the distance that of one way, and were some runs disturbed?"
+        )
     return NoiseFit(
         runs=runs,
         left=left,
@@ -149,6 +161,13 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
         if misfit_p < rules.SURE_WHEN_ASKED
         else None,
     )
+
+
+def _fits_in_degrees(likelihood: Likelihood) -> bool:
+    """Whether the model explains the scatter of the runs if their headings are in degrees."""
+    scale = np.array([1.0, 1.0, math.radians(1.0)])
+    turned = replace(likelihood, data=likelihood.data * np.outer(scale, scale))
+    return turned.misfit_p(*turned.best(turned.same()), 2) >= rules.SURE_WHEN_ASKED
 
 
 def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, float] | None:
