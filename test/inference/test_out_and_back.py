@@ -228,5 +228,5 @@ def test_refused() -> None:
         fit_noise(np.zeros((6, 3)), paper_design())
     with pytest.raises(InputError, match="the headings look like degrees"):
         fit_noise(sample * [1.0, 1.0, math.degrees(1.0)], paper_design())
-    with pytest.raises(InputError, match="no rolling wheels err by more than 0.01"):
+    with pytest.raises(InputError, match=r"no rolling wheels err by more than 0\.01"):
         fit_noise(100.0 * sample, paper_design())

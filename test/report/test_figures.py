@@ -81,6 +81,15 @@ def test_error_bars_of_a_flat_line_hold_zero_as_often_as_they_say(diagnosis: Dia
     assert outside.sum() <= 1
 
 
+def test_a_figure_has_the_name_of_an_effect_whose_variable_it_shows(diagnosis: Diagnosis) -> None:
+    """Headings over the travel since a reversal stood under the name of a lever arm."""
+    first = replace(diagnosis, found=("reference_lever_arm", *diagnosis.found))
+    found = before_after(first)
+    assert found is not None
+    assert found.effect == "eccentric_left_wheel"
+    assert before_after(replace(diagnosis, found=("reference_lever_arm",))) is None
+
+
 def test_the_comparison_sees_the_same_sine_in_each_drive(comparison: Comparison) -> None:
     """From the raw intervals of the reference, with no fit but a division."""
     for index in range(len(comparison.runs)):

@@ -136,14 +136,16 @@ class BeforeAfter:
 
 
 def before_after(diagnosis: Diagnosis) -> BeforeAfter | None:
-    """The error over the variable of the first effect found; None where there is nothing to show.
+    """The error over the variable of the first effect found that has one; None where none has.
 
     Set-up mistakes have a figure of their own: see `set_up_figure`.
     """
-    effect = diagnosis.effect or (diagnosis.rivals[0] if diagnosis.rivals else None)
-    if any(finding.effect == effect for finding in diagnosis.set_up.findings):
+    mistakes = {finding.effect for finding in diagnosis.set_up.findings}
+    shown: tuple[str | None, ...] = diagnosis.found or diagnosis.rivals[:1] or (None,)
+    if mistakes & set(shown[:1]):
         return None
-    cell = _own_cell(diagnosis, effect)
+    cells = ((name, _own_cell(diagnosis, name)) for name in shown)
+    effect, cell = next(((name, own) for name, own in cells if own is not None), (None, None))
     if cell is None or cell.form == "place":
         return None
     start = diagnosis.rounds[0].before
@@ -202,8 +204,8 @@ def _own_cell(diagnosis: Diagnosis, effect: str | None) -> Dependence | None:
                 and set(cell.variable.looks_at) & support.inputs
                 and cell.form != "place"
             ]
-            return own[0] if own else by_worth[0]
-    return by_worth[0]
+            return own[0] if own else None
+    return None
 
 
 def _after(diagnosis: Diagnosis, effect: str) -> Point | None:
