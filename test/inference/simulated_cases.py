@@ -127,8 +127,8 @@ def stated(case: Case) -> dict[str, tuple[float, float]]:
     fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all
     sizes = sizes_needed(fit, GIVEN, ())
     fit = with_sizes(runs, fit, GIVEN, sizes)
-    noises = noises_of(drives, as_written(drives, fit, GIVEN))
-    known = with_spread([case.effect], drives, fit, GIVEN, (), sizes, noises)
+    noises = noises_of(runs, as_written(runs, fit, GIVEN))
+    known = with_spread([case.effect], runs, fit, GIVEN, (), sizes, noises)
     robot = fit.point.model.robot
     found = {name: (float(getattr(robot, name)), std_of(known, name)) for name in MULTIPLIERS}
     found |= {

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.score_tests import (
     candidates,
-    parameters_of_candidate,
+    parameters_with,
     scores,
     signatures,
 )
@@ -143,7 +143,7 @@ def test_legs_that_share_a_pose_of_an_incremental_reference_are_less_sure(of_pos
     tried = candidates([find("oval_left_wheel")], (), (), len(laid.runs))[-1]
     (score,) = scores(laid, before.point, CALIBRATION, [tried])
     start = replace(before.point, model=with_candidate(before.point.model, score))
-    fit = fitted(laid, start, (tried.name,), parameters_of_candidate(tried), given, rounds=1)
+    fit = fitted(laid, start, (tried.name,), parameters_with((), tried), given, rounds=1)
     assert (fit.neighbours > 1.25) if of_poses else (fit.neighbours < 1.2)
 
 
@@ -154,7 +154,7 @@ def test_what_each_drive_has_of_its_own_costs_what_its_own_data_are_worth() -> N
     (tried,) = candidates([find("reference_gyro_drift")], (), runs.channels, len(runs.runs))[:1]
     (score,) = scores(runs, before.point, CALIBRATION, [tried])
     start = replace(before.point, model=with_candidate(before.point.model, score))
-    names, numbers = (tried.name,), parameters_of_candidate(tried)
+    names, numbers = (tried.name,), parameters_with((), tried)
     fit = fitted(runs, start, names, numbers, ROBOT.entered(), rounds=1)
     assert fit.paid - before.paid == len(runs.runs) == 4
     assert fit.penalty - before.penalty == pytest.approx(4.0 * np.log(runs.data / 4.0))

@@ -3,5 +3,5 @@
 """Effects added to a robot's model: fitted with all calibration, judged on held-out drives.
 
 Reading order: `adding` (the whole of it), `start_values`, `fits`, `objection` (evidence
-for and against an effect), `uncertainty`.
+for and against an effect).
 """

@@ -11,8 +11,8 @@ have no part in it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.change_evidence import Evidence, evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
 from werrimbi_odom.inference.changes.parameter_groups import DELAY, PARTS, groups_of
-from werrimbi_odom.inference.changes.shapes import Kind
+from werrimbi_odom.inference.changes.shapes import Kind, Shape
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns, pattern_of
@@ -213,6 +213,18 @@ def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> flo
     return max(worth, default=0.0)
 
 
+def _as_steps(steps: Sequence[GroupChange]) -> Iterator[GroupChange]:
+    """Changes, each at a drive of its own: a step and an odd drive at one are two steps."""
+    there = {(each.group.what, each.shape.first) for each in steps if each.shape.kind == "step"}
+    for each in steps:
+        first = each.shape.first
+        if each.shape.kind == "alone" and (each.group.what, first) in there:
+            later = Shape("step", first + 1)
+            yield replace(each, shape=later, span=(first + 1, first + 1))
+        else:
+            yield each
+
+
 def parameter_changes_of(
     found: ChangePoints, numbers: Sequence[FreeParameter], names: Sequence[str], runs: Sequence[str]
 ) -> tuple[ParameterChange, ...]:
@@ -225,7 +237,7 @@ def parameter_changes_of(
     """
     units = {number.name: number.unit for number in numbers}
     told: dict[tuple[str, int], ParameterChange] = {}
-    for step in found.steps:
+    for step in _as_steps(found.steps):
         first = step.shape.first
         before = max(first - 1, 0)
         after = len(runs) - 1 if step.shape.kind == "trend" else first

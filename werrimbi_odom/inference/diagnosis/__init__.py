@@ -5,6 +5,6 @@
 It consists of the set-up search, the evidence map, score tests, forward selection and the verdict.
 Reading order: `diagnosis` (the whole of it), `forward_selection`, `evidence` (the map) with
 `step_jacobians`, `penalised_likelihood` (selection of models), `cross_validation`, `homogeneity`,
-`rivals`, `ranking`, `verdict`, `result`.
+`rivals`, `ranking`, `verdict`, `uncertainty` (every ± that is stated), `result`.
 The statistics are in docs/method.md, section 4.
 """

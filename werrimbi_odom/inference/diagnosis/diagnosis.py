@@ -104,8 +104,10 @@ def diagnose(
     found, happened = refit_without_events(search, runs, holdout)
     if not found.of_another_drive and error_wanders(found.runs, found.final, found.remaining):
         on_map = replace(options, reference_kind="local_map")
-        found = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
-        return replace(found, wander=wander_of(found.final.point.variances))
+        again = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
+        # A reference that wanders explains all that is left; else it is the robot that errs so.
+        if not any(cell.p_value < rules.VERY_SURE for cell in again.remaining):
+            return replace(again, wander=wander_of(again.final.point.variances))
     return replace(found, happened=happened)
 
 
