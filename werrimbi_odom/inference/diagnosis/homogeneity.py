@@ -208,14 +208,15 @@ def _chance(
     """P-value of a pattern's gain, relative to the disagreement between the parts.
 
     The null hypothesis is a pattern that each part draws anew, without a common mean: coefficients
-    N(0, t^2) beside noise N(0, 1), in units in which all parts together know each coefficient to 1.
-    A part that knows them to 1 / v shows them with the variance 1 + t^2 v^2. The ratio of the
-    likelihoods with and without a common mean, each at its best t, is referred to Fisher's F with
-    the effective number of witnesses (Satterthwaite): a part is one as far as what it would draw
-    stands out of the noise, q = t^2 v^2 / (1 + t^2 v^2). Where all parts know as much, that is the
-    F test of an analysis of variance. That test itself, with one variance for all parts, takes the
-    silence of those that know little for agreement: with the shares of the Kobuki's nine parts a
-    chance of one in a thousand was one in sixty, and of three parts among nine one in forty.
+    N(0, t^2) beside noise of N(0, 1) or more (drives whose reference errs more than others'), in
+    units in which all parts together know each coefficient to 1. A part that knows them to 1 / v
+    shows them with the variance 1 + t^2 v^2. The ratio of the likelihoods with and without a common
+    mean, each at its best t and noise, is referred to Fisher's F with the effective number of
+    witnesses (Satterthwaite): a part is one as far as what it would draw stands out of the noise,
+    q = t^2 v^2 / (1 + t^2 v^2). Where all parts know as much, that is the F test of an analysis of
+    variance. That test itself, with one variance for all parts, takes the silence of those that
+    know little for agreement: with the shares of the Kobuki's nine parts a chance of one in a
+    thousand was one in sixty, and of three parts among nine one in forty.
 
     So many parts as are `known` are added that know as much as others and show the noise alone.
     """
@@ -234,15 +235,19 @@ def _chance(
     part_gained = min(gain / max(float(np.sum((basis.T @ rest) ** 2)), 1e-300), 1.0)
     alone, common, drawn = math.inf, math.inf, 0.0
     for spread in (0.0, *np.geomspace(*rules.LASTING_SPREADS)):
-        wide = 1.0 + spread * share
-        cost = float(np.sum(np.log(wide) + shown**2 / wide))
-        silent = 1.0 + spread * mean_share
-        cost += known * (math.log(silent) + 1.0 / silent)
+        wide, silent = 1.0 + spread * share, 1.0 + spread * mean_share
+        volume = float(np.sum(np.log(wide))) + known * math.log(silent)
+        squares = float(np.sum(shown**2 / wide)) + known / silent
         pull = way.T @ (np.sqrt(share) * shown / wide)
         mean = np.linalg.lstsq((way.T * (share / wide)) @ way, pull, rcond=None)[0]
-        common = min(common, cost - part_gained * float(pull @ mean))
-        if cost < alone:
-            alone, drawn = cost, spread
+        explained = part_gained * float(pull @ mean)
+        costs = [
+            volume + _cost_of_noise(left, shown.size + known)
+            for left in (squares, squares - explained)
+        ]
+        common = min(common, costs[1])
+        if costs[0] < alone:
+            alone, drawn = costs[0], spread
     if drawn == 0.0:  # no more than the noise alone shows
         return 1.0
     witness, silent = (drawn * each / (1.0 + drawn * each) for each in (share, mean_share))
@@ -251,6 +256,12 @@ def _chance(
     freedom = max(witnesses - degrees, 1.0)
     ratio = math.expm1(min((alone - common) / witnesses, math.log(1e40)))
     return fisher_survival(ratio * freedom / degrees, degrees, freedom)
+
+
+def _cost_of_noise(squares: float, count: int) -> float:
+    """Minus twice the log-likelihood of that many numbers by noise that is no less than stated."""
+    variance = max(squares / count, 1.0)
+    return count * math.log(variance) + squares / variance
 
 
 def _orthonormal(free: Floats) -> Floats:
