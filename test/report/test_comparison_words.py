@@ -203,6 +203,15 @@ def test_what_lasts_no_time_was_at_a_time() -> None:
     assert lasting == "From 9.7 s to 11.2 s the robot was carried: left out."
 
 
+def test_drives_of_one_name_are_told_by_the_folder_above_too() -> None:
+    held = LeftOut(Path("bags/train/free"), 10.0, 12.0, "held", "the robot was held", 0.0)
+    parts = [held, replace(held, run=Path("bags/holdout/free"))]
+    assert [line.partition(" of ")[2].partition(" the")[0] for line in left_out_words(parts)] == [
+        "train/free",
+        "holdout/free",
+    ]
+
+
 def test_the_longest_stretches_are_told_in_their_order() -> None:
     """Of sixty silences, those of half a second stood in the way of the half hour that mattered."""
     run = Path("run")

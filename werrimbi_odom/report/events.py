@@ -14,6 +14,7 @@ from werrimbi_odom.inference.events.events import Event, Events, Way
 from werrimbi_odom.report import style
 from werrimbi_odom.report.number_format import from_start, in_unit, picked, with_std
 from werrimbi_odom.report.path_figure import add_path
+from werrimbi_odom.report.phrases import drive_names
 from werrimbi_odom.report.style import Figure
 
 _TOLD = 6
@@ -27,13 +28,11 @@ def events_words(happened: Events, track: float) -> list[str]:
         return []
     count = "Once" if len(events) == 1 else f"{len(events)} times"
     lines = [f"{count} something happened at once that no law explains, larger than the noise:"]
-    drives = {event.run for event in events}
-    twice = len({run.name for run in drives}) < len(drives)
+    names = drive_names(event.run for event in events)
     clear = sorted(events, key=lambda event: -abs(event.size) / event.std)[:_TOLD]
     for event in events:
         if event in clear:
-            name = "/".join(event.run.parts[-2:]) if twice else event.run.name
-            where = f" of {name}" if len(drives) > 1 else ""
+            where = f" of {names[event.run]}" if len(names) > 1 else ""
             words = event_words(event, track, either=either(happened))
             lines.append(f"- at {when(event)}{where} {words};")
     lines[-1] = f"{lines[-1][:-1]}."
