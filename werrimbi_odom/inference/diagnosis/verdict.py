@@ -206,14 +206,20 @@ def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenat
     """A fit, with only the reported sizes changed."""
     if not (fit.calibrated or fit.names):
         return replace(fit, point=replace(fit.point, model=_plain(fit, given)))
-    return with_sizes(laid, fit, given, sizes_needed(fit, given, set(found) & set(CALIBRATED)))
+    return with_sizes(laid, fit, given, sizes_needed(fit, given, sizes_among(found, fit)))
+
+
+def sizes_among(found: Collection[str], fit: Fitted) -> set[str]:
+    """Calibration effects among what was found; of a base that skids, its own name counts too."""
+    base = name_of_base(fit.point.model.robot)
+    return {"track_width" if name == base else name for name in found} & set(CALIBRATED)
 
 
 def _with_spread(told: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Fitted:
     """The reported fit with the standard deviations that are stated of what was found."""
     if not (found and (told.calibrated or told.names)):
         return told
-    wanted = set(found) & set(CALIBRATED)
+    wanted = sizes_among(found, told)
     effects = [applied_of(told.point.model.robot.effects, name).effect for name in told.names]
     noises = noises_of(laid, as_written(laid, told, given))
     return with_spread(
