@@ -89,6 +89,11 @@ def in_unit(value: float, std: float, unit: str) -> tuple[str, str]:
     return with_std(factor * value, factor * std), small
 
 
+def or_else_json(told: tuple[float, float] | None) -> dict[str, dict[str, float]]:
+    """What a value may be instead, as a field for JSON; nothing where it is one value."""
+    return {} if told is None else {"or_else": {"value": told[0], "std": told[1]}}
+
+
 def quantity(
     value: float, std: float, unit: str, or_else: tuple[float, float] | None = None
 ) -> str:

@@ -98,7 +98,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
 
 def _other_sign(diagnosis: Diagnosis, name: str, parameter: str) -> tuple[float, float] | None:
     """Value and standard deviation of a parameter in the fit of the other sign, if there is one."""
-    tried = [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
+    tried = _tried_with(diagnosis, name)
     return of_other_sign(tried[-1] if tried else None, name, parameter)
 
 
@@ -147,15 +147,19 @@ def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
 
 def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
     """The reported fit if it has the effect, else the cheapest fit that was tried with it."""
-    tried = [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
     return next(
         (
             fit
-            for fit in (diagnosis.told, *tried)
+            for fit in (diagnosis.told, *_tried_with(diagnosis, name))
             if any(item.name == name for item in fit.point.model.robot.effects)
         ),
         None,
     )
+
+
+def _tried_with(diagnosis: Diagnosis, name: str) -> list[Fitted]:
+    """The fits in which an effect was the newest, round by round."""
+    return [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
 
 
 def of_other_sign(fit: Fitted | None, name: str, parameter: str) -> tuple[float, float] | None:

@@ -23,8 +23,7 @@ from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
-from werrimbi_odom.inference.set_up.search import DELAY, SetUp, look_for_mistakes
-from werrimbi_odom.model.effect import extended_by
+from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes, on_the_clock_of
 from werrimbi_odom.model.robot import Robot
 
 
@@ -107,11 +106,11 @@ class Begun:
         The set-up search, by whose delay the drives were prepared, knows it to some hundredths of a
         second.
         """
-        late = next((item for item in robot.effects if item.name == DELAY), None)
-        if late is None or self.judge.train.robot is self.judge.given:
+        given = self.judge.given
+        cutter = on_the_clock_of(robot, given)
+        if cutter is given or self.judge.train.robot is given:
             return self.judge
-        others = (item for item in self.judge.given.effects if item.name != DELAY)
-        return self.prepared_by(replace(self.judge.given, effects=(late, *others)))
+        return self.prepared_by(cutter)
 
 
 def begin(
@@ -174,9 +173,6 @@ def begin(
     if (sides[0], sides[1]) != (fitted, held):
         set_up = set_up_of(sides[0])
         judge = judge_of(sides[0], sides[1], given, options, set_up.on_its_clock(given))
-    # What an effect of the file has anew in each drive is no mistake.
-    anew = extended_by(robot.effects)
-    told = tuple(each for each in set_up.findings if each.effect not in anew)
 
     def prepared_by(cutter: Robot) -> Judge:
         kept = ({run.name for run in side} for side in sides)
@@ -184,7 +180,8 @@ def begin(
         some, others = ([run for run in side if run.name in names] for side, names in both)
         return judge_of(some, others, given, options, cutter)
 
-    return Begun(judge, replace(set_up, findings=told), otherwise, prepared_by)
+    # What an effect of the file has anew in each drive is no mistake.
+    return Begun(judge, set_up.beside(robot.effects), otherwise, prepared_by)
 
 
 def _refuse_standing(runs: Sequence[Run]) -> None:

@@ -39,7 +39,7 @@ from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
-from werrimbi_odom.model.effect import applied_of, extended_by
+from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.model.robot import Robot
 
 
@@ -78,9 +78,7 @@ def diagnosis_of(
     judge, mended = begun.judge, begun.set_up.robot
     mistakes = tuple(finding.effect for finding in begun.set_up.findings)
     # What an effect that was found has anew in each drive is no mistake.
-    anew = extended_by(final.point.model.robot.effects)
-    kept = tuple(each for each in begun.set_up.findings if each.effect not in anew)
-    begun = replace(begun, set_up=replace(begun.set_up, findings=kept))
+    begun = replace(begun, set_up=begun.set_up.beside(final.point.model.robot.effects))
     as_given = Model(given, judge.nothing_of_own)
     another = all(
         of_another_drive(judge.train, model)

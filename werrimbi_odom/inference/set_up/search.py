@@ -43,6 +43,7 @@ from werrimbi_odom.inference.set_up.records import (
     record_of,
 )
 from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, turning
+from werrimbi_odom.model.effect import AppliedEffect, extended_by
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -76,10 +77,15 @@ class SetUp:
         While the clocks are seconds apart, a gyro turns while the wheels stand, and legs end
         elsewhere than the poses that are compared there.
         """
-        late = {item.name: item for item in self.robot.effects}.get(DELAY)
-        if late is None or all(each.effect != DELAY for each in self.findings):
+        if all(each.effect != DELAY for each in self.findings):
             return robot
-        return replace(robot, effects=(late, *(e for e in robot.effects if e.name != DELAY)))
+        return on_the_clock_of(self.robot, robot)
+
+    def beside(self, effects: tuple[AppliedEffect, ...]) -> SetUp:
+        """The set-up without findings that some of these effects have anew in each drive."""
+        anew = extended_by(effects)
+        kept = tuple(each for each in self.findings if each.effect not in anew)
+        return replace(self, findings=kept)
 
     @property
     def to_convert(self) -> str | None:
@@ -97,6 +103,14 @@ class SetUp:
         if radius > rules.MOST_COUNTS:
             return next(each.words for each in self.findings if each.effect == RADIUS)
         return None
+
+
+def on_the_clock_of(other: Robot, robot: Robot) -> Robot:
+    """A robot with the delay of another; itself where that has none."""
+    late = next((item for item in other.effects if item.name == DELAY), None)
+    if late is None:
+        return robot
+    return replace(robot, effects=(late, *(e for e in robot.effects if e.name != DELAY)))
 
 
 def look_for_mistakes(

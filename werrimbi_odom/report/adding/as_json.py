@@ -9,7 +9,7 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added, JudgedSide
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.events import events_json
-from werrimbi_odom.report.number_format import picked
+from werrimbi_odom.report.number_format import or_else_json, picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -22,11 +22,7 @@ def json_of(added: Added) -> dict[str, Any]:
             name: {
                 **picked(item, "value std remark of_runs"),
                 **picked(item.declared, "unit null says"),
-                **(
-                    {"or_else": dict(zip(("value", "std"), item.or_else, strict=True))}
-                    if item.or_else is not None
-                    else {}
-                ),
+                **or_else_json(item.or_else),
             }
             for name, item in added.parameters.items()
         },

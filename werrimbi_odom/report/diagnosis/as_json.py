@@ -20,7 +20,7 @@ from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedMa
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.events import alike_json, events_json
-from werrimbi_odom.report.number_format import picked
+from werrimbi_odom.report.number_format import or_else_json, picked
 from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 _WANDER = (
@@ -127,14 +127,10 @@ def _values(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
             **(picked(value, "value std") if value.determined else {"value": None, "std": None}),
             **picked(value, "unit per_run"),
             **({"of_runs": list(value.of_runs)} if value.of_runs else {}),
-            **({"or_else": _as_value(value.or_else)} if value.or_else is not None else {}),
+            **or_else_json(value.or_else),
         }
         for parameter, value in values_of(diagnosis, name).items()
     }
-
-
-def _as_value(told: tuple[float, float]) -> dict[str, float]:
-    return dict(zip(("value", "std"), told, strict=True))
 
 
 def _limit(limit: DetectionLimit) -> dict[str, Any]:
