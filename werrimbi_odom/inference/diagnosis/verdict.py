@@ -18,7 +18,11 @@ from werrimbi_odom.inference.comparison.another_drive import (
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.prepared import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
-from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.calibration_selection import (
+    FreeSizes,
+    sizes_needed,
+    with_sizes,
+)
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun
@@ -88,7 +92,7 @@ def diagnosis_of(
     if not another:
         answer = _answer(begun, given, rounds, final, beyond, laid, instead)
     before = judge.of(as_given)
-    told = _as_told(final, mended, answer.found, laid)
+    told, sizes = _as_told(final, mended, answer.found, laid)
     after = judge.of(told.point.model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)
@@ -96,7 +100,8 @@ def diagnosis_of(
     if further and not fell and far_above_noise(judge.train, told.point.model):
         # It suits a part of the drives alone, and what is left there is no noise.
         answer = answer._replace(found=mistakes) if mistakes else _Answer("unknown")
-        told = _as_told(rounds[0].before if mistakes else final, mended, answer.found, laid)
+        at = rounds[0].before if mistakes else final
+        told, sizes = _as_told(at, mended, answer.found, laid)
         after = judge.of(told.point.model)
     return Diagnosis(
         verdict=answer.verdict,
@@ -114,7 +119,7 @@ def diagnosis_of(
         given=given,
         rounds=rounds,
         final=final,
-        told=_with_spread(told, mended, answer.found, laid),
+        told=_with_spread(told, sizes, mended, answer.found, laid),
         runs=laid,
         train=Sides(before.train, after.train, before.unit),
         holdout=before.to(after),
@@ -200,11 +205,14 @@ def _plain(fit: Fitted, given: Robot) -> Model:
     return Model(changed(model.robot, back), model.own)
 
 
-def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Fitted:
-    """A fit, with only the reported sizes changed."""
+def _as_told(
+    fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated
+) -> tuple[Fitted, FreeSizes]:
+    """A fit, with only the reported sizes changed, and which these are."""
+    sizes = sizes_needed(fit, given, sizes_among(found, fit))
     if not (fit.calibrated or fit.names):
-        return replace(fit, point=replace(fit.point, model=_plain(fit, given)))
-    return with_sizes(laid, fit, given, sizes_needed(fit, given, sizes_among(found, fit)))
+        return replace(fit, point=replace(fit.point, model=_plain(fit, given))), sizes
+    return with_sizes(laid, fit, given, sizes), sizes
 
 
 def sizes_among(found: Collection[str], fit: Fitted) -> set[str]:
@@ -213,13 +221,12 @@ def sizes_among(found: Collection[str], fit: Fitted) -> set[str]:
     return {"track_width" if name == base else name for name in found} & set(CALIBRATED)
 
 
-def _with_spread(told: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Fitted:
+def _with_spread(
+    told: Fitted, sizes: FreeSizes, given: Robot, found: Collection[str], laid: Concatenated
+) -> Fitted:
     """The reported fit with the standard deviations that are stated of what was found."""
     if not (found and (told.calibrated or told.names)):
         return told
-    wanted = sizes_among(found, told)
     effects = [applied_of(told.point.model.robot.effects, name).effect for name in told.names]
     noises = noises_of(laid, as_written(laid, told, given))
-    return with_spread(
-        effects, laid, told, given, wanted, sizes_needed(told, given, wanted), noises
-    )
+    return with_spread(effects, laid, told, given, sizes_among(found, told), sizes, noises)
