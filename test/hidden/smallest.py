@@ -245,8 +245,8 @@ def table(results: Mapping[str, Line]) -> Table:
         f"on it in steps of {STEP:g}; seen is what is named or among the rivals of an ambiguous "
         "verdict, named what is alone, or with its twins. *Ratio*: the size that is seen, or "
         "named, in 95 of 100 sessions, over what could be, from how the sessions scatter (pooled "
-        "over all effects, in the logarithm), with one standard error. *Wrong*: names, of all "
-        "sets judged on the way."
+        "over all effects, in the logarithm), with one standard error. *Wrong*: another "
+        "name, or *unknown*, of all sets judged on the way."
     )
     columns = (
         *("effect", "could be seen", "the tool says", "seen from", "ratio"),
