@@ -186,12 +186,12 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     noise = random.normal(size=parts.size)
     rest = noise + 12.0 * free[:, 0]
     gain = float((free[:, 0] @ rest) ** 2)
-    assert _chance(gain, 1, free, rest, parts) < 1e-6
+    assert _chance(gain, 1, free, free, rest, parts) < 1e-6
     # A tenth of the parts has all of it: no two parts agree.
     few = np.where(parts % 10 == 0, free[:, 0], 0.0)
     rest = noise + 120.0 * np.where(parts % 20 == 0, few, -few)
     gain = float((free[:, 0] @ rest) ** 2)
-    assert _chance(gain, 1, free, rest, parts) > 1e-3
+    assert _chance(gain, 1, free, free, rest, parts) > 1e-3
 
 
 @pytest.mark.parametrize("degrees", [1, 2])
@@ -206,7 +206,7 @@ def test_what_each_part_draws_anew_lasts_as_rarely_as_is_said(degrees: int) -> N
         free = np.linalg.qr(columns)[0]
         drawn_anew = drawn * random.normal(size=(shares.size, degrees))
         rest = random.normal(size=parts.size) + np.sum(free * drawn_anew[parts], axis=1)
-        return _chance(float(np.sum((free.T @ rest) ** 2)), degrees, free, rest, parts)
+        return _chance(float(np.sum((free.T @ rest) ** 2)), degrees, free, free, rest, parts)
 
     found = [chance(drawn) for drawn in (30.0, 1000.0) for _ in range(200)]
     assert np.sum(np.array(found) < 0.01) <= 11
@@ -227,7 +227,7 @@ def test_a_part_of_a_small_share_that_shows_the_pattern_by_itself_counts() -> No
     def chance(of_others: float) -> float:
         rest = noise + 30.0 * free * np.where(parts < 2, 1.0, of_others)
         gain = float((free @ rest) ** 2)
-        return _chance(gain, 1, free[:, None], rest, parts, rules.LASTING_NOISE - 4)
+        return _chance(gain, 1, free[:, None], free[:, None], rest, parts, rules.LASTING_NOISE - 4)
 
     assert 79 * chance(1.0) < 1e-3
     assert 79 * chance(0.0) > 1e-3

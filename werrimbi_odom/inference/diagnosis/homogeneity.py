@@ -67,13 +67,14 @@ def homogeneity_of_effect(
     whose = [number.name.rpartition(".") for number, _ in fit.design.columns]
     declared = applied.effect.parameters
     asked = {key for key, item in declared.items() if not item.tries and key not in beyond}
-    own, away = [], []
+    own, away, of = [], [], []
     for column, (number, run) in enumerate(fit.design.columns):
         effect, _, parameter = whose[column]
         if effect == name and parameter in asked:
             null = declared[parameter].null
             is_phase = parameter in (applied.effect.quadrature or ())[1:]
             own.append(column)
+            of.append(parameter)
             away.append(0.0 if is_phase and run >= 0 else model.value(number, max(run, 0)) - null)
     mine = [effect == name and parameter not in beyond for effect, _, parameter in whose]
     # Directions that the data do not determine were not fitted, and explain nothing of the effect.
@@ -83,7 +84,8 @@ def homogeneity_of_effect(
     test = score_test(flat[:, own], free, rest)
     if test is None:
         return 1.0
-    return _chance(test.gain, test.degrees, free, rest, parts, noise_known(runs, parts))
+    known = noise_known(runs, parts)
+    return _chance(test.gain, test.degrees, free, _added_up(free, of), rest, parts, known)
 
 
 def lasting(
@@ -103,9 +105,16 @@ def lasting(
         free = frame.residual(pattern_of(runs, point, cell))
         by_run = free.reshape(rest.size, len(runs.runs) if cell.variable.per_run else 1, -1)
         gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
-        p_value = _chance(gain, cell.degrees, free, rest, parts, noise_known(runs, parts))
-        alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), by_run.sum(axis=1))
+        of_all = by_run.sum(axis=1)
+        p_value = _chance(gain, cell.degrees, free, of_all, rest, parts, noise_known(runs, parts))
+        alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), of_all)
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
+
+
+def _added_up(columns: Floats, of: Sequence[str]) -> Floats:
+    """Columns (n, k) of each parameter, those of all drives added up: (n, parameters)."""
+    names = list(dict.fromkeys(of))
+    return np.stack([columns[:, [name == each for each in of]].sum(axis=1) for name in names], 1)
 
 
 def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
@@ -138,7 +147,7 @@ def lasting_columns(
     parts = parts_of_innovations(runs, rest)
     if parts is None:
         return 0.0
-    return _chance(gain, degrees, free, rest, parts, noise_known(runs, parts))
+    return _chance(gain, degrees, free, free, rest, parts, noise_known(runs, parts))
 
 
 def _of_one_height(by_run: Floats, rest: Floats) -> float:
@@ -201,6 +210,7 @@ def _chance(
     gain: float,
     degrees: int,
     free: Floats,
+    anew: Floats,
     rest: Floats,
     parts: NDArray[np.intp],
     known: int = 0,
@@ -212,56 +222,62 @@ def _chance(
     units in which all parts together know each coefficient to 1. A part that knows them to 1 / v
     shows them with the variance 1 + t^2 v^2. The ratio of the likelihoods with and without a common
     mean, each at its best t and noise, is referred to Fisher's F with the effective number of
-    witnesses (Satterthwaite): a part is one as far as what it would draw stands out of the noise,
-    q = t^2 v^2 / (1 + t^2 v^2). Where all parts know as much, that is the F test of an analysis of
-    variance. That test itself, with one variance for all parts, takes the silence of those that
+    witnesses (Satterthwaite): a part is one as far as what it would show, s^2, stands out of the
+    stated noise, q = 1 - 1 / s^2. Where all parts know as much, that is the F test of an analysis
+    of variance. That test itself, with one variance for all parts, takes the silence of those that
     know little for agreement: with the shares of the Kobuki's nine parts a chance of one in a
     thousand was one in sixty, and of three parts among nine one in forty.
 
-    So many parts as are `known` are added that know as much as others and show the noise alone.
+    Parameters
+    ----------
+    free : ndarray, shape (n, k)
+        The pattern's columns. Of what each drive has of its own (a phase) there is one a drive, and
+        the mean has as many.
+    anew : ndarray, shape (n, j)
+        The columns of which each part draws its own: those of the drives added up, since no drive
+        knows the others' phases, and all know each phase as well as the size.
+    known : int
+        Parts that are added, which know as much as others and show the noise alone.
     """
-    basis = _orthonormal(free)
-    shares, seen, ways = [], [], []
+    basis, drawn = _orthonormal(free), _orthonormal(anew)
+    shares, seen, means = [], [], []
     for part in range(parts.max() + 1):
         here = parts == part
-        left, values, right = np.linalg.svd(basis[here], full_matrices=False)
-        shares.append(values)
+        left, values, _ = np.linalg.svd(drawn[here], full_matrices=False)
+        shares.append(values**2)
         seen.append(left.T @ rest[here])
-        ways.append(right)
-    share, shown, way = (np.concatenate(each) for each in (shares, seen, ways))
-    share = share**2
-    mean_share = degrees / (parts.max() + 1)
+        means.append(left.T @ basis[here])
+    mean_share = drawn.shape[1] / len(shares)
+    share = np.concatenate([*shares, np.full(known, mean_share)])
+    shown = np.concatenate([*seen, np.ones(known)])
+    way = np.concatenate([*means, np.zeros((known, basis.shape[1]))])
     # Waves with one height in all drives, and a phase in each, gain less than they could.
     part_gained = min(gain / max(float(np.sum((basis.T @ rest) ** 2)), 1e-300), 1.0)
-    alone, common, drawn = math.inf, math.inf, 0.0
+    alone, common, spread_alone = math.inf, math.inf, np.ones(share.size)
     for spread in (0.0, *np.geomspace(*rules.LASTING_SPREADS)):
-        wide, silent = 1.0 + spread * share, 1.0 + spread * mean_share
-        volume = float(np.sum(np.log(wide))) + known * math.log(silent)
-        squares = float(np.sum(shown**2 / wide)) + known / silent
-        pull = way.T @ (np.sqrt(share) * shown / wide)
-        mean = np.linalg.lstsq((way.T * (share / wide)) @ way, pull, rcond=None)[0]
-        explained = part_gained * float(pull @ mean)
-        costs = [
-            volume + _cost_of_noise(left, shown.size + known)
-            for left in (squares, squares - explained)
-        ]
-        common = min(common, costs[1])
-        if costs[0] < alone:
-            alone, drawn = costs[0], spread
-    if drawn == 0.0:  # no more than the noise alone shows
+        wide = 1.0 + spread * share
+        pull = way.T @ (shown / wide)
+        mean = np.linalg.lstsq((way.T / wide) @ way, pull, rcond=None)[0]
+        squares = float(np.sum(shown**2 / wide))
+        volume = float(np.sum(np.log(wide)))
+        noise, cost = _of_noise(squares, share.size)
+        if volume + cost < alone:
+            alone, spread_alone = volume + cost, noise * wide
+        left = _of_noise(squares - part_gained * float(pull @ mean), share.size)
+        common = min(common, volume + left[1])
+    witness = 1.0 - 1.0 / spread_alone
+    if not witness.any():  # no more than the noise alone shows
         return 1.0
-    witness, silent = (drawn * each / (1.0 + drawn * each) for each in (share, mean_share))
-    squares = np.sum(witness**2) + known * silent**2
-    witnesses = float((np.sum(witness) + known * silent) ** 2 / squares)
+    witnesses = float(np.sum(witness) ** 2 / np.sum(witness**2))
     freedom = max(witnesses - degrees, 1.0)
     ratio = math.expm1(min((alone - common) / witnesses, math.log(1e40)))
     return fisher_survival(ratio * freedom / degrees, degrees, freedom)
 
 
-def _cost_of_noise(squares: float, count: int) -> float:
-    """Minus twice the log-likelihood of that many numbers by noise that is no less than stated."""
+def _of_noise(squares: float, count: int) -> tuple[float, float]:
+    """Variance, no less than stated, of that many numbers, and minus twice the log-likelihood."""
     variance = max(squares / count, 1.0)
-    return count * math.log(variance) + squares / variance
+    return variance, count * math.log(variance) + squares / variance
 
 
 def _orthonormal(free: Floats) -> Floats:
