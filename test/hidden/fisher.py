@@ -80,8 +80,8 @@ def bounds(
     """
     values = values_of(effect, peculiarity)
     # Where a counter starts anywhere, any angle of a wheel is as good as another.
-    angles = {name: 0.0 for name, item in find(effect).parameters.items() if item.per_run}
-    own = np.concatenate(_change(clean, effect, tuple({**angles, **values}.items()), size))
+    anew = {name: 0.0 for name, item in find(effect).parameters.items() if item.per_run}
+    own = np.concatenate(_change(clean, effect, tuple({**anew, **values}.items()), size))
     sizes = [name for name in CALIBRATION if name != effect]
     parameter = {"unequal_wheel_radii": "ratio"}
     known = [
@@ -90,6 +90,11 @@ def bounds(
         )
         for name in sizes
     ]
+    # A delay of each drive's own is none: what it does by itself is unknown like the calibration.
+    nulls = find(effect).nulls
+    for name in anew.keys() - values.keys():
+        changed = nulls | {name: nulls[name] + LITTLE * find(effect).parameters[name].scale}
+        known += _of_each(_change(clean, effect, tuple(changed.items()), LITTLE))
     beside = {
         rival: 1.0 / min(_left(own, [*known, *shape]) for shape in _shapes(clean, rival))
         for rival in rivals
@@ -108,6 +113,14 @@ def _left(own: Floats, others: Sequence[Floats]) -> float:
     return float(np.linalg.norm(own - scaled @ told))
 
 
+def _of_each(change: Sequence[Floats]) -> list[Floats]:
+    """A change in each drive by itself, of all drives' length."""
+    return [
+        np.concatenate([part * (drive == own) for drive, part in enumerate(change)])
+        for own in range(len(change))
+    ]
+
+
 @cache
 def _shapes(clean: HiddenSet, rival: str) -> list[list[Floats]]:
     """What a rival can change of some drives, in each of its shapes (a threshold, a length)."""
@@ -123,8 +136,7 @@ def _shapes(clean: HiddenSet, rival: str) -> list[list[Floats]]:
             moved = [name for name in null if coordinate[name] != null[name]]
             own = effect.quadrature is not None or candidate.place is not None
             if candidate.per_run and (own or any(effect.parameters[n].per_run for n in moved)):
-                alone = [[part * (a == b) for b, part in enumerate(change)] for a in range(drives)]
-                columns += [np.concatenate(parts) for parts in alone]
+                columns += _of_each(change)
             else:
                 columns.append(np.concatenate(change))
         found.append(columns)
