@@ -3,6 +3,7 @@
 """The proof on hidden effects: makes the sets, judges them, prints and writes the tables.
 
     python -m test.hidden [PART...] [--all | --half] [--only WORD] [--workers N] [--start SEED]
+                          [--sessions N]
 
 Parts: make, judge, field, scans, survive, coverage, smallest, gaps, margins, table; all if none is
 given.
@@ -15,7 +16,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -232,6 +233,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="sets whose name holds this; nothing is written")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--start", type=int, help="of the seeds; 0: those that were judged before")
+    parser.add_argument("--sessions", type=int, help="of `smallest`, for each effect")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs" / "evidence.md")
     arguments = parser.parse_args()
     unknown = set(arguments.parts) - set(PARTS)
@@ -239,6 +241,8 @@ def main() -> None:
         parser.error(f"no part {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
     parts = arguments.parts or PARTS
     extent = extent_wanted(whole=arguments.all, half=arguments.half)
+    if arguments.sessions is not None:
+        extent = replace(extent, smallest=arguments.sessions)
     start = plan.start_of(mark()) if arguments.start is None else arguments.start
     everything = plan.plan(start, extent.sizes)
     wanted = [each for each in everything if arguments.only in each.name]

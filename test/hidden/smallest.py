@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
-from statistics import NormalDist, median
+from statistics import NormalDist, median, median_high
 from typing import Any, Literal
 
 import numpy as np
@@ -42,6 +42,9 @@ POWER = 0.95
 
 CHANCE = 1e-3
 """Of a false name, all effects counted: what the diagnosis allows itself."""
+
+FEW = 2
+"""Sessions that are told one by one."""
 
 SETUP = "short"
 
@@ -221,11 +224,11 @@ def table(results: Mapping[str, Line]) -> Table:
                 name,
                 _size(median(each["limit"] for each in own), unit),
                 f"{median(said):.2g}" if said else "",
-                ", ".join(_step(each["seen_from"]) for each in own),
+                _steps([each["seen_from"] for each in own]),
                 _ratio(*seen[name]) if name in seen else "",
                 _size(median(each["limit_named"] for each in own), unit),
                 ", ".join(nearest),
-                ", ".join(_step(each["named_from"]) for each in own),
+                _steps([each["named_from"] for each in own]),
                 _ratio(*named[name]) if name in named else "",
                 f"{wrong} of {all_judged}",
             )
@@ -242,7 +245,8 @@ def table(results: Mapping[str, Line]) -> Table:
         f"{tellable(1.0, CHANCE, POWER):.1f} times the bound where what that effect can do is "
         "unknown, too; *beside* names the nearest, where that is more than to be seen. *Seen "
         "from* and *named from*: in each session, over the size that could be seen, by closing in "
-        f"on it in steps of {STEP:g}; seen is what is named or among the rivals of an ambiguous "
+        f"on it in steps of {STEP:g}, of more than {FEW} sessions the middle one, and the least "
+        "and the most of them; seen is what is named or among the rivals of an ambiguous "
         "verdict, named what is alone, or with its twins. *Ratio*: the size that is seen, or "
         "named, in 95 of 100 sessions, over what could be, from how the sessions scatter (pooled "
         "over all effects, in the logarithm), with one standard error. *Wrong*: another "
@@ -259,8 +263,16 @@ def _size(size: float, unit: str) -> str:
     return f"{size:.2g} {unit if unit != '1' else ''}".strip()
 
 
-def _step(size: float | None) -> str:
-    return f"{size:.2f}" if size else f"> {LADDER[-1]:.1f}"
+def _steps(sizes: Sequence[float | None]) -> str:
+    """Of each session; of more than a few, the middle one, and the least and the most."""
+    steps = [math.inf if size is None else size for size in sizes]
+    if len(steps) <= FEW:
+        return ", ".join(map(_step, steps))
+    return f"{_step(median_high(steps))} ({_step(min(steps))} to {_step(max(steps))})"
+
+
+def _step(size: float) -> str:
+    return f"{size:.2f}" if size < math.inf else f"> {LADDER[-1]:.1f}"
 
 
 def _ratio(ratio: float, error: float) -> str:

@@ -119,6 +119,21 @@ def test_a_phase_of_each_run_costs_two_numbers_a_run(runs: list[Run]) -> None:
     assert min(shown) == pytest.approx(wanted, rel=0.02)
 
 
+def test_a_clocks_rate_is_seen_beside_a_delay_of_each_drives_own(runs: list[Run]) -> None:
+    """By what it shows with its delay it was to be seen from half the size on."""
+    found = limits(("reference_clock_drift",), runs)["reference_clock_drift"]
+    assert list(found) == ["rate"]
+    drives = drives_of(runs)
+    sizes = [columns(drives, each) for each in CALIBRATED]
+    delays = drives.each_run(columns(drives, "reference_delay"))
+    beside = np.concatenate([drives.nuisances(()), *sizes, delays], axis=-1)
+    basis = np.linalg.svd(beside / np.linalg.norm(beside, axis=0), full_matrices=False)[0]
+    signal = change(drives, "reference_clock_drift", delay=0.0, rate=found["rate"])
+    left = np.sum((signal - basis @ (basis.T @ signal)) ** 2)
+    wanted = noncentrality(len(runs), rules.SURE / TRIED, rules.POWER)
+    assert left == pytest.approx(wanted, rel=0.02)
+
+
 def test_a_bump_at_any_place_is_seen_beside_the_radius_that_it_is_too(runs: list[Run]) -> None:
     """Each run by itself hides no radius behind its place; half the height was said to be seen."""
     height = limits(("left_tread_bump",), runs)["left_tread_bump"]["height"]

@@ -147,15 +147,26 @@ def _best(
 def _limits(
     candidate: Candidate, look: Sensitivities, tried: int, power: float, held: Sequence[str] = ()
 ) -> Iterator[DetectionLimit]:
-    """Limit of each parameter except shapes, with the calibration as nuisance."""
+    """Limit of each parameter except shapes, with the calibration as nuisance.
+
+    What an effect shows by the parameters of one that it extends is that other one's: a clock that
+    is late by another delay in each drive need not run at another rate.
+    """
     effect = candidate.effect
+    names = [name for name, item in effect.parameters.items() if not (item.tries or item.as_base)]
+    extended = find(effect.extends).parameters if effect.extends else {}
     beside = [name for name in CALIBRATED if name in look.white and name != candidate.name]
     if candidate.name in CALIBRATED:
         # Directions that the runs do not determine are held, so they hide nothing (`Fitted.held`).
         beside = [name for name in beside if name not in held]
     others = [look.white[name] for name in beside]
-    frame = nuisance(np.concatenate([look.own, *others], axis=-1))
     marks = look.white[candidate.name]
+    if extended:
+        beyond = [name not in extended for name in names]
+        below = marks[:, np.logical_not(beyond)]
+        others.append(look.drives.each_run(below) if candidate.per_run else below)
+        marks, names = marks[:, beyond], [name for name in names if name not in extended]
+    frame = nuisance(np.concatenate([look.own, *others], axis=-1))
     width = marks.shape[-1]
     if candidate.per_run:
         marks = look.drives.each_run(marks)
@@ -175,10 +186,6 @@ def _limits(
     wanted = noncentrality(max(degrees, 1), rules.SURE / max(tried, 1), power)
     if effect.quadrature is not None:  # the least observable phase
         names, information = [effect.quadrature[0]], information.min(keepdims=True)
-    else:
-        names = [
-            name for name, item in effect.parameters.items() if not (item.tries or item.as_base)
-        ]
     for name, of_step in zip(names, information.tolist(), strict=True):
         item = effect.parameters[name]
         size = STEP * item.scale * math.sqrt(wanted / of_step) if of_step > 0.0 else math.inf
