@@ -537,6 +537,17 @@ def test_what_scatters_from_session_to_session_gives_the_size_named_in_95_of_100
     assert left_out == {plan.EFFECTS[0]}
 
 
+def test_of_many_sessions_the_middle_one_and_the_ends_are_told() -> None:
+    assert smallest._steps([0.7, None]) == "0.70, > 4.7"
+    assert smallest._steps([2.0, None, 0.7, 1.0]) == "2.00 (0.70 to > 4.7)"
+
+
+def test_what_each_drive_has_of_its_own_is_unknown_in_the_bound() -> None:
+    first, second = np.array([1.0, 2.0]), np.array([3.0])
+    apart = fisher._of_each([first, second])
+    assert [each.tolist() for each in apart] == [[1.0, 2.0, 0.0], [0.0, 0.0, 3.0]]
+
+
 # ------------------------------------------------------------------ intervals
 
 
