@@ -263,8 +263,8 @@ def _chance(
         noise, cost = _of_noise(squares, share.size)
         if volume + cost < alone:
             alone, spread_alone = volume + cost, noise * wide
-        left = _of_noise(squares - part_gained * float(pull @ mean), share.size)
-        common = min(common, volume + left[1])
+        unexplained = squares - part_gained * float(pull @ mean)
+        common = min(common, volume + _of_noise(unexplained, share.size)[1])
     witness = 1.0 - 1.0 / spread_alone
     if not witness.any():  # no more than the noise alone shows
         return 1.0
