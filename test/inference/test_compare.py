@@ -111,7 +111,7 @@ def test_a_base_two_percent_too_small_goes_wrong_in_turns_and_not_on_lines(
     small = replace(RIGHT, wheel_separation_multiplier=0.98 * RIGHT.wheel_separation_multiplier)
     words = flat(compare(runs, small))
     assert "The model goes wrong in curves and spins." in words
-    assert "Straight driving is good" in words
+    assert re.search(r"Straight driving: errors of a leg [^,]*, as promised", words)
     (share,) = re.findall(r"Spins: the robot turns ([\d.]+) ± [\d.]+ % less than the model", words)
     assert float(share) == pytest.approx(2.0, abs=0.2)
     assert "says which physical effect explains it" in words
