@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
@@ -55,6 +56,7 @@ def words_of(
         said += _by_motion(comparison, verdict)
         if not verdict.gross:
             said += _elsewhere(comparison, verdict)
+            said += _own_scale(comparison, verdict)
             said += covariance_words(verdict, comparison.main.all.figures.nees)
     said += _reference(comparison)
     step = _next(verdict, next_step)
@@ -174,6 +176,22 @@ def _errors(figures: LegFigures) -> str:
     if math.isfinite(figures.figures.rmse_yaw_rad):
         parts.append(f"{math.degrees(figures.figures.rmse_yaw_rad):.2f}°")
     return " and ".join(parts)
+
+
+def _own_scale(comparison: Comparison, verdict: Verdict) -> list[str]:
+    """That a share of the turns may be the reference's own, where it measures headings alone."""
+    shares = [
+        part.value for part in verdict.systematic if (part.channel, part.per) == ("heading", "turn")
+    ]
+    if set(comparison.prepared.measures) != {"heading"} or not shares:
+        return []
+    return [
+        f"- Or the robot is right, and {twin.name} is what is off: {twin.told_apart_by}. So "
+        f"{twin.do}."
+        for twin in find("track_width").indistinguishable_from
+        if find(twin.name).stage == "reference"
+        and find(twin.name).allows(dict.fromkeys(twin.values, 1.0 + shares[0]))
+    ]
 
 
 def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
