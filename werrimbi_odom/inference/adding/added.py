@@ -88,8 +88,9 @@ class JudgedSide:
             measured = np.isfinite(errors.error[:, 0])
             promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
         if promised.size == 0:
-            return promised
-        return promised[promised <= rules.UNUSUAL_PROMISE * np.median(promised)]
+            return np.zeros(0)
+        usual = promised <= rules.UNUSUAL_PROMISE * np.median(promised)
+        return np.asarray(promised[usual], dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)
