@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -40,6 +41,11 @@ def test_the_law_is_found_written_and_added(
     assert found["draft"]["variable"] == "load_kg"
     assert found["draft"]["form"] == "line"
     assert found["holdout"]["after"] < 0.5 * found["holdout"]["before"]
+    slope = found["parameters"]["slope"]
+    (told,) = re.findall(r"Fitted: slope = (\S+) ± ([-+.e\d]*\d)", " ".join(said.split()))
+    assert [float(each) for each in told] == pytest.approx(
+        [slope["value"], slope["std"]], rel=0.05, abs=0.1 * slope["std"]
+    )
     file = out / "along_by_load_kg.py"
     assert f"--effects {file}" in said
     (effect,) = load_file(file)

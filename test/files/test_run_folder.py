@@ -116,7 +116,20 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
         ),
         (
             "t_s,left\n0,1\n",
-            "ticks.csv, line 1: no column left_ticks, right_ticks; the header is 't_s,left'",
+            "ticks.csv, line 1: no column left_ticks, right_ticks; the header is 't_s,left'; write "
+            "these names into it in place of its own (perhaps left_ticks for left), and bring the",
+        ),
+        (
+            "Time[s],enc_left,enc_right\n0,1,2\n",
+            "ticks.csv, line 1: no column t_s, left_ticks, right_ticks; the header is "
+            "'Time[s],enc_left,enc_right'; write these names into it in place of its own (perhaps "
+            "t_s for Time[s], left_ticks for enc_left, right_ticks for enc_right), and bring the "
+            "values to the units that they name",
+        ),
+        (
+            "stamp,time,a,b\n0,0,1,2\n",
+            "ticks.csv, line 1: no column t_s, left_ticks, right_ticks; the header is "
+            "'stamp,time,a,b'; write these names into it in place of its own, and bring",
         ),
         (
             "t_s;left_ticks;right_ticks\n0;1;2\n",
@@ -169,6 +182,12 @@ def test_wrong_ticks(tmp_path: Path, text: str | bytes, said: str) -> None:
         ("", "reference.csv is empty; its first line must be t_s,x_m,y_m,yaw_rad"),
         (REFERENCE, "reference.csv has a header and no rows"),
         ("t_s,x_m,y_m\n0,1,2\n", "reference.csv, line 1: no column yaw_rad"),
+        (
+            "t,x,y,theta\n0,1,2,3\n",
+            "reference.csv, line 1: no column t_s, x_m, y_m, yaw_rad; the header is 't,x,y,theta'; "
+            "write these names into it in place of its own (perhaps t_s for t, x_m for x, y_m for "
+            "y, yaw_rad for theta), and",
+        ),
         (REFERENCE + "0,1,2,3\n,1,2,3\n", "reference.csv, line 3, column t_s: it is empty"),
         (
             REFERENCE + "nan,1,2,3\n",

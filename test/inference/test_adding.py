@@ -83,6 +83,27 @@ def test_the_held_out_error_falls_to_the_noise(creep: Added) -> None:
     assert creep.holdout.sides.after < 1.25 * creep.noise_alone(creep.holdout)
 
 
+def test_noise_alone_is_not_more_than_the_error_without_a_reason(creep: Added) -> None:
+    quiet = creep.holdout.after
+    loud = replace(quiet, errors=replace(quiet.errors, covariance=4.0 * quiet.errors.covariance))
+    some = quiet.errors.covariance.copy()
+    some[:3] *= 20.0
+    odd = replace(quiet, errors=replace(quiet.errors, covariance=some))
+    reason = "Noise alone is what the covariance promises: for the held-out"
+    for after in (loud, odd):
+        found = replace(creep, holdout=replace(creep.holdout, after=after))
+        assert found.noise_alone(found.holdout) > found.holdout.error("after")
+        assert reason in " ".join(as_text(words_of(found)).split())
+    few, legs = replace(creep.holdout, after=odd).of_few_legs
+    assert few < 0.3 * legs < creep.holdout.of_few_legs[0]
+    for share in (0.5, 0.9):
+        covariance = share * quiet.errors.covariance
+        after = replace(quiet, errors=replace(quiet.errors, covariance=covariance))
+        found = replace(creep, holdout=replace(creep.holdout, after=after))
+        told = reason in " ".join(as_text(words_of(found)).split())
+        assert told == (found.noise_alone(found.holdout) > found.holdout.error("after"))
+
+
 def test_noise_is_what_remains_only_where_compare_says_so_too(creep: Added) -> None:
     """As where all legs together are as promised, and the spins among them are not."""
     assert creep.verdict.good

@@ -15,6 +15,7 @@ import pytest
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
+from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -111,7 +112,7 @@ def test_a_base_two_percent_too_small_goes_wrong_in_turns_and_not_on_lines(
     small = replace(RIGHT, wheel_separation_multiplier=0.98 * RIGHT.wheel_separation_multiplier)
     words = flat(compare(runs, small))
     assert "The model goes wrong in curves and spins." in words
-    assert "Straight driving is good" in words
+    assert re.search(r"Straight driving: errors of a leg [^,]*, as promised", words)
     (share,) = re.findall(r"Spins: the robot turns ([\d.]+) ± [\d.]+ % less than the model", words)
     assert float(share) == pytest.approx(2.0, abs=0.2)
     assert "says which physical effect explains it" in words
@@ -176,6 +177,20 @@ def test_references_of_positions_or_headings_alone_are_judged_honestly(
     assert np.isnan(figures.rmse_yaw_rad) == (freedom == 2)
     assert np.isnan(found.runs[0].end_error_m) == (freedom == 1)
     assert "goes wrong" not in flat(found)
+
+
+def test_a_gyro_that_shows_too_little_is_told_beside_a_base(runs: tuple[Run, ...]) -> None:
+    said = find("track_width").indistinguishable_from
+    (twin,) = (each for each in said if each.name == "reference_scale")
+    small = replace(RIGHT, wheel_separation_multiplier=0.98 * RIGHT.wheel_separation_multiplier)
+    by_gyro = flat(compare([without(run, "x", "y") for run in runs], small))
+    assert "% less than the model says" in by_gyro
+    assert twin.told_apart_by in by_gyro
+    assert twin.do in by_gyro
+    assert twin.told_apart_by not in flat(compare(runs, small)), "positions tell them apart"
+    half = replace(RIGHT, wheel_separation_multiplier=0.6 * RIGHT.wheel_separation_multiplier)
+    no_gyro = flat(compare([without(run, "x", "y") for run in runs], half))
+    assert twin.do not in no_gyro, "no gyro is so far off"
 
 
 def test_a_bad_spin_shows_in_positions_alone_and_does_not_spoil_what_follows(

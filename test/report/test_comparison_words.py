@@ -17,6 +17,8 @@ from scipy import stats
 
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
@@ -28,11 +30,12 @@ from werrimbi_odom.inference.comparison.consistency import (
     of_all,
 )
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
-from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
+from werrimbi_odom.inference.comparison.verdict import Noise, Verdict, verdict_of
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.document import document_of
 from werrimbi_odom.report.comparison.phrases import covariance_words
+from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.number_format import from_start
 from werrimbi_odom.report.phrases import left_out_words
 from werrimbi_odom.report.terminal import printed
@@ -221,3 +224,30 @@ def test_the_longest_stretches_are_told_in_their_order() -> None:
     assert told[-1] == "From 100.0 s to 843.0 s of run the heading is not known: left out."
     assert told[0].startswith("From 10.0 s")
     assert rest == "So are 3 more such stretches, 1.5 s in all."
+
+
+@pytest.mark.parametrize(("name", "size"), [("floor_slope", 0.005), ("lateral_slip", 0.004)])
+def test_no_motion_is_as_promised_that_errs_more_at_any_length(
+    name: str, size: float, tmp_path: Path
+) -> None:
+    simulation = pytest.importorskip("werrimbi_odom.simulation")
+    odd = [simulation.hide(name, size, seed=21).peculiarity]
+    robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+    file = read_robot_file(simulation.write_robot_file(robot, tmp_path / "robot.yaml"))
+    chosen = ("train/free_calm", "train/free_brisk", "train/arcs", "train/square_cw")
+    drives = [
+        read_run(simulation.write_run(recording, tmp_path / label), file)
+        for label, recording in simulation.session(robot, 21, hidden=odd, only=chosen)
+    ]
+    found = compare(drives, file.robot)
+    assert not verdict_of(found).good
+    words = [part.text for part in words_of(found)]
+    for kind, what in (("line", "Straight driving"), ("arc", "Curves")):
+        lengths = judged_lengths([item.consistency_of(kind) for item in found.lengths])
+        worst = max(lengths, key=lambda item: item.nees)
+        line = next((part for part in words if f"{what}: " in part), "")
+        assert kind == "line" or (line and worst.says == "too small")
+        if line and worst.says == "too small":
+            assert "times what is promised" in line or " ± " in line
+        elif line:
+            assert line.endswith(", as promised.")

@@ -163,7 +163,7 @@ def seconds(stamp: Any) -> float:
     ("given", "says"),
     [
         ({"hide": "castor_kik"}, "hide: .*castor_kick"),
-        ({"hide": "castor_kick=much"}, "hide: the strength 'much' is not a number"),
+        ({"hide": "castor_kick=much"}, "hide: the strength 'much' of castor_kick is not a number"),
         ({"hide": "wheel_radius_scale=-1"}, "hide: the strength of wheel_radius_scale cannot be"),
     ],
 )

@@ -207,7 +207,7 @@ START = simulation.AxlePose(0.0, 0.0, 0.0)
     ],
 )
 def test_live_and_recorded_are_one(wish: str) -> None:
-    odd = [simulation.wished(wish, seed=3).peculiarity]
+    odd = [each.peculiarity for each in simulation.wished([wish], seed=3)]
     recorded = simulation.record(ROBOT, DRIVE, seed=5, start=START, hidden=odd, reference=EXACT)
     live = simulation.LiveRobot(ROBOT, seed=5, start=START, hidden=odd, reference=EXACT)
     radius, base = ROBOT.nominal.wheel_radius, ROBOT.nominal.wheel_separation
@@ -261,6 +261,6 @@ def test_the_lidar_sees_the_room_from_where_the_robot_is() -> None:
 
 def test_a_wish_that_cannot_be_is_told() -> None:
     with pytest.raises(simulation.UnknownEffectError, match="castor_kick"):
-        simulation.wished("castor_kik", seed=1)
-    with pytest.raises(simulation.StrengthError, match="'much' is not a number"):
-        simulation.wished("castor_kick=much", seed=1)
+        simulation.wished(["castor_kik"], seed=1)
+    with pytest.raises(simulation.StrengthError, match="'much' of castor_kick is not a number"):
+        simulation.wished(["castor_kick=much"], seed=1)

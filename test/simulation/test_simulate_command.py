@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -23,8 +24,10 @@ from werrimbi_odom.simulation import (
     CATALOGUE,
     Nominal,
     TrueRobot,
+    UnstableError,
     drives,
     moves,
+    wished,
     write_robot_file,
 )
 
@@ -113,6 +116,11 @@ def test_a_file_is_left_alone(tmp_path: Path, complaint: Complaint) -> None:
         ("track_width=nan", "cannot be nan"),
         ("track_width=0", "cannot be 0"),
         ("eccentric_left_wheel=inf", "cannot be inf"),
+        ("eccentric_left_wheel=5", "eccentric_left_wheel cannot be 5 m: .* have 0 to 0.015 m"),
+        ("lateral_slip=-0.02", "lateral_slip cannot be -0.02 s: a robot can have 0 to 0.2 s"),
+        ("track_width=1e-9", "track_width cannot be 1e-09: a robot can have 0.0625 to 16"),
+        ("wheels_swapped=7", "wheels_swapped cannot be 7: a robot can have 0 to 1"),
+        ("random=0.01", "name the effect"),
         ("", "nothing called ''"),
     ],
 )
@@ -123,12 +131,31 @@ def test_a_wish_that_cannot_be_met(tmp_path: Path, wish: str, answer: str) -> No
     assert not (tmp_path / "day").exists()
 
 
+def test_an_effect_is_hidden_once(tmp_path: Path) -> None:
+    twice = ("--hide", "track_width=1.02", "--hide", "track_width=0.98")
+    with pytest.raises(InputError, match="track_width comes 2 times"):
+        call("--out", str(tmp_path / "day"), *twice)
+    assert list(tmp_path.iterdir()) == []
+    one = wished(["random"], seed=3)[0].entry.name
+    names = [each.entry.name for each in wished(["random", one, "random"], seed=3)]
+    assert len(set(names)) == 3, "random draws none that is hidden already"
+
+
+def test_all_that_is_realistic_is_possible() -> None:
+    for entry in CATALOGUE:
+        least, most = entry.possible
+        assert least <= entry.null - entry.signed * entry.high < entry.null + entry.high <= most
+
+
 @pytest.mark.usefixtures("short_day")
-@pytest.mark.parametrize("wish", ["eccentric_left_wheel=5", "unequal_wheel_radii=1e-9"])
-def test_a_robot_that_cannot_be_built(tmp_path: Path, wish: str) -> None:
-    with pytest.raises(InputError, match="no such robot can be built") as refusal:
-        call("--out", str(tmp_path / "day"), "--hide", wish)
-    assert "\n" not in str(refusal.value)
+def test_a_robot_that_cannot_be_built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def cannot(*_: object, **__: object) -> Iterator[None]:
+        yield from ()
+        raise UnstableError("the engine gave up")
+
+    monkeypatch.setattr(werrimbi_odom.simulation, "session", cannot)
+    with pytest.raises(InputError, match="no such robot can be built: the engine gave up"):
+        call("--out", str(tmp_path / "day"))
     assert list(tmp_path.iterdir()) == []
 
 

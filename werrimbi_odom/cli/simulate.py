@@ -149,17 +149,12 @@ def _in_the_field(
 
 def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:
     """Effects of --hide; strengths that are not given are drawn at random."""
-    from werrimbi_odom.simulation import StrengthError, UnknownEffectError, wished
+    from werrimbi_odom.simulation import WishError, wished
 
-    hidden = []
-    for number, wish in enumerate(wishes):
-        try:
-            hidden.append(wished(wish, seed=seed, number=number))
-        except UnknownEffectError as error:
-            raise InputError(f"--hide {wish}: {error} (all: werrimbi simulate --list)") from error
-        except StrengthError as error:
-            raise InputError(f"--hide {wish}: {error}") from error
-    return hidden
+    try:
+        return wished(wishes, seed=seed)
+    except WishError as error:
+        raise InputError(f"--hide: {error} (all: werrimbi simulate --list)") from error
 
 
 def _truth(hidden: Sequence[Hidden], seed: int, robot: object) -> dict[str, object]:

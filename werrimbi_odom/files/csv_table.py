@@ -29,6 +29,13 @@ MAX_LINE = 2**20
 _NUMBER = re.compile(
     r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
 )
+_OTHER_NAMES = {
+    "t_s": ("t", "time", "timestamp", "stamp", "sec", "secs", "seconds"),
+    "left_ticks": ("left", "l"),
+    "right_ticks": ("right", "r"),
+    "yaw_rad": ("yaw", "theta", "heading", "th", "phi"),
+}
+"""Words of the names that other logs have for a column."""
 _BLANK = re.compile(r'[\s,"]*\Z')
 """A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
@@ -144,7 +151,11 @@ def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
                 f"first line must be {wanted}"
             )
         held = line.strip()[:200]
-        raise InputError(f"{place}: no column {', '.join(missing)}; the header is {held!r}")
+        raise InputError(
+            f"{place}: no column {', '.join(missing)}; the header is {held!r}; write these names "
+            f"into it in place of its own{_perhaps(missing, names)}, and bring the values to the "
+            "units that they name"
+        )
     if len(names) > MAX_COLUMNS:
         raise InputError(f"{place}: {len(names)} columns are more than {MAX_COLUMNS}")
     for number, name in enumerate(names):
@@ -153,6 +164,17 @@ def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
         if name in names[:number]:
             raise InputError(f"{place}: the column {name} is there twice")
     return names
+
+
+def _perhaps(missing: Sequence[str], names: Sequence[str]) -> str:
+    """Columns that may be meant by those that are missing."""
+    found = []
+    for name in missing:
+        words = _OTHER_NAMES.get(name, ()) or (name.partition("_")[0],)
+        like = [own for own in names if set(words) & set(re.split(r"[^a-z]+", own.lower()))]
+        if len(like) == 1:
+            found.append(f"{name} for {like[0]}")
+    return f" (perhaps {', '.join(found)})" if found else ""
 
 
 def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:

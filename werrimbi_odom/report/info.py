@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from dataclasses import asdict
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
-from werrimbi_odom.report.number_format import picked
+from werrimbi_odom.report.number_format import counted, picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -94,7 +95,23 @@ def next_step(found: Info) -> tuple[str, str]:
                 "the parameter file of the diff_drive_controller with --robot."
             ), ""
         return "Next: a first robot file.", command_of(found)
-    return "Next:", command_of(found)
+    return f"{_why_leg(found)}Next:", command_of(found)
+
+
+def _why_leg(found: Info) -> str:
+    """Why the command has another length of legs than usual."""
+    if found.leg > 1.0:
+        return (
+            f"By legs of {found.leg:g} m, because in shorter ones the noise of these positions "
+            "hides what the robot does. "
+        )
+    if found.leg < 1.0:
+        legs = counted(math.floor(found.legs), "leg")
+        return (
+            f"By legs of {found.leg:g} m, because of a metre or a quarter turn these drives have "
+            f"only {legs}, too few to judge by. "
+        )
+    return ""
 
 
 def _otherwise(found: Info) -> tuple[str, str]:

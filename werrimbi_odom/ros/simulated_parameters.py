@@ -125,10 +125,8 @@ def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRo
         wish.strip() for wish in str(values["hide"]).split(",") if wish.strip() not in ("", "none")
     ]
     try:
-        hidden = [
-            simulation.wished(wish, seed=seed, number=number) for number, wish in enumerate(wishes)
-        ]
-    except (simulation.UnknownEffectError, simulation.StrengthError) as error:
+        hidden = simulation.wished(wishes, seed=seed)
+    except simulation.WishError as error:
         raise InputError(f"hide: {error} (all: werrimbi simulate --list)") from error
     robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
     believed = robot

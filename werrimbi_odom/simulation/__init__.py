@@ -19,7 +19,16 @@ motion capture), `hidden` (hidden effects as test data).
 from .engine import AxlePose, TruePath, UnstableError
 from .field import FieldDrive, FieldSensors, as_in_the_field
 from .field_bag import write_field_bag
-from .hidden import CATALOGUE, Hidden, Peculiarity, StrengthError, UnknownEffectError, hide, wished
+from .hidden import (
+    CATALOGUE,
+    Hidden,
+    Peculiarity,
+    StrengthError,
+    UnknownEffectError,
+    WishError,
+    hide,
+    wished,
+)
 from .live import LiveRobot
 from .manoeuvres import (
     Manoeuvre,
@@ -61,6 +70,7 @@ __all__ = [
     "TrueRobot",
     "UnknownEffectError",
     "UnstableError",
+    "WishError",
     "arcs",
     "as_in_the_field",
     "chain",

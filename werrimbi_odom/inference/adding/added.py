@@ -26,6 +26,7 @@ from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 WHEEL_NOISES = ("left_wheel_noise", "right_wheel_noise")
@@ -66,6 +67,19 @@ class JudgedSide:
         Without the few legs that begin with an unknown heading, or hold an abrupt event. It is the
         error by noise alone if the model explains the drives (`Added.noise_alone`).
         """
+        variances = self._promised_variances
+        return float(np.sqrt(np.mean(variances))) if variances.size else float("nan")
+
+    @property
+    def of_few_legs(self) -> tuple[int, int]:
+        """Legs that hold half of the predicted squared error, the fewest that do, and all legs."""
+        shares = np.cumsum(np.sort(self._promised_variances)[::-1])
+        half = int(np.searchsorted(shares, 0.5 * shares[-1])) + 1 if shares.size else 0
+        return half, shares.size
+
+    @property
+    def _promised_variances(self) -> Floats:
+        """Predicted mean square error of each such leg, shape (k,)."""
         quiet = self.after.quiet
         errors = quiet.errors.chosen(~quiet.outlier)
         if self.unit == "rad":
@@ -74,9 +88,9 @@ class JudgedSide:
             measured = np.isfinite(errors.error[:, 0])
             promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
         if promised.size == 0:
-            return float("nan")
+            return np.zeros(0)
         usual = promised <= rules.UNUSUAL_PROMISE * np.median(promised)
-        return float(np.sqrt(np.mean(promised[usual])))
+        return np.asarray(promised[usual], dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -70,6 +70,11 @@ class OfLength:
         figures = self.all.figures
         return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
 
+    def consistency_of(self, kind: str) -> AtLength:
+        """NEES of the legs of one type of motion."""
+        figures = self.by_motion[kind].figures
+        return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
+
     @property
     def consistency_of_dispersion(self) -> AtLength:
         """NEES after removing the systematic part of the errors."""

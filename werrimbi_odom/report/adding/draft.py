@@ -11,7 +11,7 @@ from werrimbi_odom.inference.drafting.draft import Draft
 from werrimbi_odom.inference.drafting.formula import symbols_of
 from werrimbi_odom.report.adding.as_json import json_of
 from werrimbi_odom.report.adding.document import figures_of
-from werrimbi_odom.report.adding.words import words_of
+from werrimbi_odom.report.adding.words import value_told, words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
 from werrimbi_odom.report.number_format import error_words, picked
 from werrimbi_odom.report.page import as_html
@@ -32,7 +32,22 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
         "know: read the law, find the physics, give it its name."
     )
     law = draft.source.partition("\n\n\n")[2].rstrip()
-    return [Paragraph(headline), Paragraph(text), Paragraph(law, "code", apart=True)]
+    sizes = [
+        f"{name} = {value_told(item)}"
+        for name, item in tried.parameters.items()
+        if item.value is not None and item.std is not None
+    ]
+    fitted = (
+        [f"Fitted: {', '.join(sizes)}. In the file it is rounded, for fits to begin at."]
+        if sizes
+        else []
+    )
+    return [
+        Paragraph(headline),
+        Paragraph(text),
+        *map(Paragraph, fitted),
+        Paragraph(law, "code", apart=True),
+    ]
 
 
 def _what_it_goes_with(draft: Draft) -> str:

@@ -143,7 +143,8 @@ def _errors(added: Added) -> Table:
 
 
 def _remarks(added: Added) -> list[str]:
-    texts = [*either_side(added.ahead_or_behind), _rest(added), _noise(added)]
+    texts = [*_more_than_errors(added), *either_side(added.ahead_or_behind)]
+    texts += [_rest(added), _noise(added)]
     if added.set_aside:
         judged = listed(list(dict.fromkeys(added.set_aside)))
         texts.append(
@@ -194,6 +195,28 @@ def _rest(added: Added) -> str:
         f"{what}: {amount_words(first)} goes with {variable_words(first)} "
         f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1).{little_words(misfit)}"
     )
+
+
+def _more_than_errors(added: Added) -> list[str]:
+    """Why noise alone would leave a larger error than there is."""
+    whose = {"held-out": added.holdout, "fitted": added.train}
+    unit = added.holdout.unit
+    more = {
+        name: side
+        for name, side in whose.items()
+        if added.noise_alone(side) > side.error("after")
+        and _number(added.noise_alone(side), unit) != _number(side.error("after"), unit)
+    }
+    if not more:
+        return []
+    what = f"Noise alone is what the covariance promises: for the {listed([*more])} drives more"
+    if added.covariance == "too large":
+        return [f"{what} than their error with it, for it is too large."]
+    few, legs = next(iter(more.values())).of_few_legs
+    return [
+        f"{what} than their error with it. Of {legs} legs {few} have half of it (squared), and so "
+        "few err less by chance; or the noise is stated too large."
+    ]
 
 
 def _noise(added: Added) -> str:

@@ -6,9 +6,11 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
+from werrimbi_odom.inference.comparison.consistency import judged_lengths
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.recording_info import leg_of_positions
@@ -22,7 +24,6 @@ from werrimbi_odom.report.phrases import (
     remark_words,
 )
 
-_AGREES = {"line": "is", "arc": "are", "spin": "are"}
 _CHANNELS = {
     "along": "the error along the way",
     "sideways": "the sideways error",
@@ -55,6 +56,7 @@ def words_of(
         said += _by_motion(comparison, verdict)
         if not verdict.gross:
             said += _elsewhere(comparison, verdict)
+            said += _own_scale(comparison, verdict)
             said += covariance_words(verdict, comparison.main.all.figures.nees)
     said += _reference(comparison)
     step = _next(verdict, next_step)
@@ -142,9 +144,29 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
                 f"- {name}: errors of a leg {errors}, {times:.1f} times what is promised{common}."
             )
         else:
-            promised = ", as promised" if verdict.noise == "honest" else ""
-            lines.append(f"- {name} {_AGREES[kind]} good: errors of a leg {errors}{promised}.")
+            told = _against_promise(comparison, kind, elsewhere=not verdict.good)
+            lines.append(f"- {name}: errors of a leg {errors}, {told}.")
     return lines
+
+
+def _against_promise(comparison: Comparison, kind: str, *, elsewhere: bool) -> str:
+    """Errors of a type of motion relative to the covariance, and at the length that errs most."""
+    asked = comparison.main.consistency_of(kind)
+    told = {
+        "too small": f"{math.sqrt(asked.nees):.1f} times what is promised",
+        "too large": "less than what is promised",
+    }.get(asked.says, "as promised")
+    others = [
+        each
+        for each in judged_lengths([item.consistency_of(kind) for item in comparison.lengths])
+        if elsewhere and each.says == "too small"
+    ]
+    worst = max(others, key=lambda each: each.nees, default=asked)
+    if worst.leg == asked.leg:
+        return told
+    times = f"{math.sqrt(worst.nees):.1f} times"
+    whose = times if asked.says == "too small" else f"{times} what is promised"
+    return f"{told}, but over legs of {worst.leg:g} m {whose}"
 
 
 def _errors(figures: LegFigures) -> str:
@@ -154,6 +176,22 @@ def _errors(figures: LegFigures) -> str:
     if math.isfinite(figures.figures.rmse_yaw_rad):
         parts.append(f"{math.degrees(figures.figures.rmse_yaw_rad):.2f}°")
     return " and ".join(parts)
+
+
+def _own_scale(comparison: Comparison, verdict: Verdict) -> list[str]:
+    """That a share of the turns may be the reference's own, where it measures headings alone."""
+    shares = [
+        part.value for part in verdict.systematic if (part.channel, part.per) == ("heading", "turn")
+    ]
+    if set(comparison.prepared.measures) != {"heading"} or not shares:
+        return []
+    return [
+        f"- Or the robot is right, and {twin.name} is what is off: {twin.told_apart_by}. So "
+        f"{twin.do}."
+        for twin in find("track_width").indistinguishable_from
+        if find(twin.name).stage == "reference"
+        and find(twin.name).allows(dict.fromkeys(twin.values, 1.0 + shares[0]))
+    ]
 
 
 def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:

@@ -8,7 +8,7 @@ with units and realistic strengths, and `hiding` draws from them; each other fil
 
 from .catalogue import CATALOGUE, Entry
 from .hidden_effect import Peculiarity
-from .hiding import Hidden, StrengthError, UnknownEffectError, find, hide, wished
+from .hiding import Hidden, StrengthError, UnknownEffectError, WishError, find, hide, wished
 
 __all__ = [
     "CATALOGUE",
@@ -17,6 +17,7 @@ __all__ = [
     "Peculiarity",
     "StrengthError",
     "UnknownEffectError",
+    "WishError",
     "find",
     "hide",
     "wished",

@@ -37,6 +37,13 @@ from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side, Trea
 Make = Callable[[float, Rng], Peculiarity]
 Kind = Literal["effect", "mistake", "outside", "robot", "event"]
 
+UTMOST = 10.0
+"""Times the largest realistic strength beyond which no robot has an effect: wheels 15 mm off their
+centre, floors that fall 0.2 m in a metre. Most bounds of the library's effects are near that."""
+
+ANY_SCALE = 1 / 16, 16.0
+"""Of a number of the robot file: a diameter for a radius, quarters of counts, both."""
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -59,6 +66,16 @@ class Entry:
     kind: Kind = "effect"
     """Effect of the library, set-up mistake, effect outside the library, another kind of robot, or
     abrupt event."""
+    within: tuple[float, float] | None = None
+    """Strengths that a robot can have, where they are not `UTMOST` times the realistic ones."""
+
+    @property
+    def possible(self) -> tuple[float, float]:
+        """Least and largest strength that a robot can have."""
+        if self.within is not None:
+            return self.within
+        reach = UTMOST * self.high
+        return self.null - (reach if self.signed else 0.0), self.null + reach
 
     def draw(self, rng: Rng) -> float:
         """Draw a realistic strength."""
@@ -67,11 +84,16 @@ class Entry:
         return float(self.null + sign * size)
 
     @property
+    def unit_in_words(self) -> str:
+        """Unit as it follows a number, with a space before it; "" for a share or a ratio."""
+        return f" {self.unit}" if self.unit not in ("", "1") else ""
+
+    @property
     def range_in_words(self) -> str:
         """Realistic strengths, as text."""
         if self.kind == "mistake":
             return "yes or no"
-        unit = f" {self.unit}" if self.unit != "1" else ""
+        unit = self.unit_in_words
         if not self.signed:
             return f"{self.null + self.low:g} to {self.null + self.high:g}{unit}"
         null = f"{self.null:g} " if self.null else ""
@@ -89,6 +111,7 @@ def _mistake(name: str, make: Callable[[Rng], Peculiarity], says: str) -> Entry:
         says,
         signed=False,
         kind="mistake",
+        within=(0.0, 1.0),
     )
 
 
@@ -143,11 +166,11 @@ def _slippery_spot(loss: float, rng: Rng) -> SlipperySpot:
 # fmt: off
 CATALOGUE: tuple[Entry, ...] = (
     Entry("track_width", lambda s, rng: TrackWidth(s), "1", 0.003, 0.04,
-            "true base over believed base", null=1.0),
+            "true base over believed base", null=1.0, within=ANY_SCALE),
     Entry("unequal_wheel_radii", lambda s, rng: UnequalWheelRadii(s), "1", 0.001, 0.02,
-            "right radius over left radius", null=1.0),
+            "right radius over left radius", null=1.0, within=ANY_SCALE),
     Entry("wheel_radius_scale", lambda s, rng: WheelRadiusScale(s), "1", 0.002, 0.03,
-            "true radii over believed radius", null=1.0),
+            "true radii over believed radius", null=1.0, within=ANY_SCALE),
     Entry("eccentric_left_wheel", lambda s, rng: EccentricWheel("left", s, _anywhere(rng)),
             "m", 3e-4, 1.5e-3, "left axle off the wheel's centre", signed=False),
     Entry("eccentric_right_wheel", lambda s, rng: EccentricWheel("right", s, _anywhere(rng)),
@@ -178,13 +201,13 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("radius_drift", _radius_drift, "per drive", 0.002, 0.02,
             "growth of both radii in 20 m or in a minute"),
     Entry("reference_lever_arm", _lever_arm, "m", 0.01, 0.15,
-            "from the axle's midpoint to the point measured", signed=False),
+            "from the axle's midpoint to the point measured", signed=False, within=(0.0, 5.0)),
     Entry("reference_yaw_offset", lambda s, rng: ReferenceMount(yaw=s), "rad", 0.004, 0.05,
-            "reference's forward axis against the robot's"),
+            "reference's forward axis against the robot's", within=(-math.pi, math.pi)),
     Entry("reference_delay", lambda s, rng: ReferenceDelay(delay=s), "s", 0.01, 0.1,
-            "reference's stamps late"),
+            "reference's stamps late", within=(-5.0, 5.0)),
     Entry("reference_heading_delay", lambda s, rng: ReferenceDelay(heading_delay=s), "s", 0.01,
-            0.15, "reference's yaw later than its position", signed=False),
+            0.15, "reference's yaw later than its position", signed=False, within=(-2.0, 2.0)),
     Entry("reference_clock_drift", lambda s, rng: DriftingClock(s), "s/s", 5e-4, 5e-3,
             "what the reference's clock gains on the encoders' in a second"),
     Entry("encoder_skew", lambda s, rng: EncoderSkew(s), "s", 0.002, 0.02,
@@ -198,7 +221,7 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("tyre_squash", lambda s, rng: TyreSquash(s), "1", 0.01, 0.06,
             "loss of each radius at 1 m/s"),
     Entry("load_transfer", _load_transfer, "1", 0.05, 0.3,
-            "loss of a radius under half the robot's weight", signed=False),
+            "loss of a radius under half the robot's weight", signed=False, within=(0.0, 0.9)),
     Entry("anisotropic_floor", lambda s, rng: GrainedFloor(s, _anywhere(rng)), "1", 0.003, 0.02,
             "way gained along the floor's grain, and lost across", signed=False),
     Entry("left_tread_bump", lambda s, rng: _tread_bump("left", s, rng), "m", 6e-4, 2.5e-3,
@@ -206,7 +229,7 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("right_tread_bump", lambda s, rng: _tread_bump("right", s, rng), "m", 6e-4, 2.5e-3,
             "thickness of a bump on the right tread, or depth of a flat"),
     Entry("reference_gyro_drift", lambda s, rng: WarmingGyro(s), "rad/s^2", 1e-5, 1e-4,
-            "growth of the bias of the reference's heading", signed=False),
+            "growth of the bias of the reference's heading", signed=False, within=(-1e-3, 1e-3)),
     Entry("coulomb_slip", lambda s, rng: CoulombSlip(s, float(rng.uniform(0.3, 0.6))), "s^2/m",
             0.02, 0.15, "share of a wheel's travel lost per acceleration above a threshold",
             signed=False),
@@ -224,7 +247,8 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("one_tyre_backwards", lambda s, rng: OneTyreBackwards(_one_side(rng), s), "1", 0.004,
             0.02, "share of one radius lost when rolling backwards", signed=False, kind="outside"),
     Entry("slippery_spot", _slippery_spot, "1", 0.03, 0.3,
-            "share of the travel lost on a spot of the floor", signed=False, kind="outside"),
+            "share of the travel lost on a spot of the floor", signed=False, kind="outside",
+            within=(0.0, 1.0)),
     Entry("cable_pull", lambda s, rng: CablePull(s, _anywhere(rng)), "rad/m", 0.005, 0.05,
             "turning towards one direction of the room", signed=False, kind="outside"),
     Entry("slide_by_tilt_and_payload", lambda s, rng: SlideByTiltAndPayload(s), "1/(rad kg)", 0.02,
@@ -234,7 +258,7 @@ CATALOGUE: tuple[Entry, ...] = (
             "share of one radius lost per load over pressure, measured", signed=False,
             kind="outside"),
     Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turn by four skidding wheels over true turn",
-            null=1.0, signed=False, kind="robot"),
+            null=1.0, signed=False, kind="robot", within=(1.0, 4.0)),
     Entry("push", lambda s, rng: Knock("push", s), "m", 0.01, 0.03,
             "pushed sideways, every 25 s or so", signed=False, kind="event"),
     Entry("heading_kick", lambda s, rng: Knock("heading_kick", s), "rad", 0.02, 0.06,

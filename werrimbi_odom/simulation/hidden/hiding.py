@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -14,11 +15,15 @@ from .catalogue import CATALOGUE, Entry
 from .hidden_effect import Peculiarity, Rng
 
 
-class UnknownEffectError(ValueError):
+class WishError(ValueError):
+    """What is to be hidden cannot be."""
+
+
+class UnknownEffectError(WishError):
     """The catalogue has no effect of this name."""
 
 
-class StrengthError(ValueError):
+class StrengthError(WishError):
     """The strength is outside an effect's range."""
 
 
@@ -64,6 +69,8 @@ def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0
     return Hidden(entry, strength, entry.make(strength, rng))
 
 
+_LIBRARY = sum(entry.kind == "effect" for entry in CATALOGUE)
+
 FIRST = 21
 """Number of effects when seeds were first recorded."""
 
@@ -83,17 +90,48 @@ def _any_effect(rng: Rng, seed: int, number: int) -> str:
     return chosen
 
 
-def wished(wish: str, *, seed: int, number: int = 0) -> Hidden:
-    """Parse EFFECT or EFFECT=STRENGTH and draw the hidden effect as in `hide`.
+def wished(wishes: Sequence[str], *, seed: int) -> list[Hidden]:
+    """Parse each EFFECT or EFFECT=STRENGTH and draw the hidden effects as in `hide`.
+
+    `random` draws none that is hidden already.
 
     Raises
     ------
-    UnknownEffectError, StrengthError
-        If the name is unknown, or the strength is no number or out of range.
+    WishError
+        If a name is unknown or comes twice, or a strength is none that a robot can have.
     """
-    name, _, strength = wish.partition("=")
+    parted = [wish.partition("=") for wish in wishes]
+    names = [name for name, _, _ in parted if name != "random"]
+    for name in names:
+        if names.count(name) > 1:
+            raise WishError(
+                f"{name} comes {names.count(name)} times; a robot has it once, with one strength"
+            )
+    hidden: list[Hidden] = []
+    for number, (name, _, strength) in enumerate(parted):
+        found = hide(name, _strength(name, strength), seed=seed, number=number)
+        while name == "random" and found.entry.name in names:
+            if len(names) >= _LIBRARY:
+                raise WishError("random finds no further effect: all of the library are hidden")
+            number += len(wishes)
+            found = hide(name, _strength(name, strength), seed=seed, number=number)
+        if name == "random":
+            names.append(found.entry.name)
+        least, most = found.entry.possible
+        if not least <= found.strength <= most:
+            unit = found.entry.unit_in_words
+            raise StrengthError(
+                f"the strength of {found.entry.name} cannot be {found.strength:g}{unit}: "
+                f"a robot can have {least:.3g} to {most:.3g}{unit}"
+            )
+        hidden.append(found)
+    return hidden
+
+
+def _strength(name: str, told: str) -> float | None:
+    if told and name == "random":
+        raise StrengthError("random draws its strength itself; name the effect to give one")
     try:
-        value = float(strength) if strength else None
+        return float(told) if told else None
     except ValueError:
-        raise StrengthError(f"the strength {strength!r} is not a number") from None
-    return hide(name, value, seed=seed, number=number)
+        raise StrengthError(f"the strength {told!r} of {name} is not a number") from None
