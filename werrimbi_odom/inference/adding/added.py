@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import Consistency
@@ -18,7 +17,13 @@ from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
+from werrimbi_odom.inference.diagnosis.paired_comparison import (
+    Sides,
+    Unit,
+    error_of,
+    promised_of,
+    sides_of,
+)
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -63,20 +68,9 @@ class JudgedSide:
     def promised(self) -> float:
         """Root mean square error that the covariance of the final model predicts, in the same unit.
 
-        Without the few legs that begin with an unknown heading, or hold an abrupt event. It is the
-        error by noise alone if the model explains the drives (`Added.noise_alone`).
+        It is the error by noise alone if the model explains the drives (`Added.noise_alone`).
         """
-        quiet = self.after.quiet
-        errors = quiet.errors.chosen(~quiet.outlier)
-        if self.unit == "rad":
-            promised = errors.covariance[np.isfinite(errors.error[:, 2]), 2, 2]
-        else:
-            measured = np.isfinite(errors.error[:, 0])
-            promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
-        if promised.size == 0:
-            return float("nan")
-        usual = promised <= rules.UNUSUAL_PROMISE * np.median(promised)
-        return float(np.sqrt(np.mean(promised[usual])))
+        return promised_of(self.after, self.unit)
 
 
 @dataclass(frozen=True, kw_only=True)

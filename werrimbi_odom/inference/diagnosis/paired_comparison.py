@@ -78,6 +78,24 @@ def error_of(legs: Legs, unit: Unit) -> float:
     return figures.rmse_position_m if unit == "m" else figures.rmse_yaw_rad
 
 
+def promised_of(legs: Legs, unit: Unit, *, wheels: bool = True) -> float:
+    """Root mean square error of legs that their covariance predicts, in the same unit.
+
+    Without the few legs that begin with an unknown heading, or hold an abrupt event. Without the
+    noise of the wheels it is what the reference and the rounding of the counts make.
+    """
+    quiet = legs.quiet
+    errors = quiet.errors.chosen(~quiet.outlier)
+    own = slice(0, 2) if unit == "m" else slice(2, 3)
+    measured = np.isfinite(errors.error[:, own]).all(axis=1)
+    covariance = errors.covariance if wheels else errors.covariance - errors.wheels
+    promised = np.trace(covariance[measured, own, own], axis1=1, axis2=2)
+    if promised.size == 0:
+        return float("nan")
+    usual = promised <= rules.UNUSUAL_PROMISE * np.median(promised)
+    return float(np.sqrt(np.mean(promised[usual])))
+
+
 def _chance(before: Legs, after: Legs, unit: Unit) -> float:
     """P-value of the second model's larger error, if both models are equally good."""
     own = slice(0, 2) if unit == "m" else slice(2, 3)
