@@ -243,7 +243,7 @@ def _queued(late: Floats, period: float) -> Floats:
     soonest = minimum_filter1d(late, rules.EVEN_QUEUE, mode="nearest", origin=behind)
     wait = late - np.minimum(soonest, late)
     clear = wait > period
-    return np.where(binary_propagation(clear, mask=wait > 0.25 * period), wait, 0.0)
+    return np.where(binary_propagation(clear, mask=wait > rules.EVEN_QUEUED * period), wait, 0.0)
 
 
 def _read_before(
@@ -255,7 +255,7 @@ def _read_before(
     reads late, and often to catch up, finds next to none.
     """
     inside = queued[1:] & queued[:-1]
-    quick = np.diff(stamps) < 0.5 * period
+    quick = np.diff(stamps) < rules.EVEN_AT_ONCE * period
     step = np.nan_to_num(_steps(left, right)[0])
     at_once, usual = (step[inside & part] for part in (quick, ~quick))
     if not at_once.size or not usual.any():
