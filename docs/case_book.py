@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from follow_advice import CASES, ROBOTS, ROOT, Case, Step, compared, followed
+from follow_advice import CASES, ROBOTS, ROOT, Case, Step, compared, followed, verdict
 
 sys.path.insert(0, str(ROOT))
 from test.recorded_robots.robots import ROBOTS as RECORDED
@@ -117,7 +117,23 @@ def _what_is_left(last: Step, judged: dict[str, Any]) -> Iterator[str]:
     legs, seen = judged["legs"], judged["reference"][0]
     yield "## What is left"
     yield ""
-    yield f"- Verdict: *{last.answer['verdict']}*."
+    yield f"- Verdict: *{verdict(last.answer)}*."
+    if (left := last.answer["left"]) is not None:
+        told = _mm if left["unit"] == "m" else lambda yaw: f"{math.degrees(yaw):.2g}°"
+        train, kept = (
+            [told(left[side][name]) for name in ("error", "reference_noise")]
+            for side in ("train", "holdout")
+        )
+        yield (
+            f"- By `diagnose`, legs without events: {kept[0]} held out, {train[0]} fitted; the "
+            f"reference's own noise and the rounding of the counts make {kept[1]} and {train[1]}."
+        )
+        alike = {name: each["correlation"] for name, each in left["neighbours"].items()}
+        yield (
+            "- Correlation of the fit's innovations from a short leg to the next: "
+            + ", ".join(f"{name} {size:+.2f}" for name, size in alike.items())
+            + "."
+        )
     if last.refused:
         why = " ".join(last.refused.rpartition("werrimbi add: ")[2].split())
         yield f"- `add` refuses what is named: {why}"
@@ -202,10 +218,10 @@ def index() -> str:
             text = place.read_text(encoding="utf-8")
             title = text.partition(":")[0].removeprefix("# ")
             added = [name for name in re.findall(r"^\| (\S+) \|", text, re.M) if "`" in name]
-            (verdict,) = re.findall(r"^- Verdict: \*(.*)\*", text, re.M)
+            (said,) = re.findall(r"^- Verdict: \*(.*)\*", text, re.M)
             (left,) = re.findall(r"^- Errors are (\S+) times", text, re.M)
             words = ", then ".join(added) or "nothing"
-            lines.append(f"| [{title}]({case.robot}.md) | {words} | {verdict} | {left} |")
+            lines.append(f"| [{title}]({case.robot}.md) | {words} | {said} | {left} |")
     return "\n".join(lines) + "\n"
 
 

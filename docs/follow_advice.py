@@ -160,6 +160,13 @@ def whole_drive(run: Path, robot: Path, folder: Path) -> float:
     return float(np.sqrt(np.mean(np.abs(turned - measured) ** 2)))
 
 
+def verdict(answer: dict[str, Any]) -> str:
+    """The verdict, and whether what is left is told to be the reference's own noise."""
+    left = answer["left"]
+    noise = answer["verdict"] == "unknown" and left is not None and left["is_reference_noise"]
+    return f"{answer['verdict']}{', but the reference errs by as much' if noise else ''}"
+
+
 def row(case: Case) -> str:
     """One line of the table."""
     with tempfile.TemporaryDirectory() as name:
@@ -171,7 +178,7 @@ def row(case: Case) -> str:
         f"`{name}`" for step in steps if step.added for name in step.added.split(",")
     )
     figures = f"{1e3 * before:.1f} mm | {effects} | {1e3 * after:.1f} mm"
-    return f"| {case.told} | {figures} | {steps[-1].answer['verdict']} |"
+    return f"| {case.told} | {figures} | {verdict(steps[-1].answer)} |"
 
 
 if __name__ == "__main__":

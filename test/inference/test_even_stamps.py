@@ -46,6 +46,48 @@ def test_messages_that_wait_are_put_back_to_when_they_were_read(seed: int) -> No
     assert scatter(found - read) < 0.3 * scatter(came - read)
 
 
+def queueing(random: np.random.Generator, count: int = 1600) -> tuple[np.ndarray, np.ndarray]:
+    """When messages of 40 Hz were read and came; from 15 s on ever more of them wait, then none."""
+    read = 0.025 * np.arange(count)
+    came = read + random.uniform(0.0, 0.01, count)
+    busy = (read > 15.0) & (read < 21.0)
+    came[busy] = 15.0 + 1.12 * (read[busy] - 15.0)
+    apart = 0.003 * np.arange(count)
+    return read, np.maximum.accumulate(came - apart) + apart
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_messages_that_queue_up_for_seconds_are_put_back(seed: int) -> None:
+    """A busy recorder took 1.12 s for each second of messages, then 40 in a tenth of a second."""
+    read, came = queueing(np.random.default_rng(seed))
+    assert np.max(came - read) > 0.7
+    assert (np.diff(came) < 0.005).sum() > 20
+    found = with_even_stamps(came, *driven(read))
+    assert (np.diff(found) > 0.0).all()
+    off = found - read
+    assert np.max(np.abs(off - np.median(off))) < 0.025
+
+
+def test_a_program_that_reads_more_often_to_catch_up_has_no_queue() -> None:
+    """What it reads as it catches up it reads then, and finds next to no travel since the last."""
+    read, came = queueing(np.random.default_rng(1), 4000)
+    caught_up = (read > 15.0) & (read < 22.0)
+    found = with_even_stamps(came, *driven(np.where(caught_up, came, read)))
+    assert found is not came
+    assert np.max(np.abs(found - came)) < 0.1
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_wheels_are_put_right_unless_one_queue_held_the_gyro_too(together: bool) -> None:
+    random = np.random.default_rng(2)
+    read, came = queueing(random)
+    seen = np.sort((came if together else read) + random.uniform(0.0, 0.02, came.size))
+    nothing = np.full(read.size, np.nan)
+    gyro = Reference(seen, nothing, nothing, np.sin(0.2 * read))
+    wheels = Ticks(came, *driven(read))
+    assert stamped_together(Run("queue", Path("queue"), wheels, gyro)) == together
+
+
 def test_two_that_come_together_were_not_read_together() -> None:
     read = PERIOD * np.arange(400)
     came = np.where(np.arange(400) % 3 == 0, np.append(read[1:], read[-1]), read)

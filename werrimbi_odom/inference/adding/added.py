@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import Consistency
@@ -18,7 +17,14 @@ from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
+from werrimbi_odom.inference.diagnosis.paired_comparison import (
+    Sides,
+    Unit,
+    error_of,
+    promised_of,
+    promised_variances,
+    sides_of,
+)
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -26,7 +32,6 @@ from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 WHEEL_NOISES = ("left_wheel_noise", "right_wheel_noise")
@@ -64,33 +69,16 @@ class JudgedSide:
     def promised(self) -> float:
         """Root mean square error that the covariance of the final model predicts, in the same unit.
 
-        Without the few legs that begin with an unknown heading, or hold an abrupt event. It is the
-        error by noise alone if the model explains the drives (`Added.noise_alone`).
+        It is the error by noise alone if the model explains the drives (`Added.noise_alone`).
         """
-        variances = self._promised_variances
-        return float(np.sqrt(np.mean(variances))) if variances.size else float("nan")
+        return promised_of(self.after, self.unit)
 
     @property
     def of_few_legs(self) -> tuple[int, int]:
         """Legs that hold half of the predicted squared error, the fewest that do, and all legs."""
-        shares = np.cumsum(np.sort(self._promised_variances)[::-1])
+        shares = np.cumsum(np.sort(promised_variances(self.after, self.unit))[::-1])
         half = int(np.searchsorted(shares, 0.5 * shares[-1])) + 1 if shares.size else 0
         return half, shares.size
-
-    @property
-    def _promised_variances(self) -> Floats:
-        """Predicted mean square error of each such leg, shape (k,)."""
-        quiet = self.after.quiet
-        errors = quiet.errors.chosen(~quiet.outlier)
-        if self.unit == "rad":
-            promised = errors.covariance[np.isfinite(errors.error[:, 2]), 2, 2]
-        else:
-            measured = np.isfinite(errors.error[:, 0])
-            promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
-        if promised.size == 0:
-            return np.zeros(0)
-        usual = promised <= rules.UNUSUAL_PROMISE * np.median(promised)
-        return np.asarray(promised[usual], dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)

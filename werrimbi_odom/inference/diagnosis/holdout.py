@@ -40,6 +40,8 @@ class Errors:
     unit: Unit
     legs: Legs
     """Legs of the held-out drives."""
+    fitted_legs: Legs
+    """Legs of the fitted drives."""
 
     def to(self, after: Errors) -> Sides:
         """Change of the held-out error from this model to another."""
@@ -81,6 +83,7 @@ class Judge:
             (error_of(train.quiet, unit), error_of(holdout.quiet, unit)),
             unit,
             holdout,
+            train,
         )
 
     def fitted_per_run(self, model: Model) -> Point:

@@ -25,6 +25,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.distributions import student_survival
 from werrimbi_odom.inference.fitting.clusters import parts_of
+from werrimbi_odom.model.pose import Floats
 
 Unit = Literal["m", "rad"]
 
@@ -76,6 +77,29 @@ def error_of(legs: Legs, unit: Unit) -> float:
     """Root mean square error of legs, of positions [m] or of headings [rad]."""
     figures = statistics_of(legs)
     return figures.rmse_position_m if unit == "m" else figures.rmse_yaw_rad
+
+
+def promised_of(legs: Legs, unit: Unit, *, wheels: bool = True) -> float:
+    """Root mean square error of legs that their covariance predicts, in the same unit."""
+    variances = promised_variances(legs, unit, wheels=wheels)
+    return float(np.sqrt(np.mean(variances))) if variances.size else float("nan")
+
+
+def promised_variances(legs: Legs, unit: Unit, *, wheels: bool = True) -> Floats:
+    """Mean square error of each leg that its covariance predicts, (k,), in the square of the unit.
+
+    Without the few legs that begin with an unknown heading, or hold an abrupt event. Without the
+    noise of the wheels it is what the reference and the rounding of the counts make.
+    """
+    quiet = legs.quiet
+    errors = quiet.errors.chosen(~quiet.outlier)
+    own = slice(0, 2) if unit == "m" else slice(2, 3)
+    measured = np.isfinite(errors.error[:, own]).all(axis=1)
+    covariance = errors.covariance if wheels else errors.covariance - errors.wheels
+    promised = np.trace(covariance[measured, own, own], axis1=1, axis2=2)
+    if promised.size == 0:
+        return np.zeros(0)
+    return np.asarray(promised[promised <= rules.UNUSUAL_PROMISE * np.median(promised)])
 
 
 def _chance(before: Legs, after: Legs, unit: Unit) -> float:

@@ -19,6 +19,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.diagnosis.wandering_reference import Wander
+from werrimbi_odom.inference.diagnosis.what_is_left import WhatIsLeft
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
@@ -66,6 +67,9 @@ class Diagnosis:
     """Heading errors of `train` and `holdout` [rad]: headings alone are judged by them."""
     quiet: tuple[Sides, Sides]
     """`train` and `holdout` without the legs with an abrupt event."""
+    left: WhatIsLeft | None
+    """What is left with everything found, beside the reference's own noise; None where that is not
+    known, or legs are few."""
     rivals_of_others: Mapping[str, tuple[str, ...]]
     """For the further effects that were found: their rivals, by name."""
     left_out: tuple[LeftOut, ...] = ()

@@ -39,6 +39,7 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     torn_by_halves,
 )
 from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
+from werrimbi_odom.inference.diagnosis.what_is_left import what_is_left
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
@@ -130,6 +131,15 @@ def diagnosis_of(
         quiet=(
             Sides(before.quiet[0], after.quiet[0], before.unit),
             Sides(before.quiet[1], after.quiet[1], before.unit),
+        ),
+        left=None
+        if another
+        else what_is_left(
+            (judge.train, after.fitted_legs),
+            (judge.holdout, after.legs),
+            after.unit,
+            laid,
+            final.point,
         ),
         rivals_of_others=rivals_of_others(answer.found, answer.rivals, rounds, final, given, laid),
         left_out=judge.left_out,

@@ -4,8 +4,10 @@
 
 A driver reads its counters by a timer. Over a serial line or radio, messages then arrive in pairs
 or late. Wheels turn evenly between readings, so the counts show which stamp is right: if counts are
-linear in the message number rather than in the stamp, stamps are replaced by the timer's. A lidar
-turns as evenly as a timer, and the path from its scans shows the same.
+linear in the message number rather than in the stamp, stamps are replaced by the timer's. Messages
+may also queue up for seconds before a busy program takes them, and then come all at once: a timer
+pauses now and then, but does not catch up. A lidar turns as evenly as a timer, and the path from
+its scans shows the same.
 """
 
 from __future__ import annotations
@@ -14,7 +16,12 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter, uniform_filter1d
+from scipy.ndimage import (
+    binary_propagation,
+    median_filter,
+    minimum_filter1d,
+    uniform_filter1d,
+)
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
@@ -61,6 +68,9 @@ def with_even_stamps(
     if not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
+    queued = _queued(even - period * number, period)
+    if _read_before(stamps, left[first], right[first], queued > 0.0, period):
+        even = even - queued
     tenth = 0.1 * period * number  # keeps readings in order
     read = (np.maximum.accumulate(even - tenth) + tenth)[row]
     return np.asarray(read) if np.std(read - time) > least * period else time
@@ -76,7 +86,9 @@ def stamped_together(run: Run) -> bool:
     if run.reference is None or run.reference.time.size <= rules.EVEN_WINDOW or not late.any():
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
-    own = seen - _numbered(seen, np.arange(float(seen.size)))[0]
+    number = np.arange(float(seen.size))
+    even, period = _numbered(seen, number)
+    own = seen - even + _queued(even - period * number, period)
     seldom, often = (time, seen) if seen.size > time.size else (seen, time)
     # What has nothing in common is a quarter of an interval from the nearest.
     chance = min(np.std(late), 0.25 * np.median(np.diff(often)))
@@ -219,6 +231,36 @@ def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
     )  # a pause is a step in it
     off = np.clip(stamps - even - late, -period, period)
     return even + late + uniform_filter1d(off, rules.EVEN_WINDOW, mode="reflect"), period
+
+
+def _queued(late: Floats, period: float) -> Floats:
+    """How long messages waited in a queue, (n,), from what they are late by a timer's pace [s].
+
+    A timer that pauses is late ever after. What is made up for later was a queue, and the timer is
+    as late as the least late of the messages that follow.
+    """
+    behind = -(rules.EVEN_QUEUE // 2)
+    soonest = minimum_filter1d(late, rules.EVEN_QUEUE, mode="nearest", origin=behind)
+    wait = late - np.minimum(soonest, late)
+    clear = wait > period
+    return np.where(binary_propagation(clear, mask=wait > rules.EVEN_QUEUED * period), wait, 0.0)
+
+
+def _read_before(
+    stamps: Floats, left: Counts, right: Counts, queued: NDArray[np.bool_], period: float
+) -> bool:
+    """Whether messages of a queue were read before they came, each a period after the last.
+
+    Then they tell as much travel where they come at once as where they queue up. A program that
+    reads late, and often to catch up, finds next to none.
+    """
+    inside = queued[1:] & queued[:-1]
+    quick = np.diff(stamps) < rules.EVEN_AT_ONCE * period
+    step = np.nan_to_num(_steps(left, right)[0])
+    at_once, usual = (step[inside & part] for part in (quick, ~quick))
+    if not at_once.size or not usual.any():
+        return False
+    return bool(np.mean(at_once) > (1.0 - rules.EVEN_SHARE) * np.mean(usual))
 
 
 def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool:

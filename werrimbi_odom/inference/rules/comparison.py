@@ -117,6 +117,10 @@ variance is then known to a factor of ten either way, the noise to three."""
 
 # ------------------------------------------------------------------- noise of the reference
 
+OWN_NOISE = 1.2
+"""Errors of legs relative to what the reference's own noise makes of them, up to which that is what
+is left: a law that explained all the rest would lower them by a sixth."""
+
 DIFFERENCES = 30
 """Fewest third differences of a reference for an estimate of its noise: they give it to 21 % (1.17
 / sqrt(30), for a median of absolute values)."""

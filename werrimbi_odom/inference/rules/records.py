@@ -159,6 +159,13 @@ EVEN_MESSAGES, EVEN_WINDOW = 50, 51
 with fewer; and window of the running median of their delays: a few seconds, in which two clocks
 drift by 0.1 ms, and enough to be right to a sixth of the jitter of one stamp."""
 
+EVEN_QUEUE, EVEN_QUEUED, EVEN_AT_ONCE = 400, 0.25, 0.5
+"""Most messages that wait in a queue, and still are put back. Chosen: some ten seconds of a busy
+computer; a period that is wrong by a thousandth is off by less than a half of itself over them. The
+wait from which one is in a queue that is a period long somewhere, in periods: less is the jitter of
+single stamps, which is evened as such. And the interval in which a queue empties, in periods: half
+way between messages at their own pace and at once."""
+
 EVEN_SHARE, EVEN_SURE = 0.5, 3.0
 """Slope of the counts on the jitter of the stamps, up to which the timer is trusted in place of the
 stamps: half way between an uneven timer with true stamps (1) and an even one (0). And standard

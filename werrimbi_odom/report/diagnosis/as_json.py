@@ -14,6 +14,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.diagnosis.what_is_left import WhatIsLeft
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
@@ -76,6 +77,7 @@ def json_of(
         "without_events": dict(zip(("train", "holdout"), map(_sides, diagnosis.quiet), strict=True))
         if diagnosis.happened.left_out
         else None,
+        "left": diagnosis.left and _left(diagnosis.left),
         "reference_remarks": remarks_json(diagnosis.remarks),
         "reference_wanders": diagnosis.wander and picked(diagnosis.wander, _WANDER),
         "left_out": left_out_json(diagnosis.left_out),
@@ -119,6 +121,15 @@ def _sides(sides: Sides | None, headings: Sides | None = None) -> dict[str, Any]
     if headings is not None:
         found["rmse_yaw_rad"] = picked(headings, "before after")
     return found
+
+
+def _left(left: WhatIsLeft) -> dict[str, Any]:
+    sides = {
+        side: picked(getattr(left, side), "error reference_noise:reference")
+        for side in ("train", "holdout")
+    }
+    neighbours = {channel: asdict(each) for channel, each in left.alike.items()}
+    return {**picked(left, "unit is_reference_noise:is_noise"), **sides, "neighbours": neighbours}
 
 
 def _values(diagnosis: Diagnosis, name: str) -> dict[str, Any]:

@@ -64,6 +64,34 @@ def little_words(misfit: Misfit) -> str:
     )
 
 
+def left_is_noise(advised: AdvisedDiagnosis) -> list[str]:
+    """That what is left is the reference's own noise, with its whiteness; else nothing."""
+    diagnosis, left = advised.diagnosis, advised.diagnosis.left
+    if left is None or not left.is_noise:
+        return []
+    error, noise = (
+        error_words(each, left.unit) for each in (left.holdout.error, left.holdout.reference)
+    )
+    without = " and no such event" if diagnosis.happened.left_out else ""
+    lines = [
+        f"What is left, {error} on {judged(advised)}{without}, is the reference's own noise: that, "
+        f"with the rounding of the counts, makes {noise} of such legs by itself. "
+    ]
+    most = max((cell.gain for cell in beyond_chance(diagnosis.remaining)), default=0.0)
+    if most:
+        off = 1.0 - math.sqrt(max(1.0 - most / diagnosis.runs.data, 0.0))
+        lines.append(f"A law of one variable would take some {two_digits(100.0 * off)} % off it. ")
+    if not (alike := left.not_white):
+        lines.append("From a short leg to the next it is white, as noise is.")
+    else:
+        told = listed([f"{name} {size:+.2f}" for name, size in alike.items()])
+        lines.append(
+            f"But it is not white: from a short leg to the next it is correlated ({told}), so "
+            "something slower is in it."
+        )
+    return ["".join(lines)]
+
+
 def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
     """That effects of the floor are not among those asked for, where axes begin anew."""
     if not diagnosis.runs.own_axes:

@@ -51,6 +51,7 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
     lines += remarks.floor_not_asked(diagnosis)
     lines += remarks.nearest(diagnosis, bool(cells))
     lines += remarks.at_bounds_told(diagnosis)
+    lines += remarks.left_is_noise(advised)
     if cells:
         lines.append("Next: write it as an effect of your own, from what these drives show:")
         lines.append(f"    {draft}")

@@ -118,7 +118,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines = [
         f"Nothing is missing that these drives could show{ending}",
         *old,
-        *remarks.law(advised),
+        *_rest(advised),
     ]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
@@ -254,7 +254,13 @@ def _things(diagnosis: Diagnosis) -> list[str]:
 def _remainder(advised: AdvisedDiagnosis) -> list[str]:
     """What speaks against the model with everything found put in."""
     bounds = remarks.at_bounds_told(advised.diagnosis)
-    return [*remarks.law(advised), *remarks.scatter(advised), *bounds]
+    return [*_rest(advised), *bounds]
+
+
+def _rest(advised: AdvisedDiagnosis) -> list[str]:
+    """What is left, if anything, and whether that is the reference's own noise."""
+    rest = [*remarks.law(advised), *remarks.scatter(advised)]
+    return [*rest, *remarks.left_is_noise(advised)] if rest else []
 
 
 def _count(number: int) -> str:

@@ -1,0 +1,122 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is left with everything found, beside the reference's own noise: its size and its whiteness.
+
+A significant dependence may be a small part of what is left. Whether any law could lower the error
+by much is another question: not where the reference's own noise, which its small differences tell
+without any model, is as large by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.comparison.judged_legs import Legs
+from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.systematic import CHANNELS
+from werrimbi_odom.inference.diagnosis.paired_comparison import Unit, error_of, promised_of
+from werrimbi_odom.inference.distributions import chi2_survival
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOfLegs:
+    """Root mean square error of legs without an abrupt event, and what the reference makes of it.
+
+    [m] or [rad]
+    """
+
+    error: float
+    reference: float
+    """By the reference's own noise and the rounding of the counts."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the reference's own noise is the error, but for a little."""
+        return self.error <= rules.OWN_NOISE * self.reference
+
+
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """Correlation of the innovations of neighbouring legs of the fit in one channel."""
+
+    correlation: float
+    p_value: float
+
+
+@dataclass(frozen=True, slots=True)
+class WhatIsLeft:
+    """The error with everything found, of fitted and of held-out drives."""
+
+    train: LeftOfLegs
+    holdout: LeftOfLegs
+    unit: Unit
+    alike: Mapping[str, Alike]
+    """By channel that was measured: independent innovations have no correlation."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the reference's own noise is what is left, in all drives."""
+        return self.train.is_noise and self.holdout.is_noise
+
+    @property
+    def not_white(self) -> dict[str, float]:
+        """Correlations beyond chance, by channel."""
+        sure = rules.SURE_WHEN_ASKED / max(len(self.alike), 1)
+        return {name: it.correlation for name, it in self.alike.items() if it.p_value < sure}
+
+
+def what_is_left(
+    train: tuple[PreparedRuns, Legs],
+    holdout: tuple[PreparedRuns, Legs],
+    unit: Unit,
+    runs: Concatenated,
+    point: Point,
+) -> WhatIsLeft | None:
+    """Compare what is left with the reference's noise; None where that or the legs are too few.
+
+    Parameters
+    ----------
+    train, holdout
+        Drives and their legs, judged with everything found.
+    runs, point
+        The fitted drives in the legs of the fit, and the fit.
+    """
+    if not all(_noise_is_known(prepared) for prepared, _ in (train, holdout)):
+        return None
+    found = []
+    for _, legs in (train, holdout):
+        quiet = legs.quiet
+        if np.count_nonzero(~quiet.outlier) < rules.FEWEST_LEGS:
+            return None
+        found.append(LeftOfLegs(error_of(quiet, unit), promised_of(quiet, unit, wheels=False)))
+    return WhatIsLeft(found[0], found[1], unit, _alike(runs, point))
+
+
+def _noise_is_known(prepared: PreparedRuns) -> bool:
+    """Whether the noise of all that is measured is estimated, stated or given, and not assumed."""
+    return all(
+        (group.measure == "heading" or group.own.freedom[0] > 0.0)
+        and (group.measure == "position" or group.own.freedom[1] > 0.0)
+        for group in prepared.groups
+    )
+
+
+def _alike(runs: Concatenated, point: Point) -> dict[str, Alike]:
+    found = unexpected(runs, point)
+    white, together = found.whitened(), runs.run_of_leg[1:] == runs.run_of_leg[:-1]
+    alike = {}
+    for column, channel in enumerate(CHANNELS):
+        known = found.known[:, column]
+        pairs = together & known[1:] & known[:-1]
+        one, other = white[:-1, column][pairs], white[1:, column][pairs]
+        scale = float(np.sqrt(np.sum(one**2) * np.sum(other**2)))
+        if scale > 0.0:
+            size = float(np.sum(one * other)) / scale
+            alike[channel] = Alike(size, chi2_survival(one.size * size**2, 1.0))
+    return alike
