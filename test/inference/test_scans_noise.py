@@ -60,7 +60,9 @@ def on_a_walking_map(seed: int) -> Run:
     white = np.array([NEAR[0], NEAR[0], NEAR[1]])[:, None] * random.standard_normal((3, yaw.size))
     poses = {"x": place.real + white[0], "y": place.imag + white[1], "yaw": yaw + turned + white[2]}
     stated = {"sigma_xy": np.full(yaw.size, NEAR[0]), "sigma_yaw": np.full(yaw.size, NEAR[1])}
-    reference = replace(seen, own_axes=True, **poses, **stated)
+    way = np.concatenate([[0.0], np.cumsum(worth)])
+    walked = 0.25**2 * way[:, None] * np.square(NEAR)
+    reference = replace(seen, own_axes=True, walked=walked, **poses, **stated)
     return replace(run, name=f"run_{seed}", reference=reference)
 
 

@@ -71,14 +71,27 @@ class Matched:
 
     def legs(self, length: float = 1.0) -> tuple[Floats, Floats]:
         """The same of legs of a length [m], of which none spans a cut."""
+        return self._between(*self._ends(length))
+
+    def stated_legs(self, length: float) -> tuple[Floats, Floats, Floats]:
+        """Their errors (k, 3), the covariances of both matches (k, 3, 3), and the walks (k, 2)."""
+        begin, end = self._ends(length)
+        walked = self.path.walked[end] - self.path.walked[begin]
+        return self._errors(begin, end), self._covariances(begin, end), walked
+
+    def _ends(self, length: float) -> tuple[np.ndarray, np.ndarray]:
         way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.truth[:, :2], axis=0).T))])
         ends = np.searchsorted(way, way + length)
         rows = np.flatnonzero(ends < way.size)
         rows = rows[self.path.piece[rows] == self.path.piece[ends[rows]]]
-        return self._between(rows, ends[rows])
+        return rows, ends[rows]
 
     def _between(self, begin: np.ndarray, end: np.ndarray) -> tuple[Floats, Floats]:
         errors = self._errors(begin, end)
+        whitened = np.linalg.solve(self._covariances(begin, end), errors[..., None])
+        return errors, np.einsum("ni,ni->n", errors, whitened[..., 0]) / 3.0
+
+    def _covariances(self, begin: np.ndarray, end: np.ndarray) -> Floats:
         # An error of the heading at the beginning moves the end aside.
         carried = np.tile(np.eye(3), (begin.size, 1, 1))
         way = self.path.poses[end] - self.path.poses[begin]
@@ -86,8 +99,7 @@ class Matched:
         first, last = self.path.covariances[begin], self.path.covariances[end]
         both = carried @ first @ carried.transpose(0, 2, 1) + last
         turned = np.array([_axes(yaw) for yaw in self.path.poses[end, 2]]).reshape(-1, 3, 3)
-        whitened = np.linalg.solve(turned @ both @ turned.transpose(0, 2, 1), errors[..., None])
-        return errors, np.einsum("ni,ni->n", errors, whitened[..., 0]) / 3.0
+        return np.asarray(turned @ both @ turned.transpose(0, 2, 1))
 
     def _errors(self, begin: np.ndarray, end: np.ndarray) -> Floats:
         true, found = self.truth, self.path.poses

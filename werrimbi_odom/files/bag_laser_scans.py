@@ -89,7 +89,7 @@ class LidarCollector:
                 words = _lost(found) if self._echoes else _blind(found, self._reach)
             raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
-        poses, sigma_xy, sigma_yaw = _of_base(found, mount)
+        poses, sigma_xy, sigma_yaw, walked = _of_base(found, mount)
         damage = f"the path by {self._name} is in pieces: {_unmatched(found)}"
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
         if self._matcher.order != "stated":
@@ -102,7 +102,15 @@ class LidarCollector:
         # Not local_map: in a room the map drifts by less than the error of a match (docs/scans.md),
         # and a fitted drift would absorb the effect of a misaligned lidar.
         reference = Reference(
-            found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute", own_axes=True
+            found.time,
+            x,
+            y,
+            yaw,
+            sigma_xy,
+            sigma_yaw,
+            kind="absolute",
+            own_axes=True,
+            walked=walked,
         )
         return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
 
@@ -124,8 +132,8 @@ def _beside(length: float, one: str, other: str) -> str:
     return f"{1e3 * abs(length):.0f} mm {one if length >= 0.0 else other}"
 
 
-def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
-    """Poses of the base (n, 3), starting at the origin, and their sigmas (n,), from the lidar's."""
+def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats, Floats]:
+    """Poses of the base (n, 3) from the origin on, their sigmas (n,), and walks (n, 2)."""
     x, y, yaw = found.poses.T
     if mount.inverted:
         y, yaw = -y, -yaw
@@ -136,8 +144,10 @@ def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
     sigma_yaw = np.sqrt(variance[:, 2])
     # One number for both axes is that of the wider: the mean would be too sure along a corridor.
     widest = np.linalg.eigvalsh(found.covariances[:, :2, :2])[:, 1]
-    sigma_xy = np.sqrt(widest + 0.5 * variance[:, 2] * np.abs(lever) ** 2)
-    return np.column_stack([base.real, base.imag, yaw]), sigma_xy, sigma_yaw
+    swing = 0.5 * np.abs(sits) ** 2
+    sigma_xy = np.sqrt(widest + swing * variance[:, 2])
+    walked = found.walked + swing * found.walked[:, 1:] * [1.0, 0.0]
+    return np.column_stack([base.real, base.imag, yaw]), sigma_xy, sigma_yaw, walked
 
 
 def _in_words(found: ScanPath, sigma_xy: Floats, sigma_yaw: Floats) -> str:

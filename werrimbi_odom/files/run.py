@@ -94,6 +94,9 @@ class Reference:
     own_axes: bool = field(default=False, kw_only=True)
     """The coordinate frame differs between drives, and between segments after a cut (scans without
     a map): drives have no common direction or position on the floor."""
+    walked: Floats | None = field(default=None, kw_only=True)
+    """Variances of a coordinate and of yaw that the map of the last metres has walked by each pose
+    of scans, shape (m, 2) [m², rad²]; what matters is their growth."""
     gyro: GyroTurn | None = field(default=None, kw_only=True)
     """Given if `yaw` is that of a gyro, aligned with another reference."""
     stamped_together: bool = field(default=False, kw_only=True)
@@ -125,6 +128,7 @@ class Reference:
             None if self.sigma_yaw is None else self.sigma_yaw[which],
             kind=self.kind,
             own_axes=self.own_axes,
+            walked=None if self.walked is None else self.walked[which],
             gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
             stamped_together=self.stamped_together,
         )

@@ -6,6 +6,11 @@ FEWEST_POINTS = 40
 """Least number of echoes on lines of the map. A pose has three parameters, and one person before
 the robot accounts for 20 echoes of 218."""
 
+LEAST_MATCHED = 0.3
+"""Least share of a scan's echoes that lie on lines of the map. In rooms and corridors they are 0.46
+and more, also where a fast robot sees new walls; of a robot that was carried elsewhere 0.17 to
+0.29, on some of which a pose may settle by chance."""
+
 LEAST_SHARE = 0.35
 """Least share of the echoes that agree with the map (mean weight of the fit). A limit of 0.5
 rejected up to nine tenths of the good matches of a poor lidar (15 mm); one of 0.35 rejected none.
@@ -43,10 +48,11 @@ straighter. Of the simulated rooms only a corridor's heading with 681 beams come
 (docs/scans.md). Further errors of a real lidar are estimated from each drive
 (`two_pass_odometry.common_noise`)."""
 
-COMMON = 1.5
+COMMON, COMMON_SURE = 1.5, 3.0
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above
 which a noise common to all echoes of a scan is assumed. Without such noise the ratio is 0.6 to 1.7
-in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15."""
+in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15. And standard
+deviations of that ratio, of which short drives tell little (25 s to 0.3)."""
 
 CALM = 0.25
 """Share of a drive, with the smallest changes of speed, in which that scatter is measured. In short

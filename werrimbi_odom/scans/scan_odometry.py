@@ -16,6 +16,7 @@ from werrimbi_odom.scans.limits import (
     FEWEST_POINTS,
     FLOOR,
     LARGEST_SIGMA,
+    LEAST_MATCHED,
     LEAST_SHARE,
 )
 from werrimbi_odom.scans.local_map import LocalMap
@@ -35,6 +36,13 @@ class ScanTracker:
         self._map = LocalMap()
         self.covariance = FLOOR**2 * np.eye(3)
         """Covariance of the last pose in the map, world axes, shape (3, 3)."""
+        self.walk = np.zeros(2)
+        """Variances of position, an axis, and heading that the map has walked so far [m², rad²].
+
+        A key scan joins the map with its own error, which stays for good in the mean of those that
+        are matched with it: by one over their mean age, counted in key scans, as in a moving
+        average of itself.
+        """
         self.scatter = 0.0
         """Scatter of the echoes of the last scan about the lines of the map [m]."""
 
@@ -49,13 +57,17 @@ class ScanTracker:
             self._map.take(self.pose, points, spacing)
             return "" if self._map.elements is not None else "few"
         found = match(points, self._map.elements, moved(self.pose, motion))
-        flag = _flag(found, motion_between(self.pose, found.pose), duration)
+        flag = _flag(found, len(points), motion_between(self.pose, found.pose), duration)
         if not flag:
             self.pose, self.covariance = found.pose, found.covariance.copy()
             self.scatter = found.noise
             least = np.maximum(np.diagonal(found.covariance), FLOOR**2)
             np.fill_diagonal(self.covariance, least)
-            self._map.take(self.pose, points, spacing)
+            if self._map.take(self.pose, points, spacing):
+                gain = np.linalg.solve(found.aged, found.information)
+                step = gain @ self.covariance @ gain.T
+                widest = np.linalg.eigvalsh(step[:2, :2])[1]
+                self.walk = self.walk + np.array([widest, step[2, 2]])
         return flag
 
 
@@ -70,8 +82,8 @@ def motion_between(one: Floats, other: Floats) -> Floats:
     return np.array([x, y, wrap(yaw)])
 
 
-def _flag(found: Match, motion: Floats, duration: float) -> Flag:
-    if found.points < FEWEST_POINTS:
+def _flag(found: Match, echoes: int, motion: Floats, duration: float) -> Flag:
+    if found.points < max(FEWEST_POINTS, LEAST_MATCHED * echoes):
         return "few"
     if np.linalg.det(found.information) < 1e-9 or not np.isfinite(found.covariance).all():
         return "weak"

@@ -22,6 +22,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.limits import (
     CALM,
     COMMON,
+    COMMON_SURE,
     FEWEST_POSES,
     LONGEST_HOLE,
     LOST_AFTER,
@@ -53,6 +54,9 @@ class ScanPath:
     """x, y [m] and yaw [rad], shape (n, 3)."""
     covariances: Floats
     """Of each match, given the map; axes of the piece, shape (n, 3, 3)."""
+    walked: Floats
+    """Variances of position, an axis, and heading that the map has walked by then, from the start
+    of the piece on, shape (n, 2) [m², rad²]."""
     piece: NDArray[np.intp]
     """Number of the unbroken piece, shape (n,)."""
     common: tuple[float, float]
@@ -91,7 +95,7 @@ class ScanMatcher:
         self._done = 0  # scans at the front of `_seen` that the second pass has
         self._failed_again, self._piece, self._scans = 0, 0, 0
         self._flags: dict[Flag, int] = {}
-        self._found = array("d")  # of each pose: time, pose, covariance, piece
+        self._found = array("d")  # of each pose: time, pose, covariance, walk, piece
         self.scatter: dict[float, float] = {}
         """By the time of the first scans in which the lidar turned: how far their echoes lie from
         the walls [m]."""
@@ -131,8 +135,8 @@ class ScanMatcher:
     def path(self) -> ScanPath:
         """The path of all scans that were taken; the last call of all."""
         self._cut()
-        table = np.array(self._found).reshape(-1, 14)
-        piece = table[:, 13].astype(np.intp)
+        table = np.array(self._found).reshape(-1, 16)
+        piece = table[:, 15].astype(np.intp)
         kept = np.bincount(piece, minlength=1)[piece] >= FEWEST_POSES
         poses, covariances = table[kept, 1:4], table[kept, 4:13].reshape(-1, 3, 3)
         more = common_noise(poses, covariances, piece[kept])
@@ -140,6 +144,7 @@ class ScanMatcher:
             table[kept, 0],
             poses,
             covariances + np.diag([more[0], more[0], more[1]]) ** 2,
+            table[kept, 13:15],
             piece[kept],
             more,
             self._scans,
@@ -194,6 +199,7 @@ class ScanMatcher:
         self._found.append(seen.sweep.time)
         self._found.extend(self._second.pose)
         self._found.extend(self._second.covariance.ravel())
+        self._found.extend(self._second.walk)
         self._found.append(self._piece)
 
 
@@ -220,7 +226,9 @@ def common_noise(
     seen = np.array([np.median(rough[calm[:, part], part]) for part in range(3)])
     seen = (MAD * seen) ** 2 / 70.0  # 1, -4, 6, -4, 1
     stated = np.median(np.diagonal(covariances[middle], axis1=1, axis2=2), axis=0)
-    more = np.where(seen > COMMON * stated, seen - stated, 0.0)
+    # A standard deviation by the median of n has a relative error of 1.17 / root n.
+    chance = 1.0 + 2.0 * 1.17 * COMMON_SURE / np.sqrt(calm.sum(axis=0))
+    more = np.where(seen > np.maximum(COMMON, chance) * stated, seen - stated, 0.0)
     return float(np.sqrt(0.5 * (more[0] + more[1]))), float(np.sqrt(more[2]))
 
 

@@ -206,7 +206,7 @@ def _reference_part(
     lever = lever_of(prediction.relative)
     own = np.stack([xy, xy, yaw], axis=-1) + reading
     first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
-    of_map = map_walk(prediction, xy, yaw) if runs.own_axes else 0.0
+    of_map = map_walk(prediction, runs.map_growth, xy, yaw) if runs.own_axes else 0.0
     return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + of_map)
 
 

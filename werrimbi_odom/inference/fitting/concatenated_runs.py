@@ -136,6 +136,27 @@ class Concatenated:
         return np.stack(found, axis=-1) ** 2
 
     @property
+    def map_growth(self) -> Floats:
+        """Variances of position and heading that the map of scans walks over each leg, (m, 2).
+
+        In the units of `shares`. Zero where a run does not state them.
+        """
+        found = np.zeros((self.count, 2))
+        for column, name in enumerate(("sigma_xy", "sigma_yaw")):
+            usual = [getattr(run, name) for run in self.runs]
+            walks = [run.measured.walked for run in self.runs]
+            if None in usual:
+                continue
+            growth = np.concatenate(
+                [
+                    np.zeros(run.legs) if walked is None else np.diff(walked[:, column])
+                    for run, walked in zip(self.runs, walks, strict=True)
+                ]
+            )
+            found[:, column] = np.maximum(growth, 0.0) / max(usual) ** 2  # a new piece starts anew
+        return found
+
+    @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
         return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))

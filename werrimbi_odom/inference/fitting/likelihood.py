@@ -198,7 +198,8 @@ def innovations(
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
     if kind == "absolute" and runs.own_axes:
-        noise += map_walk(prediction, variances.xy[:, None], variances.yaw[:, None])
+        growth = runs.cache.known("map_growth", lambda: runs.map_growth)
+        noise += map_walk(prediction, growth, variances.xy[:, None], variances.yaw[:, None])
     legs = FilterInput(
         prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch
     )

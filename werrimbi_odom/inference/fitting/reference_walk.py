@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.motion import BodyMotion
@@ -35,7 +34,7 @@ def walked(prediction: Prediction, growth: Floats, xy: Floats, yaw: Floats) -> F
     return np.asarray(xy[..., None, None] * flat + yaw[..., None, None] * swing)
 
 
-def map_walk(prediction: Prediction, xy: Floats, yaw: Floats) -> Floats:
-    """The same of the map of scans, by the variances of a pose on it."""
-    worth = prediction.length + np.abs(prediction.turn) / rules.QUARTER_TURN
-    return walked(prediction, rules.MAP_WALK**2 * worth, xy, yaw)
+def map_walk(prediction: Prediction, growth: Floats, xy: Floats, yaw: Floats) -> Floats:
+    """The same of the map of scans: `growth` (m, 2) in units of the variances of a pose on it."""
+    whole = np.ones(len(growth))
+    return walked(prediction, whole, xy * growth[:, 0], yaw * growth[:, 1])

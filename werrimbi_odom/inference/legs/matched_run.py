@@ -183,7 +183,8 @@ def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
     if reference.own_axes:  # stated per scan match; a localiser states its absolute error
         for sigma in (reference.sigma_xy, reference.sigma_yaw):
             columns.append(None if sigma is None else sigma[rows])
-    return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
+    walked = None if reference.walked is None else reference.walked[rows]
+    return Reference(*columns, own_axes=reference.own_axes, walked=walked, gyro=gyro)
 
 
 def typical_sigma(sigma: Floats | None) -> float | None:

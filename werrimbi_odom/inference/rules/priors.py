@@ -85,14 +85,6 @@ TYPICAL_MATCH, MATCH_SPREAD = (2e-3, 2e-3), 1.5
 [m, rad]: with simulated lidars a match is good to 1 to 9 mm and 1.4 to 5 mrad; 0.1 and 40 are two
 standard deviations off."""
 
-MAP_WALK = 0.25
-"""Random walk of the poses by scans, over a metre or a quarter turn on the spot, as a share of the
-standard deviation of a match. Measured on the true motion of 14 simulated drives in furnished
-rooms: NEES over 3 is then 0.90 to 1.07 over 0.1 to 10 m (without it 1.07 to 2.1). A map of 24 key
-scans with equal weights, of which one is replaced every 0.14 to 0.2 m, walks by 0.2, as the error
-of a key scan stays in its mean with the share 2 / (24 + 1). Where walls leave the view, fewer scans
-hold it."""
-
 TYPICAL_WALK, WALK_SPREAD = (5e-3, 3e-3, 1.0 / 15.0), np.array([1.5, 1.5, 1.0])
 """Log-normal prior of the random walk of their correlated error [m/s^0.5, rad/s^0.5], and of the
 rate at which that error decays [1/s] (Ornstein-Uhlenbeck process). Chosen: a matcher in a room
