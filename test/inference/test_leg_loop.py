@@ -63,6 +63,24 @@ def test_arrays_and_single_numbers_are_one_filter(seed: int, sets: int, alike: b
             np.testing.assert_allclose(here, there, rtol=1e-7, atol=1e-8)
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 3), st.sampled_from([3, 6]))
+def test_changes_are_carried_on_alike(seed: int, columns: int, states: int) -> None:
+    random = np.random.default_rng(seed)
+    bounds = np.cumsum([0, *sorted(random.integers(1, 5, 6))[::-1]])
+    carry = random.normal(size=(bounds[-1], states, states)) * (random.random(states) < 0.7)
+    given = random.normal(size=(bounds[-1], states, columns))
+    plain = given.copy()
+    for begin, end, before in zip(bounds[1:-1], bounds[2:], bounds[:-2], strict=True):
+        for row in range(begin, end):
+            plain[row] += carry[row] @ plain[before + row - begin]
+    for way in (None, leg_loop.carried_in_scalars, compiled(leg_loop.carried_in_scalars)):
+        change = given.copy()
+        with patch.object(leg_loop, "compiled", lambda function, way=way: way):
+            leg_loop.carry_on(carry, bounds, change)
+        np.testing.assert_allclose(change, plain, rtol=1e-9, atol=1e-12)
+
+
 def test_the_machine_code_is_there_where_numba_is() -> None:
     pytest.importorskip("numba")
     assert compiled(leg_loop.loop_over_scalars) is not None

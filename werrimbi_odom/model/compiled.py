@@ -58,13 +58,9 @@ WORTH_COMPILING = 200_000
 """Number of steps from which compiled code saves more time than loading it takes (0.4 s)."""
 
 
-WORTH_AGAIN = 30_000
-"""The same for repeated passes over the same steps, as in a fit (0.2 s for each function)."""
-
-
-def compiled_for(steps: int, function: Function, again: bool = False) -> Function | None:
-    """Return the compiled function where this many steps pay for it; `again`: repeated passes."""
-    return compiled(function) if steps >= (WORTH_AGAIN if again else WORTH_COMPILING) else None
+def compiled_for(steps: int, function: Function) -> Function | None:
+    """Return the compiled function where one pass over this many steps pays for it."""
+    return compiled(function) if steps >= WORTH_COMPILING else None
 
 
 @cache

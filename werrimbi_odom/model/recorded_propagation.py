@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.compiled import compiled_for
+from werrimbi_odom.model.compiled import compiled, compiled_for
 from werrimbi_odom.model.covariance import (
     PathNoise,
     PoseCovariance,
@@ -144,7 +144,7 @@ def followed(motion: BodyMotion[Floats]) -> tuple[NDArray[np.complex128], Floats
     For repeated passes over one run.
     """
     position = np.empty(motion.turn.size + 1, dtype=np.complex128)
-    machine = compiled_for(motion.turn.size, follow, again=True)
+    machine = compiled(follow)
     if machine is None:
         x, y, yaw = integrated(Pose(), motion)
         position.real, position.imag = x, y

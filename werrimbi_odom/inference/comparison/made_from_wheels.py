@@ -124,17 +124,17 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     ways, known = _ways(reference, rows)
     turns = np.diff(np.unwrap(reference.yaw[rows]))
     turning = np.isfinite(turns)
-    best = turned = np.inf
-    for delay in rules.CIRCLE_DELAYS:
-        wheels = np.diff(counters.at(reference.time[rows] - delay), axis=0)
-        wheels = wheels * [robot.left_tick, robot.right_tick]
-        # Where it is not known, the sign of the motion is taken from the wheels.
-        sign = 1.0 if known else np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
-        best = min(best, *(_typical(sign * each, wheels) for each in ways))
-        if turning.sum() > rules.CIRCLE_FEWEST:
-            turned = min(turned, _typical(turns[turning], wheels[turning]))
+    ticks = [robot.left_tick, robot.right_tick]
+    moments = [reference.time[rows] - delay for delay in rules.CIRCLE_DELAYS]
+    wheels = np.stack([np.diff(counters.at(times), axis=0) * ticks for times in moments])
+    # Where it is not known, the sign of the motion is taken from the wheels.
+    sign = 1.0 if known else np.where(wheels.sum(axis=-1) < 0.0, -1.0, 1.0)
+    best = min(float(_typical(sign * each, wheels).min()) for each in ways)
+    turned = np.inf
+    if turning.sum() > rules.CIRCLE_FEWEST:
+        turned = float(_typical(turns[turning], wheels[:, turning]).min())
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
-    rolled = 0.5 * float(np.abs(wheels).sum())
+    rolled = 0.5 * float(np.abs(wheels[-1]).sum())
     scale = float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 1.0
     way = float(np.median(np.abs(ways[0])))
     return Closeness(best, way, scale * _rounding(run, robot), turned)
@@ -175,15 +175,21 @@ def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[list[Floats], b
     return [np.diff(np.concatenate([[0.0], np.cumsum(each)])[at]) for each in steps_by], known
 
 
-def _typical(ways: Floats, wheels: Floats) -> float:
-    """Typical residual of the best wheel sizes: least absolute deviations, by reweighting."""
-    weight = np.ones(ways.size)
+def _typical(ways: Floats, wheels: Floats) -> Floats:
+    """Typical residual of the best wheel sizes, for each of d delays, (d,).
+
+    Least absolute deviations by reweighting, of paths (n,) or (d, n) over wheels (d, n, 2).
+    """
+    ways = np.broadcast_to(ways, wheels.shape[:-1])
+    weight = np.ones(ways.shape)
+    digits = wheels.shape[1] * float(np.finfo(float).eps)
     for _ in range(8):
         root = np.sqrt(weight)
-        sizes = np.linalg.lstsq(wheels * root[:, None], ways * root, rcond=None)[0]
-        left = np.abs(ways - wheels @ sizes)
-        weight = 1.0 / np.maximum(left, 1e-12 + 1e-3 * float(np.median(left)))
-    return float(np.median(left)) * MEDIAN_TO_SIGMA
+        sizes = np.linalg.pinv(wheels * root[..., None], rcond=digits) @ (ways * root)[..., None]
+        left = np.abs(ways - (wheels @ sizes)[..., 0])
+        middle = np.median(left, axis=-1, keepdims=True)
+        weight = 1.0 / np.maximum(left, 1e-12 + 1e-3 * middle)
+    return np.asarray(middle[..., 0] * MEDIAN_TO_SIGMA)
 
 
 def _rounding(run: Run, robot: Robot) -> float:

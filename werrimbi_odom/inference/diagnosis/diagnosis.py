@@ -29,6 +29,7 @@ from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_
 from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
 from werrimbi_odom.inference.diagnosis.effects_of_robot_file import outdated, rivals_of_held
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
+from werrimbi_odom.inference.diagnosis.exchange import exchanged
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
     Round,
@@ -148,6 +149,7 @@ def _searched(
             break
         rounds += further
         fit = refit_to_rest(laid, best, set_up.robot)
+        fit, rounds = exchanged(laid, fit, rounds, set_up.robot)
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit

@@ -14,7 +14,6 @@ heading error itself; drift and scale factor are two more states.
 
 from __future__ import annotations
 
-import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +21,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, Ways, in_rounds
-from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, turn_into
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, rows_before, turn_into
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 ANEW = 1e2
@@ -82,7 +81,7 @@ class GaussMarkovError(NamedTuple):
 def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) -> FilterResult:
     """Run the filter over all stretches at once; innovations are of the measurements."""
     sets, count = legs.noise.shape[0], legs.relative.shape[0]
-    first, leg, rounds = in_rounds(legs)
+    first, leg, bounds = in_rounds(legs)
     reading = np.broadcast_to(legs.reading, legs.noise.shape)
     finite = np.isfinite(legs.start[first])
     free = ~finite[:, 2]
@@ -111,7 +110,7 @@ def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) 
         moves[..., 5, 6], moves[..., 5, 7] = laid.turn[leg], laid.duration[leg]
     less = np.empty((count, size, size))
     pose, own = np.arange(3), np.arange(3, 6)
-    for now in rounds:
+    for now in map(slice, bounds[:-1], bounds[1:]):
         still = now.stop - now.start
         state, spread = state[:, :still], spread[:, :still]
         turn, move = turns[:, now], moves[:, now]
@@ -144,14 +143,14 @@ def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) 
     back = turns.swapaxes(-1, -2)
     leave = -back[0] * (known & ~skipped[:, None])[:, None]
     carry = moves[0].copy()
-    for last, now in itertools.pairwise(rounds):
-        carry[now] = moves[0, now] @ less[last.start : last.start + now.stop - now.start]
+    for last, now in rows_before(bounds):
+        carry[now] = moves[0, now] @ less[last]
     enter = np.concatenate([turns[0], np.zeros((count, size - 3, 3))], axis=1)
     away = np.zeros((count, 3, size - 6))
     return FilterResult(
         (back @ values[..., None])[..., 0][:, place],
         (back @ covariances @ turns)[:, place],
-        Ways(leg, enter, carry, np.concatenate([leave, leave, away], axis=-1), free, rounds),
+        Ways(leg, enter, carry, np.concatenate([leave, leave, away], axis=-1), free, bounds),
     )
 
 

@@ -10,13 +10,12 @@ takes as many iterations of the loop as a minute.
 
 from __future__ import annotations
 
-import itertools
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, run_loop
+from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, carry_on, rows_before, run_loop
 from werrimbi_odom.model.pose import Floats
 
 STRETCH = 300
@@ -69,8 +68,8 @@ class Ways(NamedTuple):
     """Map from the state perturbation at the leg's end to the innovation, (m, 3, s)."""
     free: NDArray[np.bool_]
     """Stretches that start with a heading that was not measured."""
-    rounds: list[slice]
-    """Rows of each iteration of the loop."""
+    bounds: NDArray[np.intp]
+    """First row of each iteration of the loop, and the end of the last, (r + 1,)."""
 
     def innovations(self, slopes: Floats) -> Floats:
         """Jacobian of the innovations (m, 3, w + 1) from that of the relative poses (m, 3, w).
@@ -84,7 +83,7 @@ class Ways(NamedTuple):
             columns = slice(begin, min(begin + _COLUMNS, width))
             change = self.enter @ slopes[self.leg, :, columns]
             if columns.stop < begin + _COLUMNS:
-                first = self.rounds[0]
+                first = slice(0, self.bounds[1])
                 heading = np.zeros((count, states, 1))
                 heading[first, :, 0] = self.carry[first, :, 2] * self.free[:, None]
                 change = np.concatenate([change, heading], axis=-1)
@@ -93,9 +92,7 @@ class Ways(NamedTuple):
 
     def _left_by(self, change: Floats) -> Floats:
         """Jacobian of the innovations (m, 3, p) from that of the states (m, s, p), loop order."""
-        for before, now in itertools.pairwise(self.rounds):
-            last = slice(before.start, before.start + now.stop - now.start)
-            change[now] += self.carry[now] @ change[last]
+        carry_on(self.carry, self.bounds, change)
         return np.asarray(self.leave @ change)
 
     def of_states(self, change: Floats) -> Floats:
@@ -124,8 +121,7 @@ class Ways(NamedTuple):
         score = -(seen @ weighed[self.leg, :, None])[..., 0]
         known = seen @ precision[self.leg] @ self.leave
         both = np.zeros_like(known)
-        for before, now in reversed(list(itertools.pairwise(self.rounds))):
-            last = slice(before.start, before.start + now.stop - now.start)
+        for last, now in reversed(list(rows_before(self.bounds))):
             back = self.carry[now].swapaxes(-1, -2)
             score[last] += (back @ score[now][..., None])[..., 0]
             both[last] = back @ known[now]
@@ -178,8 +174,8 @@ def stretches(legs: FilterInput) -> NDArray[np.intp]:
     return np.array(starts, dtype=np.intp)
 
 
-def in_rounds(legs: FilterInput) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slice]]:
-    """First legs of the stretches, longest first; legs in loop order; rows of each iteration.
+def in_rounds(legs: FilterInput) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """First legs of the stretches, longest first; legs in loop order; `Ways.bounds`.
 
     Loop order is the first legs of all stretches, then the second legs of those that have one, ...
     """
@@ -188,9 +184,10 @@ def in_rounds(legs: FilterInput) -> tuple[NDArray[np.intp], NDArray[np.intp], li
     order = np.argsort(-length, kind="stable")
     first, length = first[order], length[order]
     active = np.searchsorted(-length, -np.arange(length[0]))
-    bounds = np.concatenate([[0], np.cumsum(active)]).tolist()
-    leg = np.concatenate([first[:still] + step for step, still in enumerate(active)])
-    return first, leg, [slice(begin, end) for begin, end in itertools.pairwise(bounds)]
+    bounds = np.concatenate([[0], np.cumsum(active)])
+    step = np.repeat(np.arange(active.size), active)
+    leg = first[np.arange(step.size) - bounds[step]] + step
+    return first, leg, bounds
 
 
 def filtered(legs: FilterInput) -> FilterResult:
@@ -200,7 +197,7 @@ def filtered(legs: FilterInput) -> FilterResult:
     derivatives is one matrix per leg, so a second loop with one product propagates these.
     """
     sets, count = legs.noise.shape[0], legs.relative.shape[0]
-    first, leg, rounds = in_rounds(legs)
+    first, leg, bounds = in_rounds(legs)
     finite = np.isfinite(legs.start[first])
     free = ~finite[:, 2]
     state = np.where(finite, legs.start[first], 0.0)
@@ -210,7 +207,7 @@ def filtered(legs: FilterInput) -> FilterResult:
     known = np.isfinite(legs.finish)
     of = Loop(
         leg,
-        rounds,
+        bounds,
         state,
         spread,
         legs.relative,
@@ -228,5 +225,5 @@ def filtered(legs: FilterInput) -> FilterResult:
     counted = (known & ~legs.skip[:, None])[leg]
     leave = -of.turns.swapaxes(-1, -2) * counted[:, None]
     return FilterResult(
-        of.values, of.covariances, Ways(leg, of.turns, of.carry, leave, free, rounds)
+        of.values, of.covariances, Ways(leg, of.turns, of.carry, leave, free, bounds)
     )

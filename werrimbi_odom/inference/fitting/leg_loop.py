@@ -9,6 +9,7 @@ into machine code (plain Python would take fifty times as long as the arrays).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +27,8 @@ class Loop(NamedTuple):
 
     leg: NDArray[np.intp]
     """The legs in the order of the rounds, (m,): the first of all stretches, the second ..."""
-    rounds: list[slice]
+    bounds: NDArray[np.intp]
+    """First row of each round, and the end of the last, (r + 1,)."""
     state: Floats
     """Start pose of each of j stretches, (j, 3)."""
     spread: Floats
@@ -59,11 +61,10 @@ def run_loop(of: Loop) -> None:
     if machine is None:
         loop_over_arrays(of)
         return
-    starts = np.array([0, *(now.stop for now in of.rounds)])
     spread = np.broadcast_to(of.spread, (of.noise.shape[0], *of.spread.shape[1:]))
     given = of.state, spread, of.relative, of.noise, of.finish, of.known, of.jumped, of.reading
     filled = of.values, of.covariances, of.turns, of.carry
-    machine(of.leg, starts, *map(np.ascontiguousarray, given), UNMEASURED, *filled)
+    machine(of.leg, of.bounds, *map(np.ascontiguousarray, given), UNMEASURED, *filled)
 
 
 def loop_over_arrays(of: Loop) -> None:
@@ -73,7 +74,7 @@ def loop_over_arrays(of: Loop) -> None:
     reading = np.broadcast_to(of.reading, of.noise.shape)
     identity = np.eye(3)
     kept = np.broadcast_to(identity, (of.state.shape[0], 3, 3))
-    for now in of.rounds:
+    for now in map(slice, of.bounds[:-1], of.bounds[1:]):
         own, still = of.leg[now], now.stop - now.start
         seen, leapt = of.known[own], of.jumped[own]
         state, spread = state[:, :still], spread[:, :still]
@@ -112,7 +113,7 @@ def loop_over_arrays(of: Loop) -> None:
 
 def loop_over_scalars(
     leg: NDArray[np.intp],
-    starts: NDArray[np.intp],
+    bounds: NDArray[np.intp],
     state: Floats,
     spread: Floats,
     relative: Floats,
@@ -131,8 +132,8 @@ def loop_over_scalars(
 
     Parameters
     ----------
-    starts : ndarray, shape (r + 1,)
-        First rows of the rounds; leg k of stretch j is ``leg[starts[k] + j]``.
+    bounds : ndarray, shape (r + 1,)
+        Leg k of stretch j is ``leg[bounds[k] + j]``.
     unmeasured : float
         Variance of what was not measured.
 
@@ -146,9 +147,9 @@ def loop_over_scalars(
             first = spread[group, stretch]
             xx, xy, xt = first[0, 0], first[0, 1], first[0, 2]
             yy, yt, tt = first[1, 1], first[1, 2], first[2, 2]
-            for step in range(starts.size - 1):
-                place = starts[step] + stretch
-                if place >= starts[step + 1]:
+            for step in range(bounds.size - 1):
+                place = bounds[step] + stretch
+                if place >= bounds[step + 1]:
                     break
                 row = leg[place]
                 cos, sin = math.cos(yaw), math.sin(yaw)
@@ -257,6 +258,39 @@ def loop_over_scalars(
                     yt - 0.5 * (gyx * xt + gyy * yt + gyt * tt + gtx * xy + gty * yy + gtt * yt),
                     tt - gtx * xt - gty * yt - gtt * tt,
                 )
+
+
+def rows_before(bounds: NDArray[np.intp]) -> Iterator[tuple[slice, slice]]:
+    """Of each round but the first: the rows of the legs before its own, and its own."""
+    for before, begin, end in zip(bounds[:-2], bounds[1:-1], bounds[2:], strict=True):
+        yield slice(before, before + end - begin), slice(begin, end)
+
+
+def carry_on(carry: Floats, bounds: NDArray[np.intp], change: Floats) -> None:
+    """Add to changes of the states (m, s, p), in the order of the rounds, those of the legs before.
+
+    The faster way: `carried_in_scalars`, or array by array.
+    """
+    machine = compiled(carried_in_scalars)
+    if machine is not None:
+        machine(carry, bounds, change)
+        return
+    for last, now in rows_before(bounds):
+        change[now] += carry[now] @ change[last]
+
+
+def carried_in_scalars(carry: Floats, bounds: NDArray[np.intp], change: Floats) -> None:
+    """`carry_on`, number by number."""
+    states, columns = change.shape[1], change.shape[2]
+    for step in range(1, bounds.size - 1):
+        back = bounds[step] - bounds[step - 1]
+        for row in range(bounds[step], bounds[step + 1]):
+            for to in range(states):
+                for by in range(states):
+                    share = carry[row, to, by]
+                    if share != 0.0:
+                        for column in range(columns):
+                            change[row, to, column] += share * change[row - back, by, column]
 
 
 def turn_into(turn: Floats, yaw: Floats) -> None:

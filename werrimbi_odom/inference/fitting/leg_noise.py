@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The noise of legs: closed forms of their steps, each carried to its leg's end, and summed.
 
-Twice: by arrays, and step by step in single numbers, the lines that `compiled_for` makes machine
+Twice: by arrays, and step by step in single numbers, the lines that `compiled` makes machine
 code of.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.model.compiled import compiled_for
+from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,
@@ -49,7 +49,7 @@ def noise_of_legs(
     facing = path.yaw[runs.begin] + view.yaw
     arm = complex(view.ahead, view.left) * np.exp(1j * path.yaw[runs.end])
     marker = path.position[runs.end] + arm
-    machine = compiled_for(path.motion.turn.size, step_by_step, again=True)
+    machine = compiled(step_by_step)
     if machine is None:
         found = _by_arrays(path, runs, track, facing, marker)
     else:

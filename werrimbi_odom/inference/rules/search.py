@@ -33,6 +33,11 @@ SAME_BY_RUN = 0.5
 tread) relative to the best, above which it is fitted as well. Chosen: one with half the gain may
 still be the cheaper model, as it has fewer parameters to pay for."""
 
+EXCHANGED = 0.5
+"""Share of what an effect explained in its round that another must have explained there, to be
+tried in its place once more are found. Chosen: a bump by itself explains a tenth more of a wheel
+that is oval and off its centre than the axle does; what explains less than half costs fits."""
+
 INSTEAD_FITTED = 8
 """Effects that are fitted in place of a calibration. Chosen: each costs a fit, and on one circle at
 one speed some eight effects do what unequal radii do."""
