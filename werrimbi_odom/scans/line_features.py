@@ -90,7 +90,8 @@ def line_elements(points: Floats, spacing: Floats, age: Floats) -> Elements | No
     _, cell = np.unique(cells[:, 0] * (1 << 32) + cells[:, 1], return_inverse=True)
     x, y = (points - origin).T
     count = np.bincount(cell).astype(np.float64)
-    sums = np.stack([np.bincount(cell, each) for each in (x, y, x * x, x * y, y * y, age, spacing)])
+    parts = (x, y, x * x, x * y, y * y, age, spacing)
+    sums: Floats = np.array([np.bincount(cell, each) for each in parts], dtype=np.float64)
     reach = np.clip(BEAMS * sums[6] / count, REACH, MOST_REACH)
     middles = (sums[:2] / count).T
     half = np.maximum(0.5 * reach, LEAST_REACH)
