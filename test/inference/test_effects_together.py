@@ -10,14 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of
+from test.inference.driven import run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import all_effects, find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, free, record, write_run
 from werrimbi_odom.simulation.robot_file import write_robot_file
+
+PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
 AHEAD, LEFT, ASKEW = 0.11, -0.012, 0.032
 TWINS = {"sideways_drift": "reference_yaw_offset"}
@@ -71,3 +74,23 @@ def test_the_more_important_is_told_first_though_half_of_its_law_is_not_determin
     found = diagnose(runs, ROBOT, effects)
     assert found.found == ("radius_by_channel", "oval_left_wheel")
     assert found.final.importance["radius_by_channel"] > 1e3
+
+
+@pytest.mark.parametrize("after", [0.0, 1.0])
+def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_another(
+    after: float,
+) -> None:
+    """A wheel oval, and off its centre, was told to have a bump, a wrong radius and an oval."""
+    effects = [
+        find(name) for name in ("left_tread_bump", "eccentric_left_wheel", "oval_left_wheel")
+    ]
+    runs = []
+    for seed, place in enumerate((0.3, 1.9, -2.0)):
+        twice = float(np.angle(np.exp(1j * (2.0 * place + after))))
+        off = find("eccentric_left_wheel").using(amplitude=0.5e-3, phase=place)
+        oval = find("oval_left_wheel").using(amplitude=0.9e-3, phase=twice)
+        truth = replace(PLAIN, effects=(off, oval))
+        runs += runs_of(truth, (seed,), 60)
+    found = diagnose(runs, PLAIN, effects)
+    assert set(found.found) == {"eccentric_left_wheel", "oval_left_wheel"}
+    assert found.verdict == "named"
