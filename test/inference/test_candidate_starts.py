@@ -142,7 +142,7 @@ def test_on_one_circle_at_one_speed_many_effects_are_rivals_of_unequal_wheels() 
     assert {"unequal_wheel_radii", "load_transfer"} <= set(found.rivals)
 
 
-@pytest.mark.parametrize("seed", [0, 2])
+@pytest.mark.parametrize("seed", [0, pytest.param(2, marks=pytest.mark.evidence)])
 def test_two_sizes_that_do_nearly_the_same_start_within_what_is_physical(seed: int) -> None:
     # Left turns at nearly one rate: what `sharpness` adds, `sense` takes away, but for little.
     law = find("turn_dependent_track").using(sharpness=0.02, sense=0.0)
@@ -209,7 +209,7 @@ def coarsely_counted(seed: int) -> Run:
     return Run(f"coarse_{seed}", Path(f"coarse_{seed}"), ticks, reference)
 
 
-@pytest.mark.parametrize("first", [0, 6])
+@pytest.mark.parametrize("first", [0, pytest.param(6, marks=pytest.mark.evidence)])
 def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
     """Twenty counts a turn: the score at null ended 4 ms from none, and slip was named instead."""
     found = diagnose([coarsely_counted(first + number) for number in range(3)], COARSE, LIBRARY)
@@ -245,7 +245,7 @@ def test_each_drive_s_own_delay_is_looked_for() -> None:
     assert found == pytest.approx(late, rel=0.3)
 
 
-@pytest.mark.parametrize("seed", [30, 50])
+@pytest.mark.parametrize("seed", [30, pytest.param(50, marks=pytest.mark.evidence)])
 def test_a_bump_is_fitted_beside_the_flat_across_from_it(seed: int) -> None:
     """Once a turn they are the same; the flat alone was fitted, with another radius beside it."""
     robot = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

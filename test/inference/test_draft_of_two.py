@@ -159,6 +159,7 @@ def test_lateral_slip_reads_as_a_product_where_no_library_has_it() -> None:
     assert found.law == "sideways = -0.03 * v * w"
 
 
+@pytest.mark.evidence
 def test_a_law_of_one_variable_remains_one() -> None:
     effect = (soft_tyres.using(softness=4e-3),)
     found, _ = drafted(drives_of(effect, [1, 2, 3]), drives_of(effect, [5]), ROBOT, [])

@@ -162,7 +162,9 @@ def test_where_nothing_is_measured_no_motion_is_compared(delay: float) -> None:
     assert _lag_in(silent) == pytest.approx((lag, gain))
 
 
-@pytest.mark.parametrize("seed", [5, 15, 39])
+@pytest.mark.parametrize(
+    "seed", [5, *(pytest.param(n, marks=pytest.mark.evidence) for n in (15, 39))]
+)
 def test_rare_positions_show_no_lag_that_is_not_there(seed: int) -> None:
     """A line from pose to pose was compared with wheels that turn in between.
 
@@ -184,7 +186,7 @@ def _lag_in(run: Run) -> tuple[float, float]:
     return lag_of([record])
 
 
-@pytest.mark.parametrize("delay", [LATE, -LATE])
+@pytest.mark.parametrize("delay", [LATE, pytest.param(-LATE, marks=pytest.mark.evidence)])
 def test_a_jump_is_left_out_of_a_fit_by_another_clock(delay: float) -> None:
     """The delay as fitted is another than that by which drives were cut.
 

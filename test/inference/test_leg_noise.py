@@ -45,9 +45,9 @@ def test_the_noise_of_legs_is_one_sum(
 ) -> None:
     model, runs = legs
     given = path_of(model, runs), runs, model.robot.track, extrinsics_of(model, runs)
-    with patch.object(leg_noise, "compiled_for", lambda *of, again: None):
+    with patch.object(leg_noise, "compiled", lambda function: None):
         arrays = noise_of_legs(*given)
-    with patch.object(leg_noise, "compiled_for", lambda *of, again: way):
+    with patch.object(leg_noise, "compiled", lambda function: way):
         numbers = noise_of_legs(*given)
     for one, other in zip(numbers, arrays, strict=True):
         size = np.sqrt(np.einsum("mii->mi", other))
@@ -62,9 +62,9 @@ def test_machine_code_follows_the_steps_as_arrays_do(
 ) -> None:
     model, runs = legs
     motion = path_of(model, runs).motion
-    with patch.object(recorded_propagation, "compiled_for", lambda *of, again: None):
+    with patch.object(recorded_propagation, "compiled", lambda function: None):
         position, yaw = recorded_propagation.followed(motion)
-    with patch.object(recorded_propagation, "compiled_for", lambda *of, again: way):
+    with patch.object(recorded_propagation, "compiled", lambda function: way):
         its_position, its_yaw = recorded_propagation.followed(motion)
     assert np.ptp(yaw) > 1.0
     np.testing.assert_allclose(its_position, position, rtol=0.0, atol=1e-12)
