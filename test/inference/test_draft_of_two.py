@@ -137,6 +137,7 @@ def test_what_the_engine_hides_in_two_variables_is_drafted(
     assert sides.before < 0.9 * sides.after, "the held-out error is lower than with one variable"
 
 
+@pytest.mark.evidence
 def test_what_acts_backwards_alone_is_drafted_with_its_gate() -> None:
     effect = (dug_in.using(drag=0.01),)
     found, _ = drafted(drives_of(effect, [1, 2, 3]), drives_of(effect, [5]), ROBOT, LIBRARY)
