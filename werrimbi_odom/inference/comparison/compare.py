@@ -67,12 +67,14 @@ class OfLength:
     @property
     def consistency(self) -> AtLength:
         """NEES of all legs of this length."""
-        figures = self.all.figures
-        return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
+        return self._consistency(self.all)
 
     def consistency_of(self, kind: str) -> AtLength:
         """NEES of the legs of one type of motion."""
-        figures = self.by_motion[kind].figures
+        return self._consistency(self.by_motion[kind])
+
+    def _consistency(self, of: LegFigures) -> AtLength:
+        figures = of.figures
         return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
 
     @property

@@ -9,21 +9,21 @@ itself, and beside the oval that is found next an eccentric axle does better.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Round,
     best_of_each,
+    fitted_beside,
     refit_to_rest,
 )
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
-from werrimbi_odom.inference.fitting.candidate import names_with
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
-from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_with, scores
+from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.robot import Robot
 
@@ -36,13 +36,13 @@ def exchanged(
     Unchanged, unless the other is better by more than rivals differ. What had to go is no rival of
     what took its place.
     """
-    better = [
-        (other, at)
-        for at, name in enumerate(fit.names[:-1])
-        for start in _nearly_as_good(name, rounds[at])
-        for other in _with_the_later_ones(runs, start, fit, fit.names[at + 1 :], given)
-        if other.total < fit.total - rules.RIVAL * fit.scatter
+    tried = [
+        (_with_the_later_ones(runs, start, fit, fit.names[at + 1 :], given), at)
+        for at in range(len(fit.names) - 1)
+        for start in _nearly_as_good(fit, at, rounds[at])
     ]
+    limit = fit.total - rules.RIVAL * fit.scatter
+    better = [(other, at) for other, at in tried if other is not None and other.total < limit]
     if not better:
         return fit, list(rounds)
     best, at = min(better, key=lambda each: each[0].total)
@@ -51,26 +51,26 @@ def exchanged(
     return refit_to_rest(runs, best, given), [*before, replace(rounds[at], tried=kept), *after]
 
 
-def _nearly_as_good(name: str, this: Round) -> list[Fitted]:
-    """Fits of a round that explained a good part of what the effect did that was taken."""
+def _nearly_as_good(fit: Fitted, at: int, this: Round) -> list[Fitted]:
+    """Fits of a round with what was not found, that explained a good part of what was taken did."""
     fits = [each for each in this.tried if not each.at_bound]
+    name = fit.names[at]
     taken = next((each.total for each in fits if each.names[-1] == name), this.before.total)
     least = this.before.total - rules.EXCHANGED * (this.before.total - taken)
-    return [each for each in fits if each.names[-1] != name and each.total < least]
+    found = fit.names[at:]
+    return [each for each in fits if each.names[-1] not in found and each.total < least]
 
 
 def _with_the_later_ones(
     runs: Concatenated, start: Fitted, fit: Fitted, later: Sequence[str], given: Robot
-) -> Iterator[Fitted]:
-    """The start with the effects that were found after its round, one after the other; or none."""
+) -> Fitted | None:
+    """The start with the effects that were found after its round, one after the other."""
     found: Fitted | None = start
     for name in later:
-        if found is None or start.names[-1] in later:
-            return
-        effect = applied_of(fit.point.model.robot.effects, name).effect
-        found = _beside(runs, found, effect, given)
-    if found is not None:
-        yield found
+        if found is not None:
+            effect = applied_of(fit.point.model.robot.effects, name).effect
+            found = _beside(runs, found, effect, given)
+    return found
 
 
 def _beside(runs: Concatenated, before: Fitted, effect: Effect, given: Robot) -> Fitted | None:
@@ -78,9 +78,9 @@ def _beside(runs: Concatenated, before: Fitted, effect: Effect, given: Robot) ->
     point = before.point
     held = [applied.name for applied in point.model.robot.effects]
     tried = candidates([effect], held, runs.channels, len(runs.runs))
-    for score in best_of_each(scores(runs, point, (*CALIBRATION, *before.numbers), tried)):
-        start, candidate = started_with(runs, point, score), score.candidate
-        names = names_with(before.names, candidate)
-        found = fitted(runs, start, names, parameters_with(before.numbers, candidate), given)
-        return found if found.determined and not found.at_bound else None
-    return None
+    found = best_of_each(scores(runs, point, (*CALIBRATION, *before.numbers), tried))
+    if not found:
+        return None
+    (score,) = found
+    fit = fitted_beside(runs, before, started_with(runs, point, score), score, given)
+    return fit if fit.determined and not fit.at_bound else None

@@ -141,8 +141,7 @@ def search_round(
     instead = _scores_in_place_of_sizes(runs, before, given, looked_at)
 
     def fitted_from(runs: Concatenated, start: Point, score: Score) -> Fitted:
-        numbers = parameters_with(before.numbers, score.candidate)
-        return fitted(runs, start, names_with(before.names, score.candidate), numbers, given)
+        return fitted_beside(runs, before, start, score, given)
 
     def best_fit(score: Score, runs: Concatenated) -> list[Fitted]:
         variants = {
@@ -184,6 +183,14 @@ def search_round(
         cells,
         len(looked_at),
     )
+
+
+def fitted_beside(
+    runs: Concatenated, before: Fitted, start: Point, score: Score, given: Robot
+) -> Fitted:
+    """Fit of a model and one more effect, from a start that holds both."""
+    numbers = parameters_with(before.numbers, score.candidate)
+    return fitted(runs, start, names_with(before.names, score.candidate), numbers, given)
 
 
 def as_given(point: Point, given: Robot) -> Point:

@@ -42,7 +42,7 @@ class LeftOfLegs:
 
 
 @dataclass(frozen=True, slots=True)
-class Alike:
+class NeighbourCorrelation:
     """Correlation of the innovations of neighbouring legs of the fit in one channel."""
 
     correlation: float
@@ -56,7 +56,7 @@ class WhatIsLeft:
     train: LeftOfLegs
     holdout: LeftOfLegs
     unit: Unit
-    alike: Mapping[str, Alike]
+    neighbours: Mapping[str, NeighbourCorrelation]
     """By channel that was measured: independent innovations have no correlation."""
 
     @property
@@ -67,8 +67,8 @@ class WhatIsLeft:
     @property
     def not_white(self) -> dict[str, float]:
         """Correlations beyond chance, by channel."""
-        sure = rules.SURE_WHEN_ASKED / max(len(self.alike), 1)
-        return {name: it.correlation for name, it in self.alike.items() if it.p_value < sure}
+        sure = rules.SURE_WHEN_ASKED / max(len(self.neighbours), 1)
+        return {name: it.correlation for name, it in self.neighbours.items() if it.p_value < sure}
 
 
 def what_is_left(
@@ -95,7 +95,7 @@ def what_is_left(
         if np.count_nonzero(~quiet.outlier) < rules.FEWEST_LEGS:
             return None
         found.append(LeftOfLegs(error_of(quiet, unit), promised_of(quiet, unit, wheels=False)))
-    return WhatIsLeft(found[0], found[1], unit, _alike(runs, point))
+    return WhatIsLeft(found[0], found[1], unit, _neighbours(runs, point))
 
 
 def _noise_is_known(prepared: PreparedRuns) -> bool:
@@ -107,10 +107,10 @@ def _noise_is_known(prepared: PreparedRuns) -> bool:
     )
 
 
-def _alike(runs: Concatenated, point: Point) -> dict[str, Alike]:
+def _neighbours(runs: Concatenated, point: Point) -> dict[str, NeighbourCorrelation]:
     found = unexpected(runs, point)
     white, together = found.whitened(), runs.run_of_leg[1:] == runs.run_of_leg[:-1]
-    alike = {}
+    of_channels = {}
     for column, channel in enumerate(CHANNELS):
         known = found.known[:, column]
         pairs = together & known[1:] & known[:-1]
@@ -118,5 +118,6 @@ def _alike(runs: Concatenated, point: Point) -> dict[str, Alike]:
         scale = float(np.sqrt(np.sum(one**2) * np.sum(other**2)))
         if scale > 0.0:
             size = float(np.sum(one * other)) / scale
-            alike[channel] = Alike(size, chi2_survival(one.size * size**2, 1.0))
-    return alike
+            p_value = chi2_survival(one.size * size**2, 1.0)
+            of_channels[channel] = NeighbourCorrelation(size, p_value)
+    return of_channels

@@ -128,7 +128,7 @@ def _left(left: WhatIsLeft) -> dict[str, Any]:
         side: picked(getattr(left, side), "error reference_noise:reference")
         for side in ("train", "holdout")
     }
-    neighbours = {channel: asdict(each) for channel, each in left.alike.items()}
+    neighbours = {channel: asdict(each) for channel, each in left.neighbours.items()}
     return {**picked(left, "unit is_reference_noise:is_noise"), **sides, "neighbours": neighbours}
 
 
