@@ -10,6 +10,7 @@ values.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
@@ -108,6 +109,7 @@ def fit_model(
     given: Model | None = None,
     find_jumps: bool = True,
     rounds: int = 3,
+    hopeless: float = math.inf,
 ) -> ModelFit:
     """Fit parameters and noise to all runs at once.
 
@@ -126,6 +128,8 @@ def fit_model(
         compared must exclude the same legs.
     rounds : int
         Largest number of alternations between noise and model parameters.
+    hopeless : float
+        Cost above which the first of them is the last.
     """
     given = given or point.model
     if find_jumps:
@@ -144,7 +148,7 @@ def fit_model(
         directions = determined(design, point.model.robot, directions.held if directions else ())
         model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
         point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
-        if not moved:
+        if not moved or _cost(runs, point) > hopeless:
             break
     if directions is None:
         design = stacked(runs, point, numbers)
@@ -159,7 +163,6 @@ def fit_model(
     moves = directions.matrix[:, directions.shared].any(axis=1)
     where = np.flatnonzero(moves)
     free = [design.columns[index][0] for index in where]
-    costs = Costs(runs, point)
     return ModelFit(
         point,
         tuple(free),
@@ -167,8 +170,14 @@ def fit_model(
         tuple(number for number in shared_of(numbers) if number not in free),
         directions,
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
-        float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
+        _cost(runs, point),
     )
+
+
+def _cost(runs: Concatenated, point: Point) -> float:
+    """Minus two log posterior of a point."""
+    costs = Costs(runs, point)
+    return float((costs(point.variances) + prior_cost(costs, point.variances))[0])
 
 
 def _with_fitted_noise(runs: Concatenated, point: Point) -> Point:
