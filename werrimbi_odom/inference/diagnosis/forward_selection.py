@@ -21,6 +21,7 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     cheapest_of,
     extension_p_value,
     fitted,
+    refined,
 )
 from werrimbi_odom.inference.fitting.candidate import Candidate, names_with
 from werrimbi_odom.inference.fitting.candidate_starts import (
@@ -190,7 +191,8 @@ def fitted_beside(
 ) -> Fitted:
     """Fit of a model and one more effect, from a start that holds both."""
     numbers = parameters_with(before.numbers, score.candidate)
-    return fitted(runs, start, names_with(before.names, score.candidate), numbers, given)
+    names = names_with(before.names, score.candidate)
+    return refined(runs, fitted(runs, start, names, numbers, given), given)
 
 
 def as_given(point: Point, given: Robot) -> Point:

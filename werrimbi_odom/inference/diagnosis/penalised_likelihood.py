@@ -36,6 +36,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     changed,
     own_of,
+    parameters_to_fit,
     shared_of,
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
@@ -298,7 +299,11 @@ def fitted(
         inflation_by_neighbours(runs, design, names[-1]) if by_increments and names else 1.0,
         rise,
         (
-            *(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
+            *(
+                number.name
+                for number in result.at_bound
+                if number.name not in MULTIPLIERS and not number.refines
+            ),
             *([RATIO] if unequal_beyond_physics(result.robot, given) else []),
         ),
         importance,
@@ -309,6 +314,17 @@ def fitted(
         design,
         ways.held,
     )
+
+
+def refined(runs: Concatenated, fit: Fitted, given: Robot) -> Fitted:
+    """A fit with what refines its newest law free (`Parameter.refines`), where that pays."""
+    there = {number.name for number in fit.numbers}
+    own = [number for number in parameters_to_fit(fit.newest) if number.refines]
+    more = [number for number in own if number.name not in there]
+    if not more:
+        return fit
+    wider = fitted(runs, fit.point, fit.names, (*fit.numbers, *more), given)
+    return min(fit, wider, key=lambda each: each.total)
 
 
 def _without_sizes(model: Model, given: Robot) -> Model:
