@@ -92,8 +92,10 @@ def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(
     assert abs(added.value - turning) < 4.0 * added.std < 0.4
     assert abs(told["turning"].value - turning) < 4.0 * told["turning"].std
     assert written == pytest.approx(added.value)
-    once_more = diagnose(runs[:3], found.robot, library, holdout=runs[3:])
-    assert (once_more.verdict, once_more.outdated) == ("none", ())
+    older = replace(PLAIN, effects=(find("longitudinal_slip").using(coefficient=0.04),))
+    for robot, outdated in ((found.robot, ()), (older, ("longitudinal_slip",))):
+        once_more = diagnose(runs[:3], robot, library, holdout=runs[3:])
+        assert (once_more.verdict, once_more.outdated) == ("none", outdated)
 
 
 def test_a_radius_in_degrees_is_found_as_well_as_one_that_is_right() -> None:

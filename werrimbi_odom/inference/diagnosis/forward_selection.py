@@ -75,7 +75,7 @@ def fit_calibration(
         # right but for an event, and a start with legs weighted by the event leads away from it.
         starts = [near, point] if runs.headings_alone else [near]
     fits = (fitted(runs, start, (), numbers, robot, rounds=3) for start in starts)
-    return min(fits, key=lambda fit: fit.total)
+    return refined(runs, min(fits, key=lambda fit: fit.total), robot)
 
 
 def refit_to_rest(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:

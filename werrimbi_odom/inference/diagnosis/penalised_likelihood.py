@@ -317,10 +317,18 @@ def fitted(
 
 
 def refined(runs: Concatenated, fit: Fitted, given: Robot) -> Fitted:
-    """A fit with what refines its newest law free (`Parameter.refines`), where that pays."""
+    """A fit with what refines its newest law free (`Parameter.refines`), where that pays.
+
+    Of a fit of the given robot, with what refines the laws that it holds.
+    """
     there = {number.name for number in fit.numbers}
-    own = [number for number in parameters_to_fit(fit.newest) if number.refines]
-    more = [number for number in own if number.name not in there]
+    held = [applied.effect for applied in fit.point.model.robot.effects]
+    own = [
+        number
+        for effect in ([fit.newest] if fit.names else held)
+        for number in parameters_to_fit(effect)
+    ]
+    more = [number for number in own if number.refines and number.name not in there]
     if not more:
         return fit
     wider = fitted(runs, fit.point, fit.names, (*fit.numbers, *more), given)
