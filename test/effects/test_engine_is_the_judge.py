@@ -66,7 +66,13 @@ CASES = [
     (UnequalWheelRadii(1.02), made("unequal_wheel_radii", ratio=1.02), 500),
     (WheelRadiusScale(0.98), made("wheel_radius_scale", multiplier=0.98), 500),
     (LongitudinalSlip(0.02), made("longitudinal_slip", coefficient=0.02), 5),
+    (LongitudinalSlip(0.02, 0.4), made("longitudinal_slip", coefficient=0.02, turning=0.4), 5),
     (CoulombSlip(0.1, 0.3), made("coulomb_slip", coefficient=0.1, above=0.3), 3),
+    (
+        CoulombSlip(0.1, 0.3, 0.4),
+        made("coulomb_slip", coefficient=0.1, above=0.3, turning=0.4),
+        3,
+    ),
     (LateralSlip(0.02), made("lateral_slip", creep=0.02), 50),
     (TurnDependentTrack(0.04, "sharpness"), made("turn_dependent_track", sharpness=0.04), 200),
     (TurnDependentTrack(0.04, "sense"), made("turn_dependent_track", sense=0.04), 100),

@@ -172,6 +172,23 @@ def test_friction_gives_way_in_hard_starts_alone(rate: float) -> None:
         assert behind == pytest.approx(share * c * v**2 / 2, rel=0.05, abs=1e-4)
 
 
+@pytest.mark.parametrize("turning", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize(("name", "above"), [("longitudinal_slip", 0.0), ("coulomb_slip", 0.1)])
+def test_a_start_of_a_turn_slips_by_the_moment_of_inertia_alone(
+    name: str, above: float, turning: float
+) -> None:
+    c, turned, u = 0.1, 2.0, TRACK
+    shape = {"above": above} if above else {}
+    law = find(name).using(coefficient=c, turning=turning, **shape)
+    way = plan(*turn(6.0, turned))
+    behind = track(way, rate=200.0).at(2.0)[2] - track(way, law, rate=200.0).at(2.0)[2]
+    share = max(turning - above / (u / 0.5), 0.0)
+    assert behind == pytest.approx(2.0 * share * c * u**2 / 2 / TRACK, rel=0.05, abs=1e-4)
+    ahead = plan(*line(4.0, 0.8))
+    usual = track(ahead, find(name).using(coefficient=c, **shape), rate=200.0)
+    assert np.max(np.abs(track(ahead, law, rate=200.0).x - usual.x)) < 1e-12
+
+
 def test_lateral_slip_vanishes_on_lines_and_spins() -> None:
     law = find("lateral_slip").using(creep=0.05)
     way = plan(*line(3.0), *turn(4.0), *line(-1.0))

@@ -144,6 +144,19 @@ def test_a_new_effect_brings_its_block_with_units(tmp_path: Path) -> None:
     assert text.effects[0].unknown == ("phase",)
 
 
+@pytest.mark.parametrize("text", [HOLDING, BARE])
+def test_what_refines_a_law_is_stated_where_it_is_refined(tmp_path: Path, text: str) -> None:
+    """Files of a law with fewer numbers read as before, and a fit that needs no more adds none."""
+    slip = find("longitudinal_slip")
+    plain = written(file(tmp_path, text), tmp_path, slip.using(coefficient=0.02))
+    assert "turning" not in plain.text
+    (held,) = read_robot_file(tmp_path / "new.yaml").effects
+    assert held.values == {"coefficient": 0.02, "turning": 1.0}
+    refined = written(plain, tmp_path, slip.using(coefficient=0.02, turning=0.4))
+    assert "turning: 0.4" in refined.text
+    assert refined.effects[0].values["turning"] == 0.4
+
+
 def test_a_changed_value_keeps_its_place_and_comment(tmp_path: Path) -> None:
     source = file(tmp_path)
     new = written(source, tmp_path, source.effects[0], SLIP.using(creep=0.003))

@@ -16,7 +16,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted, refined
 from werrimbi_odom.inference.fitting.candidate_starts import with_candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
@@ -95,7 +95,8 @@ class Floor:
             start = replace(fit.point, model=with_candidate(fit.point.model, score))
             own = parameters_with(fit.numbers, score.candidate)
             names = (*fit.names, effect.name)
-            fits.append(fitted(self.laid, start, names, own, robot, rounds=3))
+            fit_of_it = fitted(self.laid, start, names, own, robot, rounds=3)
+            fits.append(refined(self.laid, fit_of_it, robot))
         # A weak phase may differ from run to run or be one for all: the price tells.
         return min(fits, key=lambda one: one.total) if fits else fit
 

@@ -33,7 +33,8 @@ medians over the sets.
   there was one. *Floor*: with the true effect in the model, fitted on the seven drives.
 - A hidden effect *matters* if before is more than 1.1 times the floor; else it is *weak*.
 - *Wrong*: another name, *unknown* for an effect that the library holds, or the drives refused.
-  *Missed*: the verdict *none*.
+  *Missed*: the verdict *none*; or only what the effect extends was named (a delay, of a clock that
+  drifts), and said to be another from drive to drive.
 - *Twins* are effects that no drive can tell apart; *rivals by construction* are effects that the
   drives of the set cannot tell apart.
 - Intervals hold the true rate in at least 95 of 100 cases (Clopper and Pearson 1934).

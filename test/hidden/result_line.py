@@ -50,6 +50,8 @@ class Judged:
     rivals: tuple[str, ...] = ()
     factor: str | None = None
     depends_on: tuple[tuple[str, str], ...] = ()
+    changes: tuple[str, ...] = ()
+    """Parts and effects that are said to differ from drive to drive."""
     below_limit: bool = False
     """Of a verdict of none: whether the diagnosis itself says that one of this size would not have
     been seen in 95 of 100 cases."""
@@ -115,7 +117,8 @@ def judgement(line: Judged) -> str:
     """named, ambiguous, missed or wrong: what the diagnosis made of what was hidden.
 
     ambiguous is right for twins (of one alone both are to be told), and honest where the hidden
-    effect is among the rivals; unknown, for an effect of the library, is wrong.
+    effect is among the rivals; unknown, for an effect of the library, is wrong. An effect of which
+    only what it extends was told, and that this is another from drive to drive, was missed.
     """
     if line.verdict in ("refused", "crashed"):
         return CONFUSED
@@ -132,7 +135,19 @@ def judgement(line: Judged) -> str:
         twins = {twin for name in expected for twin in find(name).twins}
         alone = len(line.hidden) == 1  # then both twins are to be told
         return CONFUSED if alone and twins and not twins & expected else "named"
-    return CONFUSED
+    return "missed" if _without_what_extends_it(line) else CONFUSED
+
+
+def _without_what_extends_it(line: Judged) -> bool:
+    """Whether a hidden effect was told but for what it has beyond the one that it extends.
+
+    A clock whose rate is too small to be seen is late by another delay in each drive. That is true
+    where both are said; one delay for all drives is not.
+    """
+    if line.verdict != "named" or len(line.hidden) != 1 or len(line.found) != 1:
+        return False
+    (name,) = line.hidden
+    return line.found == (find(name).extends,) and line.found[0] in line.changes
 
 
 def _of_outsider(line: Judged) -> str:

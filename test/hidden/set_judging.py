@@ -101,6 +101,7 @@ def _said(what: HiddenSet, told: Followed) -> Judged:
         rivals=tuple(first["rivals"]),
         factor=factors[0] if factors else None,
         depends_on=tuple((cell["channel"], cell["variable"]) for cell in first["depends_on"][:3]),
+        changes=tuple(dict.fromkeys(each["group"] for each in first["changes"])),
         below_limit=first["verdict"] == "none" and below_limit(line, first),
         next_manoeuvre=None if move is None else move["name"],
         minutes=0.0 if move is None else move["minutes"],

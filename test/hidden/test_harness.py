@@ -35,7 +35,7 @@ from test.hidden.follow import Followed, commands, follow, typed
 from test.hidden.followed_to_rest import at_the_truth, without_detour
 from test.hidden.intervals import clopper_pearson
 from test.hidden.page import page
-from test.hidden.result_line import Judged
+from test.hidden.result_line import Judged, is_right, judgement
 from test.hidden.rules import RULES
 from test.hidden.sets import HiddenSet
 from test.hidden.table_layout import Table
@@ -242,6 +242,31 @@ def test_rivals_are_asked_for_where_the_diagnosis_says_that_it_sees_them(
 
 
 # ------------------------------------------------------------------ certainty that survives
+
+
+@pytest.mark.parametrize(
+    ("said", "how"),
+    [
+        ({"changes": ("reference_delay",)}, "missed"),
+        ({}, "wrong"),
+        ({"changes": ("left_wheel",)}, "wrong"),
+        ({"changes": ("reference_delay",), "verdict": "unknown"}, "wrong"),
+        (
+            {"changes": ("reference_delay",), "found": ("reference_delay", "longitudinal_slip")},
+            "wrong",
+        ),
+        ({"changes": ("reference_delay",), "hidden": ("longitudinal_slip",)}, "wrong"),
+    ],
+)
+def test_a_delay_that_is_another_in_each_drive_is_a_part_of_a_clock_that_drifts(
+    said: dict[str, object], how: str
+) -> None:
+    """One delay for all is not, nor is a delay where there is no clock; and it is not all."""
+    hidden, delay = ("reference_clock_drift",), "reference_delay"
+    told = {"hidden": hidden, "verdict": "named", "effect": delay, "found": (delay,)}
+    line = other(**{**told, **said})
+    assert judgement(line) == how
+    assert not is_right(line)
 
 
 def test_agreement_tells_less_sure_from_changed() -> None:

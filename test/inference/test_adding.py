@@ -22,6 +22,7 @@ from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start_values import drives_of
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
@@ -62,6 +63,39 @@ def test_a_size_is_stated_no_finer_than_its_law() -> None:
         assert each.value == pytest.approx(value, rel=0.1)
         assert each.std is not None
         assert 0.028 * value < each.std < 0.06 * value
+
+
+@pytest.mark.parametrize("turning", [0.4, 1.0])
+def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(
+    turning: float,
+) -> None:
+    """What a robot with its mass in the middle slips had two more names, by wheels' accelerations.
+
+    No number that is not needed is stated or written.
+    """
+    slip = find("longitudinal_slip").using(coefficient=0.04, turning=turning)
+    truth = replace(PLAIN, effects=(slip,))
+    runs = runs_of(truth, (1, 2, 3, 4), 60)
+    others = ("coulomb_slip", "lateral_slip", "reference_delay", "reference_heading_delay")
+    library = tuple(find(each) for each in ("longitudinal_slip", *others))
+    named = diagnose(runs[:3], PLAIN, library, holdout=runs[3:])
+    assert (named.verdict, named.found) == ("named", ("longitudinal_slip",))
+    told = values_of(named, "longitudinal_slip")
+    found = add_effects([find("longitudinal_slip")], runs[:3], PLAIN, holdout=runs[3:])
+    added = found.parameters["turning"]
+    written = found.robot.effects[0].values["turning"]
+    if turning == 1.0:
+        assert (list(told), added.value, added.std, written) == (["coefficient"], None, None, 1.0)
+        return
+    assert added.value is not None
+    assert added.std is not None
+    assert abs(added.value - turning) < 4.0 * added.std < 0.4
+    assert abs(told["turning"].value - turning) < 4.0 * told["turning"].std
+    assert written == pytest.approx(added.value)
+    older = replace(PLAIN, effects=(find("longitudinal_slip").using(coefficient=0.04),))
+    for robot, outdated in ((found.robot, ()), (older, ("longitudinal_slip",))):
+        once_more = diagnose(runs[:3], robot, library, holdout=runs[3:])
+        assert (once_more.verdict, once_more.outdated) == ("none", outdated)
 
 
 def test_a_radius_in_degrees_is_found_as_well_as_one_that_is_right() -> None:

@@ -47,7 +47,7 @@ COMPOSED: dict[str, Any] = {
     "radius_drift": {"per_metre": 0.001},
     "encoder_skew": {"delay": 0.005},
     "turn_dependent_track": {"sharpness": 0.05, "sense": 0.02},
-    "longitudinal_slip": {"coefficient": 0.02},
+    "longitudinal_slip": {"coefficient": 0.02, "turning": 0.5},
     "castor_kick": {"angle": 0.02},
     "lateral_slip.creep": 0.01,  # as `-p lateral_slip.creep:=0.01` on the command line has it
     "reference_yaw_offset": {"angle": 0.3},

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.effects.functions import limited, sign
+from werrimbi_odom.effects.wheel_force import TURNING
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -41,9 +42,14 @@ are 1 to 6 % above the truth."""
         tries=(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0, 3.0, 5.0, 8.0),
         grain=READ,
     ),
+    turning=TURNING,
 )
 def coulomb_slip(
-    travel: WheelTravel[Number], drive: Drive[Number], coefficient: float, above: float
+    travel: WheelTravel[Number],
+    drive: Drive[Number],
+    coefficient: float,
+    above: float,
+    turning: float,
 ) -> WheelTravel[Number]:
     """A wheel slips above a force, and not below it: friction by Coulomb.
 
@@ -52,8 +58,9 @@ def coulomb_slip(
     that come early. What is lost in a hard start comes back where the robot brakes as hard.
 
     Formula    travel -= coefficient * integral of (|acceleration| - above) over the path rolled,
-               where |acceleration| > above; each wheel for itself, back while it brakes
+               where |acceleration| > above; back while it brakes
                [m] = [s^2/m] * [m/s^2] * [m]
+               acceleration: turning * the wheel's own + (1 - turning) * that of the robot along
     Signature  an error along after hard starts and stops, none after gentle ones, however fast
     Ruler      drive to a speed in a gentle start, then in a hard one, past a tape, filmed: the
                hard one is behind its odometry by coefficient * (1 - above / a) * speed^2 / 2
@@ -61,9 +68,11 @@ def coulomb_slip(
                one speed: drive gentle and hard starts
     """
     share = coefficient * drive.duration
+    left, right = drive.left_acceleration, drive.right_acceleration
+    apart = 0.5 * (1.0 - turning) * (right - left)
     return WheelTravel(
-        travel.left - share * _lost(drive.left_acceleration, drive.left_smooth_speed, above),
-        travel.right - share * _lost(drive.right_acceleration, drive.right_smooth_speed, above),
+        travel.left - share * _lost(left + apart, drive.left_smooth_speed, above),
+        travel.right - share * _lost(right - apart, drive.right_smooth_speed, above),
     )
 
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from werrimbi_odom.effects.wheel_force import TURNING
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -22,17 +23,20 @@ from werrimbi_odom.model.motion import Number, WheelTravel
         bounds=(0.0, 0.3),
         says="share of a wheel's travel that is lost per acceleration of that wheel",
     ),
+    turning=TURNING,
 )
 def longitudinal_slip(
-    travel: WheelTravel[Number], drive: Drive[Number], coefficient: float
+    travel: WheelTravel[Number], drive: Drive[Number], coefficient: float, turning: float
 ) -> WheelTravel[Number]:
     """A driving tyre rolls more than it travels, a braking one less, in proportion to the force.
 
     Rubber carries a force along only by creeping. What is lost while the robot gains speed comes
     back while it brakes, so it is behind its odometry only while it moves. The coefficient is the
-    mass on the wheel over the tyre's stiffness.
+    mass on the wheel over the tyre's stiffness. The mass resists a start along; a start of a turn
+    only the moment of inertia does, so most robots, with their mass in the middle, slip less in it.
 
-    Formula    travel -= coefficient * change of (speed * |speed| / 2), each wheel for itself
+    Formula    travel -= coefficient * integral of the acceleration over the path rolled, back while
+               it brakes: turning * the wheel's own + (1 - turning) * that of the robot along
                [m] = [s^2/m] * [m^2/s^2]
     Signature  an error along that follows the acceleration; none at steady speed, none at rest
     Ruler      lay a tape along the floor and film the robot beside it: at speed it is behind its
@@ -40,10 +44,10 @@ def longitudinal_slip(
     Alike      reference_delay and encoder_skew, when driven at one speed: drive slow and fast lines
                with hard starts and stops
     """
-    return WheelTravel(
-        travel.left - coefficient * _gained(drive.left_speed),
-        travel.right - coefficient * _gained(drive.right_speed),
-    )
+    along = (1.0 - turning) * drive.speed.change
+    left = turning * _gained(drive.left_speed) + along * abs(drive.left_speed.mean)
+    right = turning * _gained(drive.right_speed) + along * abs(drive.right_speed.mean)
+    return WheelTravel(travel.left - coefficient * left, travel.right - coefficient * right)
 
 
 def _gained(speed: Span[Number]) -> Number:

@@ -211,7 +211,8 @@ def _change_effect(block: _Block, applied: AppliedEffect, behind: int, step: str
     for key in [name] if holder is not block else there.values():
         block.cut(key)
     if known:
-        lines = [_line(step + key, value, declared[key]) for key, value in known.items()]
+        stated = _stated(known, declared)
+        lines = [_line(step + key, value, declared[key]) for key, value in stated.items()]
         block.insert(behind, [f"{name}:", *lines])
     return behind
 
@@ -228,8 +229,18 @@ def _with_effects(block: dict[str, Any], effects: Sequence[AppliedEffect]) -> di
         dotted = [key for key in new if key.startswith(f"{name}.")]
         own = new.pop(name, None) or {key.partition(".")[2]: new.pop(key) for key in dotted}
         if known:
-            new[name] = _needed(own, known, applied.effect.parameters) if own else known
+            declared = applied.effect.parameters
+            new[name] = _needed(own, known, declared) if own else _stated(known, declared)
     return new
+
+
+def _stated(known: Mapping[str, float], declared: Mapping[str, Parameter]) -> dict[str, float]:
+    """Values of a new block: all but what refines a law, where that is not refined."""
+    return {
+        name: value
+        for name, value in known.items()
+        if not (declared[name].refines and value == declared[name].null)
+    }
 
 
 def _needed(

@@ -41,6 +41,9 @@ class Parameter:
         determine the law's: a law is a form, and is driven by speeds and accelerations of counters.
         Of a threshold the width of its smooth onset, since those are too coarsely quantised for a
         sharp edge. A fit states no value more precisely than this.
+    refines : bool
+        A shape parameter whose null is what a law with fewer numbers has. A fit frees it only where
+        it pays its penalty; else it stays at null, and is neither reported nor written.
     """
 
     unit: str
@@ -52,6 +55,7 @@ class Parameter:
     tries: tuple[float, ...] = ()
     as_base: bool = False
     grain: float = 0.0
+    refines: bool = False
 
     @property
     def scale(self) -> float:

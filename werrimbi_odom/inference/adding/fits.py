@@ -26,7 +26,7 @@ from werrimbi_odom.inference.adding.start_values import (
     starts,
 )
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of, refined
 from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import Model, changed
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -167,13 +167,13 @@ def _without(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fi
 
 
 def _well(drives: FitDrives, start: Start, given: Robot) -> Fitted:
-    """A fit from a start; phases stuck at half a turn are moved across it."""
+    """A fit from a start, refined; phases stuck at half a turn are moved across it."""
     fit = drives.fit(start.point, start.names, start.numbers, given)
     turned = without_phases_stuck(fit.point.model, fit.numbers)
-    if turned is None:
-        return fit
-    again = drives.fit(replace(fit.point, model=turned), start.names, start.numbers, given)
-    return min(fit, again, key=lambda each: each.cost)
+    if turned is not None:
+        again = drives.fit(replace(fit.point, model=turned), start.names, start.numbers, given)
+        fit = min(fit, again, key=lambda each: each.cost)
+    return refined(drives.laid, fit, given)
 
 
 def _pruned(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:

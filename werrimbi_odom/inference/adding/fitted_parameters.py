@@ -106,10 +106,12 @@ def with_other_sign(
 def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> Remark:
     name = number.name.rpartition(".")[2]
     # A per-run parameter may be an angle round a wheel, which has no bounds.
-    is_place = effect.parameters[name].per_run and effect.parameters[name].unit == "rad"
-    if not is_determined(effect.parameters[name], value, std):
+    item = effect.parameters[name]
+    is_place = item.per_run and item.unit == "rad"
+    if not is_determined(item, value, std):
         return "undetermined"
-    return "bound" if not is_place and _at_bound(value, effect.parameters[name]) else "fitted"
+    free = is_place or item.refines
+    return "bound" if not free and _at_bound(value, item) else "fitted"
 
 
 def _at_bound(value: float, item: Parameter) -> bool:

@@ -19,7 +19,7 @@ import numpy as np
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import base_name
 from werrimbi_odom.inference.diagnosis.forward_selection import best_of_each
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted, refined
 from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -67,7 +67,7 @@ def _rivals(
     for score in near[: rules.INSTEAD_FITTED]:
         start = started_with(runs, point, score)
         free = parameters_with(numbers, score.candidate)
-        other = fitted(runs, start, (score.candidate.name,), free, given)
+        other = refined(runs, fitted(runs, start, (score.candidate.name,), free, given), given)
         if (
             other.determined
             and not other.at_bound

@@ -76,6 +76,8 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             std = base.std / base.value * size
             found[parameter] = Value(size, std, item.unit, item.says, item.null)
             continue
+        if item.refines and f"{name}.{parameter}" not in spread:
+            continue
         per_run = f"{name}.{parameter}" in anew
         untold = f"{name}.{parameter}" in fit.held
         std = math.nan if per_run else spread.get(f"{name}.{parameter}", math.nan)

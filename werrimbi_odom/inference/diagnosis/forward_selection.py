@@ -21,6 +21,7 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     cheapest_of,
     extension_p_value,
     fitted,
+    refined,
 )
 from werrimbi_odom.inference.fitting.candidate import Candidate, names_with
 from werrimbi_odom.inference.fitting.candidate_starts import (
@@ -74,7 +75,7 @@ def fit_calibration(
         # right but for an event, and a start with legs weighted by the event leads away from it.
         starts = [near, point] if runs.headings_alone else [near]
     fits = (fitted(runs, start, (), numbers, robot, rounds=3) for start in starts)
-    return min(fits, key=lambda fit: fit.total)
+    return refined(runs, min(fits, key=lambda fit: fit.total), robot)
 
 
 def refit_to_rest(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
@@ -196,7 +197,8 @@ def fitted_beside(
     least = score.degrees * min(before.penalty_of_one, before.penalty_of_own)
     hopeless = before.cost + (rules.RIVAL - least) * before.scatter
     names = names_with(before.names, score.candidate)
-    return fitted(runs, start, names, numbers, given, hopeless=hopeless)
+    fit = fitted(runs, start, names, numbers, given, hopeless=hopeless)
+    return refined(runs, fit, given)
 
 
 def as_given(point: Point, given: Robot) -> Point:

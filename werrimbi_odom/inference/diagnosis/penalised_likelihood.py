@@ -36,6 +36,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
     changed,
     own_of,
+    parameters_to_fit,
     shared_of,
 )
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
@@ -304,7 +305,11 @@ def fitted(
         inflation_by_neighbours(runs, design, names[-1]) if by_increments and names else 1.0,
         rise,
         (
-            *(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
+            *(
+                number.name
+                for number in result.at_bound
+                if number.name not in MULTIPLIERS and not number.refines
+            ),
             *([RATIO] if unequal_beyond_physics(result.robot, given) else []),
         ),
         importance,
@@ -315,6 +320,32 @@ def fitted(
         design,
         ways.held,
     )
+
+
+def refined(runs: Concatenated, fit: Fitted, given: Robot) -> Fitted:
+    """A fit with what refines its newest law free (`Parameter.refines`), where that pays.
+
+    Of a fit of the given robot, with what refines the laws that it holds. Also by its own
+    deviation, as in `add`: a freer fit may be cheaper because it ended in another minimum.
+    """
+    there = {number.name for number in fit.numbers}
+    held = [applied.effect for applied in fit.point.model.robot.effects]
+    more = [
+        number
+        for effect in ([fit.newest] if fit.names else held)
+        for number in parameters_to_fit(effect)
+        if number.refines and number.name not in there
+    ]
+    if not more:
+        return fit
+    wider = fitted(runs, fit.point, fit.names, (*fit.numbers, *more), given)
+    own = [number.name for number in more]
+    rises = []
+    for applied in wider.point.model.robot.effects:
+        asked = [key for key in applied.values if f"{applied.name}.{key}" in own]
+        rises.append(_wald(applied.effect, asked, wider.design, wider.covariance, wider.point)[0])
+    pays = sum(rises) > wider.penalty_of_one * len(more) and wider.total < fit.total
+    return wider if pays else fit
 
 
 def _without_sizes(model: Model, given: Robot) -> Model:

@@ -52,6 +52,8 @@ class FreeParameter:
     """Standard deviation above which the data add nothing to prior knowledge."""
     per_run: bool = False
     """Whether each run has its own value."""
+    refines: bool = False
+    """Whether it is free only where it pays its penalty (`Parameter.refines`)."""
 
     def bounds_about(self, value: float) -> tuple[float, float]:
         """Bounds, widened to include a robot file's value beyond them."""
@@ -88,6 +90,7 @@ def parameters_to_fit(effect: Effect, shared: Sequence[str] = ()) -> tuple[FreeP
             item.bounds,
             0.5 * (item.bounds[1] - item.bounds[0]),
             item.per_run and name not in shared,
+            item.refines,
         )
         for name, item in effect.parameters.items()
         if not item.as_base

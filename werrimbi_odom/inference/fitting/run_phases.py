@@ -71,7 +71,8 @@ def own_parameters(point: Point) -> tuple[FreeParameter, ...]:
 def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[FreeParameter, ...]]:
     """Point with the per-run values of the robot's effects, and all their free parameters.
 
-    A phase can be anywhere, so it is found by its score, which needs no start value.
+    A phase can be anywhere, so it is found by its score, which needs no start value. What refines a
+    law is free where the robot has a value of it.
     """
     numbers: list[FreeParameter] = []
     extended = extended_by(point.model.robot.effects)
@@ -83,7 +84,13 @@ def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Free
             for name, item in applied.effect.parameters.items()
             if item.per_run and name not in applied.unknown
         )
-        numbers += parameters_to_fit(applied.effect, shared)
+        as_usual = {
+            f"{applied.name}.{name}"
+            for name, item in applied.effect.parameters.items()
+            if item.refines and applied.values[name] == item.null
+        }
+        own = parameters_to_fit(applied.effect, shared)
+        numbers += (number for number in own if number.name not in as_usual)
         if applied.unknown:
             point = replace(point, model=_learnt(runs, point, applied))
     return point, tuple(numbers)

@@ -243,7 +243,11 @@ def _slope(
 def parameters_with(
     numbers: Sequence[FreeParameter], candidate: Candidate
 ) -> tuple[FreeParameter, ...]:
-    """Parameters that a fit may change, with those of a candidate in place of what it extends."""
+    """Parameters that a fit may change, with those of a candidate in place of what it extends.
+
+    What refines its law is freed later, where it pays (`refined`).
+    """
     replaced = candidate.effect.extends
     others = [each for each in numbers if each.name.rpartition(".")[0] != replaced]
-    return (*others, *parameters_to_fit(candidate.effect, candidate.shared))
+    own = parameters_to_fit(candidate.effect, candidate.shared)
+    return (*others, *(each for each in own if not each.refines))

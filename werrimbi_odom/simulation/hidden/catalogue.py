@@ -124,6 +124,11 @@ def _either(rng: Rng) -> bool:
     return bool(rng.integers(2))
 
 
+def _inertia(rng: Rng) -> float:
+    """Moment of inertia over mass * (base / 2)^2, of a robot with its masses between its wheels."""
+    return float(rng.uniform(0.3, 1.0))
+
+
 def _tread_bump(side: Side, thickness: float, rng: Rng) -> TreadBump:
     """A bump that covers 30 to 90 degrees of the wheel."""
     return TreadBump(side, thickness, float(rng.uniform(0.5, 1.6)), _anywhere(rng))
@@ -175,8 +180,8 @@ CATALOGUE: tuple[Entry, ...] = (
             "m", 3e-4, 1.5e-3, "left axle off the wheel's centre", signed=False),
     Entry("eccentric_right_wheel", lambda s, rng: EccentricWheel("right", s, _anywhere(rng)),
             "m", 3e-4, 1.5e-3, "right axle off the wheel's centre", signed=False),
-    Entry("longitudinal_slip", lambda s, rng: LongitudinalSlip(s), "s^2/m", 0.003, 0.03,
-            "share of a wheel's travel lost per its acceleration", signed=False),
+    Entry("longitudinal_slip", lambda s, rng: LongitudinalSlip(s, _inertia(rng)), "s^2/m", 0.003,
+            0.03, "share of a wheel's travel lost per its acceleration", signed=False),
     Entry("lateral_slip", lambda s, rng: LateralSlip(s), "s", 0.002, 0.02,
             "outward creep per speed times yaw rate", signed=False),
     Entry("turn_dependent_track",
@@ -230,7 +235,8 @@ CATALOGUE: tuple[Entry, ...] = (
             "thickness of a bump on the right tread, or depth of a flat"),
     Entry("reference_gyro_drift", lambda s, rng: WarmingGyro(s), "rad/s^2", 1e-5, 1e-4,
             "growth of the bias of the reference's heading", signed=False, within=(-1e-3, 1e-3)),
-    Entry("coulomb_slip", lambda s, rng: CoulombSlip(s, float(rng.uniform(0.3, 0.6))), "s^2/m",
+    Entry("coulomb_slip",
+            lambda s, rng: CoulombSlip(s, float(rng.uniform(0.3, 0.6)), _inertia(rng)), "s^2/m",
             0.02, 0.15, "share of a wheel's travel lost per acceleration above a threshold",
             signed=False),
     _mistake("wheels_swapped", lambda rng: WheelsSwapped(), "left and right exchanged"),

@@ -24,10 +24,13 @@ class LongitudinalSlip(Peculiarity):
     coefficient: float
     """Share of the travel lost per acceleration of the wheel [s^2/m]. For a tyre of stiffness C
     under a mass m it is m / C."""
+    turning: float = 1.0
+    """Moment of inertia about the vertical over mass * (base / 2)^2: 1 with all mass over the
+    wheels, 0 with all of it between them."""
 
     def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Each wheel lags by coefficient * acceleration * path."""
-        return _falling_back(self.coefficient, 0.0, robot)
+        return _falling_back(self.coefficient, 0.0, self.turning, robot)
 
 
 @dataclass(frozen=True)
@@ -38,22 +41,29 @@ class CoulombSlip(Peculiarity):
     """Share of the travel lost per acceleration above the threshold [s^2/m]."""
     above: float
     """Threshold of the wheel's acceleration [m/s^2]."""
+    turning: float = 1.0
+    """As of `LongitudinalSlip`."""
 
     def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
         """Each wheel lags by coefficient * (|acceleration| - above) * path."""
-        return _falling_back(self.coefficient, self.above, robot)
+        return _falling_back(self.coefficient, self.above, self.turning, robot)
 
 
-def _falling_back(coefficient: float, above: float, robot: TrueRobot) -> Shifter:
-    """Lag of each wheel, from the part of its acceleration above a threshold [m/s^2]."""
+def _falling_back(coefficient: float, above: float, turning: float, robot: TrueRobot) -> Shifter:
+    """Lag of each wheel, from the part above a threshold of its force over half the mass [m/s^2].
+
+    The force of mass m and moment of inertia I on the two wheels is m a / 2 -+ I alpha / base.
+    """
     before = np.zeros(2)
 
     def shift(stride: Stride) -> Shift:
         nonlocal before
         travel = np.array((stride.left, stride.right))
-        acceleration = (travel - before) / stride.period**2
+        left, right = (travel - before) / stride.period**2
         before = travel
-        beyond = np.sign(acceleration) * np.maximum(np.abs(acceleration) - above, 0.0)
+        along, about = (left + right) / 2, (right - left) / 2
+        force = along + turning * about * np.array((-1.0, 1.0))
+        beyond = np.sign(force) * np.maximum(np.abs(force) - above, 0.0)
         left, right = -coefficient * beyond * np.abs(travel)
         return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
 
