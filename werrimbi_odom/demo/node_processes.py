@@ -125,10 +125,7 @@ class Stage:
     def until(self, done: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
         """Process messages until a condition is true.
 
-        Raises
-        ------
-        InputError
-            If a node ended, or it takes too long.
+        InputError if a node ended, or it takes too long.
         """
         until = clock.monotonic() + seconds
         while not done():

@@ -118,19 +118,10 @@ def _group(row: Row, looks: Mapping[str, tuple[str, str]]) -> str:
 
 
 def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[Path]:
-    """Write the report; return the written files.
+    """Write the report as .html, or the figure alone as .pdf or .png; return the written files.
 
-    Parameters
-    ----------
-    path : Path
-        .html for a page, .pdf or .png for the figure alone.
-    made : mapping of str to str
-        Provenance: command, files, options.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written, or a picture is requested and there is nothing to draw.
+    `made` is the provenance: command, files, options. InputError if it cannot be written, or a
+    picture is requested and there is nothing to draw.
     """
     document = replace(document_of(fleet), made=made)
     if path.suffix.lower() in (".pdf", ".png") and fleet_figure(fleet) is None:

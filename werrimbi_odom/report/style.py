@@ -70,12 +70,8 @@ def plot(
 ) -> None:
     """Add lines (if `line` is given), marks (if `marker` is) or both.
 
-    Parameters
-    ----------
-    name, group, shown
-        Name in the legend, its group there, and whether it is listed.
-    hover : str, optional
-        Text shown by the pointer, a template of plotly's; "" for none, None for plotly's own.
+    `name`, `group` and `shown` are for the legend. `hover` is the text shown by the pointer, a
+    template of plotly's; "" for none, None for plotly's own.
     """
     mode = "+".join(f"{look}s" for look in ("line", "marker") if look in looks)
     shows = {"hovertemplate": hover if hover and "<extra>" in hover else f"{hover}<extra></extra>"}

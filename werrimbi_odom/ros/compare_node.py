@@ -51,10 +51,7 @@ PERIOD = 1.0
 class CompareNode(Node):  # type: ignore[misc]
     """Compares `odom` with `reference`, leg by leg.
 
-    Raises
-    ------
-    InputError
-        If a parameter or a QoS override is invalid.
+    InputError if a parameter or a QoS override is invalid.
     """
 
     def __init__(self) -> None:

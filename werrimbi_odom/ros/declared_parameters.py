@@ -20,10 +20,7 @@ from werrimbi_odom.files.node_parameter import NodeParameter, Value
 def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
     """Declare every parameter, with the values that the node was started with.
 
-    Raises
-    ------
-    InputError
-        If any is unknown or invalid; the message names all of them.
+    InputError if any is unknown or invalid; the message names all of them.
     """
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Given).items()}

@@ -142,10 +142,7 @@ def limits_of(values: Mapping[str, Value]) -> Limits:
 def area_of(values: Mapping[str, Value]) -> Area:
     """Area in which the robot must stay.
 
-    Raises
-    ------
-    InputError
-        If no area is given, or not all sides of a rectangle.
+    InputError if no area is given, or not all sides of a rectangle.
     """
     sides = {name: _number(values, f"area_{name}") for name in ("ahead", "behind", "left", "right")}
     radius = _number(values, "area_radius")

@@ -38,14 +38,8 @@ loses no motion, and a radio link loses some."""
 class Health:
     """Counts since the start of the node, and their evaluation over the last second.
 
-    Parameters
-    ----------
-    logger : rclpy logger
-        Logs the first rejection of each cause; the rest is only counted.
-    topics : tuple of str
-        Resolved names of the required topics.
-    silent_after : float
-        Time without a message [s] after which a topic counts as silent.
+    The first rejection of each cause is logged; the rest is only counted. A topic counts as silent
+    `silent_after` seconds without a message.
     """
 
     def __init__(self, logger: Any, topics: tuple[str, ...], silent_after: float) -> None:

@@ -30,10 +30,7 @@ _TURNS = ((0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.5, 2.0), (-1.0, -1.0), (100.0,
 def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
     """Simulate a robot on every kind of piece.
 
-    Raises
-    ------
-    InputError
-        If pose, twist or a covariance is not finite.
+    InputError if pose, twist or a covariance is not finite.
     """
     odometer = Odometer(robot, tolerance)
     left = right = time = 0.0
@@ -71,13 +68,7 @@ class Finished(NamedTuple):
 
 
 class LiveOdometer:
-    """Pose of the robot, reading by reading.
-
-    Parameters
-    ----------
-    robot, tolerance, limits
-        As for `Odometer`.
-    """
+    """Pose of the robot, reading by reading."""
 
     def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
         self.pose = Pose()
@@ -119,11 +110,8 @@ class LiveOdometer:
     def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
         """Process a reading; return None for the first, and for one that is rejected.
 
-        Raises
-        ------
-        InputError
-            If the result is not finite, for example from a user's effect at an impossible speed.
-            The pose is then unchanged.
+        InputError if the result is not finite, for example from a user's effect at an impossible
+        speed. The pose is then unchanged.
         """
         if self._origin is None:
             self._origin = stamp.sec

@@ -46,10 +46,7 @@ DIAGNOSTICS_EVERY = 5
 class OdomNode(Node):  # type: ignore[misc]
     """Wheel odometry as a ROS 2 node.
 
-    Raises
-    ------
-    InputError
-        If a parameter is missing, unknown or invalid; the message names all of them.
+    InputError if a parameter is missing, unknown or invalid; the message names all of them.
     """
 
     def __init__(self) -> None:

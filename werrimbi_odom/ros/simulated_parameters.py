@@ -105,10 +105,7 @@ PARAMETERS: tuple[NodeParameter, ...] = (
 def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
     """The simulated robot, its hidden effects, and the nominal robot.
 
-    Raises
-    ------
-    InputError
-        If the effect to hide is unknown, or mujoco is not installed.
+    InputError if the effect to hide is unknown, or mujoco is not installed.
     """
     try:
         from werrimbi_odom import simulation

@@ -66,12 +66,7 @@ def corridor_with_cupboards(length: float = 40.0, width: float = 2.0, seed: int 
 def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
     """A furnished room around a path that keeps clear of the path.
 
-    Parameters
-    ----------
-    x, y : ndarray
-        The path [m].
-    margin : float
-        Least distance from the path to a wall [m]; cupboards take up to half of it.
+    `margin` is the least distance from the path to a wall [m]; cupboards take up to half of it.
     """
     rng = np.random.default_rng([seed, 80])
     wide = margin + rng.uniform(0.0, 0.6, 4)

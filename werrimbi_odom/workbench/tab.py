@@ -242,10 +242,7 @@ class Opening:
     async def result(self) -> Shared:
         """The result, when ready; cancelling one wait does not affect the others.
 
-        Raises
-        ------
-        InputError
-            If the drives cannot be used.
+        InputError if the drives cannot be used.
         """
         if self._task is None:
             self._task = asyncio.create_task(self._finished())

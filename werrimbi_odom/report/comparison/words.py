@@ -41,14 +41,8 @@ def words_of(
 ) -> tuple[Paragraph, ...]:
     """Summary of a comparison.
 
-    Parameters
-    ----------
-    next_step : str
-        Command that searches for a missing effect; "" to omit it.
-    verdict : Verdict, optional
-        The verdict, if already known.
-    command : str
-        Full command of the next step.
+    `next_step` is the command that searches for a missing effect, "" to omit it, and `command` the
+    full command of the next step.
     """
     verdict = verdict or verdict_of(comparison)
     said = [headline(comparison, verdict)]
