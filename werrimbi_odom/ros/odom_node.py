@@ -28,7 +28,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import doubtful_sizes
 from werrimbi_odom.ros import counter_inputs, odom_parameters
 from werrimbi_odom.ros.diagnostics import diagnostics_publisher, status_of, tell
-from werrimbi_odom.ros.input_health import Health
+from werrimbi_odom.ros.input_health import OF_POSE, Health
 from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
@@ -128,7 +128,8 @@ class OdomNode(Node):  # type: ignore[misc]
         try:
             pose, covariance = pose_from(message, self._frame)
         except InputError as error:
-            self._health.refuse_pose(*error.args)
+            cause, detail = error.args
+            self._health.refuse(cause, detail, OF_POSE)
             return
         self._keep(self._tracker.set_pose(pose, covariance))
 
@@ -188,17 +189,7 @@ class OdomNode(Node):  # type: ignore[misc]
         )
 
     def _publish_status(self) -> None:
-        tracker, name = self._tracker, f"{full_name(self)}: estimate"
-        self._status.publish(
-            status_of(
-                name,
-                tracker.pose,
-                tracker.covariance,
-                tracker.piece,
-                tracker.distance,
-                tracker.mean_shift,
-            )
-        )
+        self._status.publish(status_of(f"{full_name(self)}: estimate", self._tracker))
 
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"

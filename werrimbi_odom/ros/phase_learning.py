@@ -20,6 +20,7 @@ from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import counter_inputs, planar
+from werrimbi_odom.ros.input_health import NOT_LEARNT
 from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
@@ -126,11 +127,11 @@ class Learning(NoLearning):
 
     def _see_imu(self, message: Any) -> None:
         if message.angular_velocity_covariance[0] < 0.0:  # REP-145: the Imu does not measure this
-            self._health.refuse_to_learn("no angular velocity", "the Imu measures none")
+            self._health.refuse("no angular velocity", "the Imu measures none", NOT_LEARNT)
             return
         rate = self._gyro.rate(message)
         if not abs(rate) < FASTEST:
-            self._health.refuse_to_learn("rate out of range", f"{rate} rad/s")
+            self._health.refuse("rate out of range", f"{rate} rad/s", NOT_LEARNT)
             return
         if not self._done:
             self._learner.see_rate(self._time_of(message), rate)
@@ -146,7 +147,8 @@ class Learning(NoLearning):
             try:
                 yaw = planar.yaw_of(orientation, slack=1.0)
             except InputError as error:
-                self._health.refuse_to_learn(*error.args)
+                cause, detail = error.args
+                self._health.refuse(cause, detail, NOT_LEARNT)
                 return
             self._learner.see_yaw(self._time_of(message), yaw)
 

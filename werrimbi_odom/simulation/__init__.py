@@ -47,8 +47,7 @@ from .manoeuvres import (
 )
 from .recorder import record
 from .recording import Recording, write_run
-from .robot import Nominal, TrueRobot
-from .robot_file import write_robot_file
+from .robot import Nominal, TrueRobot, write_robot_file
 from .sensors import ReferenceSensor
 from .sessions import drives, session
 

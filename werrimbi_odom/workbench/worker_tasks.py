@@ -13,7 +13,7 @@ from werrimbi_odom.inference.diagnosis.response_curve import before_after
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.progress import Show
-from werrimbi_odom.report.diagnosis.before_after import before_after_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure
 from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
 from werrimbi_odom.workbench.loaded_input import Opened, split
 from werrimbi_odom.workbench.session import Diagnosed, ModelVersion

@@ -8,6 +8,7 @@ Each is the formula of the effect's own Ruler section (`werrimbi explain`) at th
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 
 from werrimbi_odom.effects.lookup import find
@@ -28,7 +29,7 @@ def expected_words(name: str, values: Values, robot: Robot) -> str:
 
     Values are by the effect's parameters; per-run parameters are NaN or absent.
     """
-    words = _EXPECTED.get(name)
+    words = _EXPECTED.get(re.sub("(left|right)_", "", name))
     if words is None or not all(map(math.isfinite, _needed(name, values))):
         return ""
     return f"expect {words(values, robot)}"
@@ -179,16 +180,11 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "reference_delay": _seen_late,
     "reference_lever_arm": _arm,
     "radius_drift": _drift,
-    "left_missed_ticks": _missed,
-    "right_missed_ticks": _missed,
-    "left_backlash": lambda values, robot: _length(values["travel"]),
-    "right_backlash": lambda values, robot: _length(values["travel"]),
-    "eccentric_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "eccentric_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "oval_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "oval_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "left_tread_bump": lambda values, robot: _bump(values["height"]),
-    "right_tread_bump": lambda values, robot: _bump(values["height"]),
+    "missed_ticks": _missed,
+    "backlash": lambda values, robot: _length(values["travel"]),
+    "eccentric_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "oval_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "tread_bump": lambda values, robot: _bump(values["height"]),
     "reference_clock_drift": lambda values, robot: (
         f"{1000.0 * 120.0 * values['rate']:.0f} ms after two minutes"
     ),
