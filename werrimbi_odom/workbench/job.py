@@ -88,7 +88,7 @@ class Job:
 
     def ask(self, given: Recordings) -> None:
         """Send the task to a process that was started."""
-        from werrimbi_odom.workbench.crossing import packed
+        from werrimbi_odom.workbench.pickling import packed
 
         data = packed((self.task, given), {})
         # The process may still be importing, and a pipe blocks until it reads.
@@ -122,7 +122,7 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
-        from werrimbi_odom.workbench.crossing import unpacked
+        from werrimbi_odom.workbench.pickling import unpacked
 
         while True:
             what, value, words = receiving.recv()
