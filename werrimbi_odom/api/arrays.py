@@ -56,10 +56,7 @@ def write_run(
 
 
 def ticks_of(
-    t: ArrayLike,
-    left: ArrayLike,
-    right: ArrayLike,
-    channels: Mapping[str, ArrayLike] | None = None,
+    t: ArrayLike, left: ArrayLike, right: ArrayLike, channels: Mapping[str, ArrayLike] | None = None
 ) -> Ticks:
     """Check and convert arrays of ticks; for their meaning see `write_run`.
 

@@ -8,7 +8,7 @@ Only the number of drawn points is reduced; statistics are of all data.
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,6 +80,11 @@ def plot(
     figure.add_scatter(
         x=x, y=y, mode=mode, name=name, legendgroup=group, showlegend=shown, **shows, **looks
     )
+
+
+def apart(starts: Iterable[object], ends: Iterable[object]) -> list[object]:
+    """A coordinate of separate lines, for `plot`: from each start to its end, then a gap."""
+    return [each for line in zip(starts, ends, strict=True) for each in (*line, None)]
 
 
 def error_bars(

@@ -17,12 +17,7 @@ from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import capital, counted, length, listed, two_digits
-from werrimbi_odom.report.phrases import (
-    left_out_words,
-    leg_words,
-    rarer_than_asked,
-    remark_words,
-)
+from werrimbi_odom.report.phrases import left_out_words, leg_words, rarer_than_asked, remark_words
 
 _CHANNELS = {
     "along": "the error along the way",
