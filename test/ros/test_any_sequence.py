@@ -167,7 +167,7 @@ class Driven:
         self.node._publish_status()
         self.node._show_open_piece()
         self.node._report()
-        tally = self.node._tracker.tally
+        tally = self.node._tracker.odometer.tally
         counts = self.node._health._counts(tally, self.node._input.tally())
         ends = ["published", "refused", "duplicates", "out of order", "not finite", "implausible"]
         if self.kind == "int64_pair":

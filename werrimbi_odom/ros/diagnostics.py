@@ -54,10 +54,11 @@ def tell(log: Any, words: str, *, fine: bool) -> None:
         log.warning(words)
 
 
-def status_of(name: str, odometer: LiveOdometer) -> DiagnosticStatus:
+def status_of(name: str, tracker: LiveOdometer) -> DiagnosticStatus:
     """Create a status message from the present estimate, which is in the odometry frame."""
-    pose, covariance, piece = odometer.pose, odometer.covariance, odometer.piece
-    distance, mean_shift = odometer.distance, odometer.mean_shift
+    pose, odometer = tracker.pose, tracker.odometer
+    covariance, piece, distance = odometer.covariance(), odometer.piece, odometer.distance
+    mean_shift = odometer.errors().mean_shift
     along, across = sigmas_along_and_across(covariance, pose.yaw)
     heading = math.degrees(math.sqrt(covariance.yawyaw))
     values = {

@@ -35,7 +35,7 @@ from werrimbi_odom.ros import drive_parameters, planar
 from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.topics import full_name, others_on, publisher, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 

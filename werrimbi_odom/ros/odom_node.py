@@ -33,7 +33,7 @@ from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.phase_learning import learning_of, status_of_effects
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.topics import Company, full_name, publisher, subscribe, transform_sender
 
@@ -55,9 +55,7 @@ class OdomNode(Node):  # type: ignore[misc]
         values, robot, limits = self._settings.values, self._settings.robot, self._settings.limits
         self._changeable = odom_parameters.changeable(self._settings.effects)
         self._frame = str(values["odom_frame_id"])
-        self._topics = tuple(
-            self.resolve_topic_name(name) for name in counter_inputs.topics_of(values)
-        )
+        self._topics = tuple(map(self.resolve_topic_name, counter_inputs.kind_of(values)[1]))
         self._tracker = LiveOdometer(robot, self._settings.tolerance, limits)
         self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
         self._trail = PieceTrail(self._frame, robot.track)
@@ -183,9 +181,9 @@ class OdomNode(Node):  # type: ignore[misc]
         self._pieces.publish(self._trail.everything(self._tracker.stamp))
 
     def _show_open_piece(self) -> None:
-        tracker = self._tracker
+        tracker, odometer = self._tracker, self._tracker.odometer
         self._pieces.publish(
-            self._trail.unfinished(tracker.stamp, tracker.piece, tracker.covariance)
+            self._trail.unfinished(tracker.stamp, odometer.piece, odometer.covariance())
         )
 
     def _publish_status(self) -> None:
@@ -198,7 +196,7 @@ class OdomNode(Node):  # type: ignore[misc]
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
         self._foreign = self._health.foreign
         crowded = self._company.crowded
-        tally, counts = self._tracker.tally, self._input.tally()
+        tally, counts = self._tracker.odometer.tally, self._input.tally()
         status = self._health.report(name, tally, counts, effects, crowded, wrong)
         if status.level != self._level:
             self._level = status.level

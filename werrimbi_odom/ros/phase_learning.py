@@ -77,16 +77,17 @@ class Learning(NoLearning):
         """Parameters that are about to be set by the node itself."""
         message_type, see = {
             "imu": (Imu, self._see_imu),
-            "pose_stamped": (PoseStamped, self._see_pose),
-            "odometry": (Odometry, self._see_odometry),
+            "pose_stamped": (PoseStamped, lambda m: self._see_yaw(m, m.pose.orientation)),
+            "odometry": (Odometry, lambda m: self._see_yaw(m, m.pose.pose.orientation)),
         }[kind]
         subscribe(wiring.node, message_type, topic, see, overridable=True)
 
     def after(self, tracker: LiveOdometer) -> None:
         """Process the last reading of the odometer."""
         self._tracker = tracker
-        if tracker.driven_step is not None and not self._done:
-            self._learner.step(tracker.seconds(tracker.stamp), tracker.driven_step)
+        step = tracker.odometer.driven_step
+        if step is not None and not self._done:
+            self._learner.step(tracker.seconds(tracker.stamp), step)
 
     def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
         """Change the parameter values of the robot; a phase set by someone else is final."""
@@ -135,12 +136,6 @@ class Learning(NoLearning):
             return
         if not self._done:
             self._learner.see_rate(self._time_of(message), rate)
-
-    def _see_pose(self, message: Any) -> None:
-        self._see_yaw(message, message.pose.orientation)
-
-    def _see_odometry(self, message: Any) -> None:
-        self._see_yaw(message, message.pose.pose.orientation)
 
     def _see_yaw(self, message: Any, orientation: Any) -> None:
         if not self._done:

@@ -29,7 +29,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import simulated_parameters
 from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.topics import full_name, publisher, subscribe, transform_sender
 
 if TYPE_CHECKING:

@@ -16,6 +16,7 @@ from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.progress import Show
+from werrimbi_odom.workbench.loaded_input import opened
 from werrimbi_odom.workbench.pickling import (
     known_before,
     known_to_both,
@@ -23,7 +24,6 @@ from werrimbi_odom.workbench.pickling import (
     packed,
     unpacked,
 )
-from werrimbi_odom.workbench.loaded_input import opened
 from werrimbi_odom.workbench.task import Diagnose, Open, Task
 
 
