@@ -90,11 +90,5 @@ def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
 
 def box(left: float, lower: float, right: float, upper: float) -> Floats:
     """Four sides of a rectangle, shape (4, 4)."""
-    return np.array(
-        [
-            [left, lower, right, lower],
-            [right, lower, right, upper],
-            [right, upper, left, upper],
-            [left, upper, left, lower],
-        ]
-    )
+    corners = np.array([(left, lower), (right, lower), (right, upper), (left, upper)])
+    return np.hstack([corners, np.roll(corners, -1, axis=0)])

@@ -69,10 +69,6 @@ def _radii(values: Values, robot: Robot) -> str:
     return f"{_length(aside)} to the {'left' if aside > 0.0 else 'right'} on 3 m"
 
 
-def _scale(values: Values, robot: Robot) -> str:
-    return f"{10.0 / values['multiplier']:.3f} m by the odometry on 10.000 m of tape"
-
-
 def _track(values: Values, robot: Robot) -> str:
     sense, sharp = 2.0 * TURNS * values["sense"], TURNS * values["sharpness"]
     parts = []
@@ -105,10 +101,6 @@ def _kick(values: Values, robot: Robot) -> str:
     words = " and ".join(f"{math.degrees(kick):+.2g}°" for kick in each)
     total = 5.0 * sum(each)
     return f"{words} at reversals to forwards and to backwards, {_angle(total)} in all after five"
-
-
-def _seen_late(values: Values, robot: Robot) -> str:
-    return f"{_length(2.0 * values['delay'] * FAST)} at {FAST} m/s"
 
 
 def _arm(values: Values, robot: Robot) -> str:
@@ -173,11 +165,15 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "skid_steer": _base,
     "track_width": _base,
     "unequal_wheel_radii": _radii,
-    "wheel_radius_scale": _scale,
+    "wheel_radius_scale": lambda values, robot: (
+        f"{10.0 / values['multiplier']:.3f} m by the odometry on 10.000 m of tape"
+    ),
     "turn_dependent_track": _track,
     "floor_slope": _slope,
     "castor_kick": _kick,
-    "reference_delay": _seen_late,
+    "reference_delay": lambda values, robot: (
+        f"{_length(2.0 * values['delay'] * FAST)} at {FAST} m/s"
+    ),
     "reference_lever_arm": _arm,
     "radius_drift": _drift,
     "missed_ticks": _missed,
