@@ -9,7 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -32,6 +32,13 @@ def ran(
         check=False,
         timeout=timeout,
     )
+
+
+def started(command: Iterable[object], cwd: Path = ROOT, **how: Any) -> subprocess.Popen[str]:
+    """The same, while it runs; what it says can be read unless told otherwise."""
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    how = {"env": env, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **how}
+    return subprocess.Popen([*map(str, command)], cwd=cwd, text=True, **how)
 
 
 class Said(NamedTuple):

@@ -14,8 +14,7 @@ import werrimbi_odom as wo
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.api.live_diagnosis import of_now
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.simulation.robot import TrueRobot
-from werrimbi_odom.simulation.robot_file import write_robot_file
+from werrimbi_odom.simulation.robot import TrueRobot, write_robot_file
 
 SOUND = WhiteNoiseRobot(0.35, 0.05, 0.05, 4.0e-4, 5.8e-4)
 WIDER = replace(SOUND, separation=SOUND.separation * 1.02)

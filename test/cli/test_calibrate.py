@@ -37,10 +37,7 @@ def test_the_kinds_are_listed(werrimbi: Werrimbi) -> None:
     ],
 )
 def test_bad_use_is_one_line_and_exit_2(
-    words: list[str],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    werrimbi: Werrimbi,
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi
 ) -> None:
     monkeypatch.chdir(tmp_path)
     said = werrimbi(*words, code=2).err
@@ -106,11 +103,7 @@ def test_a_wrong_base_and_radius_are_found_in_one_drive_of_the_engine(tmp_path: 
     ],
 )
 def test_where_calibration_is_not_what_is_missing_it_gives_no_error_bars(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    robot: str,
-    runs: list[str],
-    kind: str,
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], robot: str, runs: list[str], kind: str
 ) -> None:
     folder = ROBOTS / robot
     found = fit(

@@ -161,9 +161,7 @@ def test_tables_and_runs_are_not_mixed(desk: Path) -> None:
         called(calibrate, "umbmark", desk / "before.csv", desk, *umbmark_files(desk))
 
 
-def test_recorded_runs_before_and_after(
-    desk: Path,
-) -> None:
+def test_recorded_runs_before_and_after(desk: Path) -> None:
     (desk / "robot.yaml").write_text(
         ROBOT.replace("wheel_separation_multiplier: 1.01", "encoder_bits: 0"), encoding="utf-8"
     )

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 from test.cli.commands import RECORDING
-from test.command_line import ROOT, WERRIMBI, Said, Werrimbi, ran
+from test.command_line import ROOT, WERRIMBI, Said, Werrimbi, ran, started
 from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import progress
 from werrimbi_odom.cli.options import EXAMPLES
@@ -182,12 +182,7 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     rows = "".join(f"{0.001 * i:.3f},{i},{i}\n" for i in range(200_000))
     (run / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + rows)
     words = ["odom", "--robot", SQUARE / "robot.yaml", run, "--out", out / "odom.csv"]
-    working = subprocess.Popen(
-        [*WERRIMBI, *map(str, words)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=ENVIRONMENT,
-    )
+    working = started([*WERRIMBI, *words])
     limit = time.monotonic() + 60.0
     while not list(out.glob(".*.part")) and time.monotonic() < limit:
         assert working.poll() is None, "it ended before it could be interrupted"
@@ -195,7 +190,7 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     working.send_signal(signal.SIGINT)
     said, err = working.communicate(timeout=60)
     assert working.returncode == 130
-    assert (said, err) == (b"", b"")
+    assert (said, err) == ("", "")
     assert list(out.iterdir()) == []
 
 

@@ -58,15 +58,7 @@ MOST = 3
 
 @dataclass(frozen=True)
 class Closed:
-    """One case.
-
-    Parameters
-    ----------
-    verdicts, driven : sequence of str
-        Of the plain drive, and after each proposal; and what those were.
-    names : tuple of str
-        What the last verdict names.
-    """
+    """One case."""
 
     effect: str
     strength: float
@@ -74,8 +66,11 @@ class Closed:
     measured: str
     seed: int
     verdicts: tuple[str, ...]
+    """Of the plain drive, and after each proposal."""
     driven: tuple[str, ...]
+    """What was proposed."""
     names: tuple[str, ...]
+    """What the last verdict names."""
     by_hand: str = ""
     """What is proposed in the end, where that is no drive."""
 
@@ -133,17 +128,8 @@ def closed(effect: str, plain: str, measured: str, seed: int) -> Closed:
             driven.append(plan.name)
             runs.append(_driven(there, plan, measured))
     names = said["rivals"] or [each["effect"] for each in said["found"]]
-    return Closed(
-        effect,
-        hidden.strength,
-        plain,
-        measured,
-        seed,
-        tuple(verdicts),
-        tuple(driven),
-        tuple(names),
-        by_hand,
-    )
+    case = effect, hidden.strength, plain, measured, seed
+    return Closed(*case, tuple(verdicts), tuple(driven), tuple(names), by_hand)
 
 
 def _driven(there: InEngine, plan: ManoeuvrePlan, measured: str) -> Run:

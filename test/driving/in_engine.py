@@ -29,16 +29,7 @@ STANDS = 1.0
 
 
 class InEngine:
-    """A robot that drive after drive is driven through plans.
-
-    Parameters
-    ----------
-    robot : LiveRobot
-    file : RobotFile
-        What odom_node believes of it.
-    ticks, poses : int
-        Readings a second of the counters and of the reference.
-    """
+    """A robot that drive after drive is driven through plans; odom_node believes its `file`."""
 
     def __init__(
         self, robot: LiveRobot, file: RobotFile, ticks: int = TICKS, poses: int = POSES

@@ -18,18 +18,12 @@ from werrimbi_odom.model.pose import Pose
 
 @dataclass
 class Plant:
-    """What obeys the commands, every 20 ms.
-
-    Parameters
-    ----------
-    lag : int
-        Periods until a command acts.
-    noise : float
-        Share by which each step of travel and turn scatters.
-    """
+    """What obeys the commands, every 20 ms."""
 
     lag: int = 2
+    """Periods until a command acts."""
     noise: float = 0.0
+    """Share by which each step of travel and turn scatters."""
     seed: int = 0
     period: float = 0.02
     pose: Pose = field(default_factory=lambda: Pose(0.3, -0.2, 0.7))

@@ -22,6 +22,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.simulation import Peculiarity, Recording, TrueRobot, free, record
+from werrimbi_odom.simulation.hidden.axle_and_reference import AskewAxle
 from werrimbi_odom.simulation.hidden.counters import EncoderSkew, MissedTicks
 from werrimbi_odom.simulation.hidden.creep import (
     CastorKick,
@@ -36,7 +37,6 @@ from werrimbi_odom.simulation.hidden.geometry import (
     UnequalWheelRadii,
     WheelRadiusScale,
 )
-from werrimbi_odom.simulation.hidden.mount import AskewAxle
 from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer
 from werrimbi_odom.simulation.hidden.tyres import LoadTransfer, TyreSquash
 from werrimbi_odom.simulation.hidden.wheels import (

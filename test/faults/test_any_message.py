@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -17,6 +16,7 @@ pytest.importorskip("rclpy")
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from sensor_msgs.msg import JointState
 
+from test.ros.messages import assert_covariances
 from werrimbi_odom.ros.odom_parameters import CHANGEABLE
 
 NUMBER = st.floats() | st.sampled_from(
@@ -98,10 +98,4 @@ def check(odometry: Any) -> None:
     numbers = [pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.z]
     numbers += [twist.twist.linear.x, twist.twist.angular.z]
     assert all(map(math.isfinite, numbers)), odometry
-    for entries in (pose.covariance, twist.covariance):
-        matrix = np.asarray(entries).reshape(6, 6)
-        assert np.isfinite(matrix).all(), odometry
-        assert (matrix == matrix.T).all(), odometry
-        assert (matrix.diagonal() >= 0.0).all(), odometry
-        size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
-        assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -1e-14, odometry
+    assert_covariances(odometry)

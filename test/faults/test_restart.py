@@ -16,6 +16,7 @@ pytest.importorskip("rclpy")
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
 from test.ros.conftest import ROBOT, command
+from test.ros.messages import in_plane, yaw_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -56,9 +57,8 @@ def told(launched: Any, last: Any) -> None:
 
 def of_plane(odometry: Any) -> tuple[np.ndarray, np.ndarray]:
     pose = odometry.pose.pose
-    yaw = 2.0 * np.arctan2(pose.orientation.z, pose.orientation.w)
-    covariance = np.array(odometry.pose.covariance).reshape(6, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
-    return np.array([pose.position.x, pose.position.y, yaw]), covariance
+    numbers = np.array([pose.position.x, pose.position.y, yaw_of(pose)])
+    return numbers, in_plane(odometry.pose.covariance)
 
 
 def whole(steps: list[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:

@@ -4,11 +4,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import socket
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from test.command_line import ROOT, ran
+from test.command_line import ROOT, ran, started
 from test.fleet.conftest import broken, drive
 
 COMMANDS = [
@@ -38,9 +36,8 @@ def python(words: list[str], address: str) -> list[str]:
 
 @contextmanager
 def running(words: list[str], place: Path) -> Iterator[None]:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with (place / f"{words[-1].replace('/', '')}.log").open("w") as log:
-        process = subprocess.Popen(words, cwd=place, env=environment, stdout=log, stderr=log)
+        process = started(words, place, stdout=log, stderr=log)
         try:
             yield
         finally:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from test.command_line import ROOT, WERRIMBI, ran
+from test.command_line import WERRIMBI, ran, started
 from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
 from werrimbi_odom.files.recordings import Asked, DriveOptions
@@ -97,15 +97,7 @@ def begun(tmp_path: Path) -> subprocess.Popen[str]:
         broken(tmp_path / "fleet" / name)
     (tmp_path / "slow.py").write_text(SLOW)
     words = ["--fleet", "fleet", "--jobs", "1", "--effects", "slow.py", "--json", "figures.json"]
-    process = subprocess.Popen(
-        [*WERRIMBI, "diagnose", *words],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    process = started([*WERRIMBI, "diagnose", *words], tmp_path, start_new_session=True)
     patience = time.monotonic() + 120.0
     while not (tmp_path / "read_2").exists() or not (tmp_path / "read_2").read_text():
         assert process.poll() is None, process.communicate()

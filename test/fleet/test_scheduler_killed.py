@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from test.command_line import ROOT
+from test.command_line import started
 
 pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 
@@ -31,16 +30,10 @@ if "distributed" in sys.modules:  # in the worker; the command itself has not be
 """
 
 
-def started(words: Sequence[str], folder: Path, name: str) -> subprocess.Popen[str]:
+def begun(words: Sequence[str], folder: Path, name: str) -> subprocess.Popen[str]:
     with (folder / name).open("w") as told:
-        return subprocess.Popen(
-            [sys.executable, "-m", *words],
-            cwd=folder,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-            stdout=subprocess.DEVNULL,
-            stderr=told,
-            text=True,
-        )
+        command = [sys.executable, "-m", *words]
+        return started(command, folder, stdout=subprocess.DEVNULL, stderr=told)
 
 
 def waited(folder: Path, name: str, wanted: str) -> str:
@@ -55,20 +48,20 @@ def waited(folder: Path, name: str, wanted: str) -> str:
 
 @pytest.mark.evidence
 def test_a_scheduler_that_is_killed_is_one_line(home: Path, tmp_path: Path) -> None:
-    effects, begun = tmp_path / "sleeps.py", tmp_path / "begun"
-    effects.write_text(SLEEPS.format(begun=str(begun)))
+    effects, sleeping = tmp_path / "sleeps.py", tmp_path / "begun"
+    effects.write_text(SLEEPS.format(begun=str(sleeping)))
     scheduler = ["distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0"]
-    running = [started([*scheduler, "--no-dashboard"], tmp_path, "scheduler")]
+    running = [begun([*scheduler, "--no-dashboard"], tmp_path, "scheduler")]
     try:
         told = waited(tmp_path, "scheduler", r"tcp://127\.0\.0\.1:\d+")
         address = re.findall(r"tcp://127\.0\.0\.1:\d+", told)[0]
         worker = ["distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny"]
-        running.append(started([*worker, "--no-dashboard"], tmp_path, "worker"))
+        running.append(begun([*worker, "--no-dashboard"], tmp_path, "worker"))
         words = ["werrimbi_odom.cli.main", "diagnose", "--fleet", str(home / "fleet")]
         words += ["--scheduler", address, "--effects", str(effects)]
-        running.append(started(words, tmp_path, "command"))
+        running.append(begun(words, tmp_path, "command"))
         limit = time.monotonic() + 120.0
-        while not begun.exists():
+        while not sleeping.exists():
             assert running[2].poll() is None, (tmp_path / "command").read_text()
             assert time.monotonic() < limit
             time.sleep(0.1)

@@ -18,7 +18,7 @@ from typing import TypeVar
 from test.hidden.poorer import POORER
 from test.hidden.sets import HiddenSet, drawn
 from werrimbi_odom.simulation import CATALOGUE, hide
-from werrimbi_odom.simulation.hidden.mount import ReferenceMount
+from werrimbi_odom.simulation.hidden.axle_and_reference import ReferenceMount
 
 Thing = TypeVar("Thing")
 

@@ -18,7 +18,7 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, free, record, write_run
-from werrimbi_odom.simulation.robot_file import write_robot_file
+from werrimbi_odom.simulation.robot import write_robot_file
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 

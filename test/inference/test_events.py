@@ -34,7 +34,7 @@ from werrimbi_odom.report.diagnosis.remarks import without_events
 from werrimbi_odom.report.events import event_words, events_json, events_words
 from werrimbi_odom.simulation import TrueRobot, free, out_and_back, record, write_run
 from werrimbi_odom.simulation.hidden.knocks import Knock
-from werrimbi_odom.simulation.robot_file import write_robot_file
+from werrimbi_odom.simulation.robot import write_robot_file
 
 NOISE_XY, NOISE_YAW = 1e-3, 2e-3
 """Of the simulated reference [m, rad]."""

@@ -34,8 +34,8 @@ from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.manoeuvres.proposal import Discrimination, next_manoeuvre, quickest
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.simulation.hidden.axle_and_reference import ReferenceDelay, ReferenceMount
 from werrimbi_odom.simulation.hidden.hidden_effect import Peculiarity
-from werrimbi_odom.simulation.hidden.mount import ReferenceDelay, ReferenceMount
 
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
 PACE = DrivingLimits(speed=0.6, acceleration=1.5, base=0.35)

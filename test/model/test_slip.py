@@ -96,7 +96,8 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
         if period % 400 == 0:
             x, y, yaw = (a - b for a, b in zip(live.pose, tracker.pose, strict=True))
             error = np.array([x, y, math.remainder(yaw, 2.0 * math.pi)])
-            found.append(error @ np.linalg.solve(tracker.covariance.matrix(), error) / 3.0)
+            covariance = tracker.odometer.covariance().matrix()
+            found.append(error @ np.linalg.solve(covariance, error) / 3.0)
     return float(np.mean(found)), guard.times
 
 

@@ -33,13 +33,7 @@ class Process:
 
 
 def launched(share: Path, name: str, **given: str) -> list[Process]:
-    """The nodes that `ros2 launch werrimbi_odom NAME key:=value ...` starts.
-
-    Parameters
-    ----------
-    share : Path
-        The package's share folder.
-    """
+    """The nodes that `ros2 launch werrimbi_odom NAME key:=value ...` starts, out of `share`."""
     tree = ElementTree.parse(share / "launch" / name).getroot()
     assert tree.tag == "launch"
     values: dict[str, str] = {}

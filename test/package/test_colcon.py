@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from test.command_line import ROOT, ran
+
 WHAT_ROS_SEES = (
     "lib/werrimbi_odom/compare_node",
     "lib/werrimbi_odom/drive_node",
@@ -59,13 +60,7 @@ def colcon(workspace: Path, *arguments: str) -> subprocess.CompletedProcess[str]
 def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     workspace = tmp_path_factory.mktemp("ws")
     source = workspace / "src" / "werrimbi_odom"
-    listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.split("\n")
+    listed = ran(["git", "ls-files", "-co", "--exclude-standard"]).stdout.split("\n")
     for name in filter(None, listed):
         if (ROOT / name).is_file():
             (source / name).parent.mkdir(parents=True, exist_ok=True)
@@ -85,13 +80,8 @@ def test_colcon_build_installs_what_ros2_run_and_launch_look_for(workspace: Path
 def test_the_built_executables_start(workspace: Path) -> None:
     prefix = workspace / "install" / "werrimbi_odom"
     (packages,) = prefix.glob("lib/python*/site-packages")
-    shown = subprocess.run(
-        [str(prefix / "lib" / "werrimbi_odom" / "werrimbi"), "--help"],
-        env={**os.environ, "PYTHONPATH": str(packages)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    werrimbi = prefix / "lib" / "werrimbi_odom" / "werrimbi"
+    shown = ran([werrimbi, "--help"], PYTHONPATH=str(packages))
     assert shown.returncode == 0, shown.stderr
     assert "odom" in shown.stdout
 

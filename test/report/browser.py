@@ -42,14 +42,8 @@ def visit(
 ) -> Visit:
     """Open a page, wait until all of it is drawn, run scripts, take a picture of the whole page.
 
-    Parameters
-    ----------
-    scripts
-        JavaScript expressions; promises are waited for.
-    dark
-        What the browser's user prefers.
-    tallest
-        Of the picture; what lies below is left out [pixels].
+    Scripts are JavaScript expressions; promises are waited for. `dark` is what the browser's user
+    prefers; what lies below `tallest` is left out of the picture [pixels].
     """
     found: Visit = awaited(
         asyncio.wait_for(_visit(path, scripts, browser, dark, width, picture, tallest), PATIENCE)
@@ -131,8 +125,7 @@ async def _visit(
 
 async def _asked(session: Any, expression: str) -> Any:
     answer = await session.send_command(
-        "Runtime.evaluate",
-        {"expression": expression, "awaitPromise": True, "returnByValue": True},
+        "Runtime.evaluate", {"expression": expression, "awaitPromise": True, "returnByValue": True}
     )
     result = answer["result"]
     if "exceptionDetails" in result:

@@ -18,9 +18,15 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.report.save import find_browser
+from werrimbi_odom.report.adding.document import document_of as of_added
+from werrimbi_odom.report.calibration.document import calibration_document, leg_figure
+from werrimbi_odom.report.comparison.document import document_of as of_comparison
+from werrimbi_odom.report.diagnosis.document import document_of as of_diagnosis
+from werrimbi_odom.report.document import Document, Paragraph, Table
+from werrimbi_odom.report.save import find_browser, save_report
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -90,6 +96,38 @@ def diagnosis(runs: tuple[Run, ...]) -> Diagnosis:
 @pytest.fixture(scope="session")
 def added(runs: tuple[Run, ...]) -> Added:
     return add_effects([find("eccentric_left_wheel")], runs[:2], PLAIN, holdout=runs[2:])
+
+
+@pytest.fixture(scope="session")
+def page(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Callable[[str], Path]:
+    """The page of a verb: each is made once, by the first test that looks at it."""
+    folder = tmp_path_factory.mktemp("pages")
+    documents: dict[str, Callable[[], Document]] = {
+        "compare": lambda: of_comparison(request.getfixturevalue("comparison")),
+        "diagnose": lambda: of_diagnosis(
+            AdvisedDiagnosis(request.getfixturevalue("diagnosis"), None, ())
+        ),
+        "add": lambda: of_added(request.getfixturevalue("added")),
+        "fit": of_a_fit,
+    }
+
+    def made(verb: str) -> Path:
+        path = folder / f"{verb}.html"
+        if not path.exists():
+            save_report(documents[verb](), path)
+        return path
+
+    return made
+
+
+def of_a_fit() -> Document:
+    errors = np.random.default_rng(1).normal(0.0, 0.01, (3000, 2))
+    table = Table("Found", ["parameter", "before", "after"], [["k", "1", "1.01"]])
+    words = [Paragraph("All is well."), table]
+    figure, numbers = leg_figure(errors, 0.5 * errors), {"wheel_separation_multiplier": (1.0, 1.01)}
+    return calibration_document("Fit", words, "Legs", "See.", lambda: figure, numbers)
 
 
 @pytest.fixture(scope="session")

@@ -170,11 +170,7 @@ def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:
 @pytest.mark.parametrize(
     ("kind", "interval", "words"),
     [
-        (
-            "absolute",
-            0.05,
-            "errs by 1.0 mm and 0.11° would: the poses of this one",
-        ),
+        ("absolute", 0.05, "errs by 1.0 mm and 0.11° would: the poses of this one"),
         ("absolute", 0.5, "measures more finely, and more often, does (motion capture)"),
         ("local_map", 0.05, "measures more finely, and more often, does (motion capture)"),
     ],

@@ -32,8 +32,7 @@ from werrimbi_odom.report.calibration.document import leg_figure
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.over_variable import error_against_figure, variables_of
-from werrimbi_odom.report.diagnosis.before_after import before_after_figure
-from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure, evidence_map_figure
 from werrimbi_odom.report.diagnosis.figures import manoeuvre_figure, ranking_figure
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.report.style import FEWEST, MARKS, MOST, along_path

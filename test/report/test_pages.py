@@ -13,25 +13,14 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from browser import Visit
 
 from test.axe import RUN
 from test.report.test_accessible import assert_obeyed, rules
-from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
-from werrimbi_odom.report.adding.document import document_of as document_of_added
-from werrimbi_odom.report.calibration.document import calibration_document, leg_figure
-from werrimbi_odom.report.comparison.document import document_of as document_of_comparison
-from werrimbi_odom.report.diagnosis.document import document_of as document_of_diagnosis
-from werrimbi_odom.report.document import Paragraph
-from werrimbi_odom.report.page import write_page
-from werrimbi_odom.report.save import save_report
 
 Look = Callable[..., Visit]
+Page = Callable[[str], Path]
 
 UNDRAWN = "[...document.querySelectorAll('[data-figure]')].filter(f => !f.dataset.drawn).length"
 FIGURES = "document.querySelectorAll('.figure .main-svg').length"
@@ -45,20 +34,6 @@ def assert_well_drawn(visit: Visit) -> None:
     undrawn, figures = visit.answers[:2]
     assert undrawn == 0
     assert figures > 0
-
-
-@pytest.fixture(scope="module")
-def compare_page(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("compare") / "page.html"
-    save_report(document_of_comparison(comparison), path)
-    return path
-
-
-@pytest.fixture(scope="module")
-def diagnosis_page(diagnosis: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("diagnosis") / "page.html"
-    save_report(document_of_diagnosis(AdvisedDiagnosis(diagnosis, None, ())), path)
-    return path
 
 
 LABELS = (
@@ -90,10 +65,10 @@ NAMELESS = "document.querySelector('main').append(document.createElement('button
 
 
 @pytest.fixture(scope="module")
-def seen(compare_page: Path, look: Look) -> dict[str, list[Any]]:
+def seen(page: Page, look: Look) -> dict[str, list[Any]]:
     """What one visit to the comparison saw, in the light."""
     asked = {**ASKED, "rules": rules(), "nameless": (NAMELESS, RUN)}
-    visit = look(compare_page, UNDRAWN, FIGURES, *chain(*asked.values()))
+    visit = look(page("compare"), UNDRAWN, FIGURES, *chain(*asked.values()))
     assert_well_drawn(visit)
     answers = iter(visit.answers[2:])
     return {name: [next(answers) for _ in group] for name, group in asked.items()}
@@ -108,9 +83,9 @@ def test_no_rule_of_axe_is_broken_and_one_that_were_would_be_seen(
 
 
 def test_no_rule_is_broken_by_a_diagnosis_in_the_dark_on_a_telephone(
-    diagnosis_page: Path, look: Look
+    page: Page, look: Look
 ) -> None:
-    visit = look(diagnosis_page, *rules(), dark=True, width=390)
+    visit = look(page("diagnose"), *rules(), dark=True, width=390)
     assert_obeyed(visit.answers)
     assert visit.complaints == []
 
@@ -120,16 +95,16 @@ def test_a_comparison_draws_itself_in_the_light(seen: dict[str, list[Any]]) -> N
 
 
 @pytest.mark.evidence
-def test_a_comparison_draws_itself_in_the_dark(compare_page: Path, look: Look) -> None:
-    visit = look(compare_page, UNDRAWN, FIGURES, PAPER, FIGURE_PAPER, dark=True)
+def test_a_comparison_draws_itself_in_the_dark(page: Page, look: Look) -> None:
+    visit = look(page("compare"), UNDRAWN, FIGURES, PAPER, FIGURE_PAPER, dark=True)
     assert_well_drawn(visit)
     assert [colour.upper() for colour in visit.answers[2:]] == ["RGB(21, 24, 28)", "#15181C"]
 
 
 @pytest.mark.evidence
-def test_the_switch_turns_page_and_figures_dark(compare_page: Path, look: Look) -> None:
+def test_the_switch_turns_page_and_figures_dark(page: Page, look: Look) -> None:
     visit = look(
-        compare_page,
+        page("compare"),
         UNDRAWN,
         FIGURES,
         "document.getElementById('theme').click(), new Promise(done => setTimeout(done, 3000))",
@@ -161,10 +136,10 @@ def test_every_figure_has_a_label_and_every_choice_too(seen: dict[str, list[Any]
 
 
 @pytest.mark.evidence
-def test_what_is_looked_at_is_drawn_first(compare_page: Path, look: Look) -> None:
+def test_what_is_looked_at_is_drawn_first(page: Page, look: Look) -> None:
     """A link to the last figure does not wait for the others; in the end all are drawn."""
     visit = look(
-        compare_page,
+        page("compare"),
         UNDRAWN,
         FIGURES,
         "(() => { location.hash = '#against'; const order = []; "
@@ -178,10 +153,10 @@ def test_what_is_looked_at_is_drawn_first(compare_page: Path, look: Look) -> Non
     assert set(order) == {"path", "motion", "nees", "against"}
 
 
-def test_paper_has_every_figure_on_white(compare_page: Path, look: Look) -> None:
+def test_paper_has_every_figure_on_white(page: Page, look: Look) -> None:
     """Printed the moment it opens, in the dark, before anything else is drawn."""
     visit = look(
-        compare_page,
+        page("compare"),
         UNDRAWN,
         FIGURES,
         "(() => { werrimbi.show(true); dispatchEvent(new Event('beforeprint')); "
@@ -198,14 +173,14 @@ def test_paper_has_every_figure_on_white(compare_page: Path, look: Look) -> None
     assert set(visit.answers[3]) == {"dark"}
 
 
-def test_keys_move_and_zoom_a_figure(compare_page: Path, look: Look) -> None:
+def test_keys_move_and_zoom_a_figure(page: Page, look: Look) -> None:
     press = (
         "(() => {{ const f = document.getElementById('figure-path'); f.focus(); "
         "f.dispatchEvent(new KeyboardEvent('keydown', {{key: '{}'}})); "
         "return new Promise(done => setTimeout(() => done(f._fullLayout.xaxis.range), 500)); }})()"
     )
     visit = look(
-        compare_page,
+        page("compare"),
         UNDRAWN,
         FIGURES,
         "document.getElementById('figure-path')._fullLayout.xaxis.range",
@@ -221,9 +196,7 @@ def test_keys_move_and_zoom_a_figure(compare_page: Path, look: Look) -> None:
     assert focus == "figure-path"
 
 
-def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
-    diagnosis_page: Path, look: Look
-) -> None:
+def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(page: Page, look: Look) -> None:
     strongest = (
         "(() => { const f = document.getElementById('figure-evidence'), t = f.data[0]; "
         "let best = [-1]; f.calcdata[0][0].z.forEach((row, i) => row.forEach((v, j) => "
@@ -231,7 +204,7 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
         "return [t.y[best[1]], t.x[best[2]]]; })()"
     )
     visit = look(
-        diagnosis_page,
+        page("diagnose"),
         UNDRAWN,
         FIGURES,
         strongest,
@@ -256,21 +229,8 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
 
 
 @pytest.mark.evidence
-def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look) -> None:
-    page = tmp_path / "page.html"
-    save_report(document_of_added(added), page)
-    visit = look(page, UNDRAWN, FIGURES, dark=True)
-    assert_well_drawn(visit)
-
-
-@pytest.mark.evidence
-def test_a_calibration_draws_itself(tmp_path: Path, look: Look) -> None:
-    errors = np.random.default_rng(1).normal(0.0, 0.01, (50, 2))
-    page = calibration_document(
-        "Calibration", [Paragraph("All is well.")], "Legs", "See.",
-        lambda: leg_figure(errors, 0.5 * errors), {"k": (1.0, 1.1)},
-    )  # fmt: skip
-    write_page(page, tmp_path / "page.html")
-    visit = look(tmp_path / "page.html", UNDRAWN, FIGURES, FIGURE_PAPER, dark=True)
+@pytest.mark.parametrize("verb", ["add", "fit"])
+def test_the_reports_of_other_verbs_draw_themselves(verb: str, page: Page, look: Look) -> None:
+    visit = look(page(verb), UNDRAWN, FIGURES, FIGURE_PAPER, dark=True)
     assert_well_drawn(visit)
     assert visit.answers[2].upper() == "#15181C"

@@ -19,10 +19,9 @@ def arguments(values: dict[str, Any]) -> list[str]:
     """Parameters on a command line of ROS."""
     words = ["--ros-args"]
     for name, value in values.items():
-        if value == "":  # which no command line of ROS can say
-            continue
-        text = str(value).lower() if isinstance(value, bool) else str(value)
-        words += ["-p", f"{name}:={text}"]
+        if value != "":  # which no command line of ROS can say
+            text = str(value).lower() if isinstance(value, bool) else str(value)
+            words += ["-p", f"{name}:={text}"]
     return words
 
 
@@ -51,15 +50,7 @@ def stand_in_for_tf2_ros(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Beside:
-    """A node process.
-
-    Parameters
-    ----------
-    folder : Path
-        For what it says.
-    environment : dict
-        Of the `Launched` beside which it runs.
-    """
+    """A node process in the environment of a `Launched`; what it says goes into `folder`."""
 
     def __init__(self, folder: Path, environment: dict[str, str], node: str, **values: Any) -> None:
         self._file = folder / f"{node}_{len(list(folder.iterdir()))}.stderr"

@@ -31,12 +31,12 @@ from rclpy.context import Context  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.qos import QoSProfile  # noqa: E402
-from rclpy.time import Time  # noqa: E402
 from sensor_msgs.msg import JointState  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 from visualization_msgs.msg import MarkerArray  # noqa: E402
 
 from test.ros.beside import ended  # noqa: E402
+from test.ros.messages import seconds_of, stamp_at, values_of  # noqa: E402
 from werrimbi_odom.ros.domain import free_domain  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
@@ -50,10 +50,7 @@ ROBOT: dict[str, Any] = {
     "left_ticks_per_revolution": 2000.0,
     "right_ticks_per_revolution": 1000.0,
     "position_unit": "ticks",
-    "qos_overrides": {
-        "/joint_states": {"subscription": DEEP},
-        "/odom": {"publisher": DEEP},
-    },
+    "qos_overrides": {"/joint_states": {"subscription": DEEP}, "/odom": {"publisher": DEEP}},
 }
 """The robot of most tests; unequal encoders, so that left and right are never mistaken."""
 
@@ -78,17 +75,7 @@ def command(folder: Path, robot: dict[str, Any], *arguments: str) -> list[str]:
 
 
 class Launched:
-    """A node process, and a client in its domain.
-
-    Parameters
-    ----------
-    folder : Path
-        For the parameter file and the logs.
-    robot : dict
-        Parameters of the node.
-    arguments : str
-        Further ROS arguments.
-    """
+    """A node process, and a client in its domain; its parameter file and logs lie in `folder`."""
 
     def __init__(self, folder: Path, robot: dict[str, Any], *arguments: str) -> None:
         domain, self._lock = free_domain()
@@ -173,7 +160,7 @@ class Launched:
             self.now = round(self.now + 0.02, 6)
             stamp = self.now
         message = JointState(name=names, position=[float(position) for position in positions])
-        message.header.stamp = Time(nanoseconds=round(1e9 * stamp)).to_msg()
+        message.header.stamp = stamp_at(stamp)
         self.send(JointState, "joint_states", message)
 
     def ticks(self, left: float, right: float, stamp: float | None = None) -> None:
@@ -248,7 +235,7 @@ class Launched:
         seen = len(self.diagnostics)
         self.until(lambda: len(self.diagnostics) > seen, "diagnostics")
         status = self.diagnostics[-1]
-        return status.level, status.message, {item.key: item.value for item in status.values}
+        return status.level, status.message, values_of(status)
 
     def counts(self) -> Counter[str]:
         """Counts on the last /diagnostics, or the first."""
@@ -256,18 +243,15 @@ class Launched:
         if not self.diagnostics:
             self.report()
         self._read = len(self.diagnostics)
-        pairs = ((item.key, item.value) for item in self.diagnostics[-1].values)
-        return Counter({key: int(value) for key, value in pairs if value.isdigit()})
+        told = values_of(self.diagnostics[-1])
+        return Counter({key: int(value) for key, value in told.items() if value.isdigit()})
 
     def stand(self) -> None:
         """Publish the counters of a robot that does not move."""
         self.step(0, 0)
 
     def counted(
-        self,
-        before: Counter[str],
-        send: Callable[[], None] | None = None,
-        **expected: int,
+        self, before: Counter[str], send: Callable[[], None] | None = None, **expected: int
     ) -> tuple[bytes, str]:
         """Wait for the first /diagnostics since `before` that counts so much more; level and words.
 
@@ -281,10 +265,9 @@ class Launched:
         while True:
             for status in self.diagnostics[self._read :]:
                 new = {
-                    item.key.replace(": ", "_").replace(" ", "_"): int(item.value)
-                    - before[item.key]
-                    for item in status.values
-                    if item.value.isdigit()
+                    key.replace(": ", "_").replace(" ", "_"): int(value) - before[key]
+                    for key, value in values_of(status).items()
+                    if value.isdigit()
                 }
                 if all(new.get(key) == count for key, count in expected.items()):
                     return status.level, status.message
@@ -315,11 +298,6 @@ class Launched:
         self._lock.close()
         assert code == 0, f"the node ended with {code}: {errors}"
         assert "Traceback" not in errors, errors
-
-
-def seconds_of(odometry: Odometry) -> float:
-    """Stamp of a message [s]."""
-    return float(odometry.header.stamp.sec) + 1e-9 * float(odometry.header.stamp.nanosec)
 
 
 Launch = Callable[..., Launched]

@@ -26,6 +26,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Int64, Int64MultiArray
 from std_srvs.srv import Trigger
 
+from test.ros.messages import PLANE, assert_covariances
 from werrimbi_odom.ros.domain import free_domain
 from werrimbi_odom.ros.odom_node import OdomNode
 from werrimbi_odom.ros.odom_parameters import CHANGEABLE
@@ -137,7 +138,7 @@ class Driven:
         message.pose.pose.orientation.z, message.pose.pose.orientation.w = turn
         block = np.array(root).reshape(3, 3)
         whole = np.zeros((6, 6))
-        whole[np.ix_((0, 1, 5), (0, 1, 5))] = block @ block.T if good else block
+        whole[PLANE] = block @ block.T if good else block
         message.pose.covariance = whole.ravel()
         self.node._on_set_pose(message)
 
@@ -157,13 +158,7 @@ class Driven:
         speed, rate = odometry.twist.twist.linear, odometry.twist.twist.angular
         for number in (place.x, place.y, turn.z, turn.w, speed.x, speed.y, rate.z):
             assert math.isfinite(number), odometry
-        for entries in (odometry.pose.covariance, odometry.twist.covariance):
-            matrix = np.asarray(entries).reshape(6, 6)
-            assert np.isfinite(matrix).all(), matrix
-            assert (matrix == matrix.T).all(), matrix
-            assert (matrix.diagonal() >= 0.0).all(), matrix
-            size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
-            assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -1e-14, matrix
+        assert_covariances(odometry)
 
     def count(self) -> None:
         """Every message is in exactly one count, and all that is told can be told."""
@@ -172,7 +167,7 @@ class Driven:
         self.node._publish_status()
         self.node._show_open_piece()
         self.node._report()
-        tally = self.node._tracker.tally
+        tally = self.node._tracker.odometer.tally
         counts = self.node._health._counts(tally, self.node._input.tally())
         ends = ["published", "refused", "duplicates", "out of order", "not finite", "implausible"]
         if self.kind == "int64_pair":

@@ -16,6 +16,8 @@ pytest.importorskip("rclpy")
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Int64, Int64MultiArray
 
+from test.ros.messages import values_of
+
 NAMES = ["left_wheel_joint", "right_wheel_joint"]
 TICK = 2.0 * math.pi * 0.05 / 2000.0
 
@@ -23,11 +25,7 @@ BAD = {
     "nan": (NAMES, [math.nan, 0.0], "position not finite"),
     "infinite": (NAMES, [0.0, -math.inf], "position not finite"),
     "absurd": (NAMES, [1e300, 0.0], "position out of range"),
-    "missing_joint": (
-        ["left_wheel_joint", "castor"],
-        [0, 0],
-        "joint right_wheel_joint missing",
-    ),
+    "missing_joint": (["left_wheel_joint", "castor"], [0, 0], "joint right_wheel_joint missing"),
     "too_few": (NAMES, [0.0], "wrong array length"),
     "too_many": (NAMES, [0.0, 0.0, 0.0], "wrong array length"),
     "empty": (NAMES, [], "empty position"),
@@ -232,7 +230,7 @@ def test_one_wheel_falls_silent(launch: Callable[..., Any], robot: dict[str, Any
         send(2000, "left_ticks")
         node.rest(0.05)
     level, words = node.diagnostics[-1].level, node.diagnostics[-1].message
-    values = {item.key: item.value for item in node.diagnostics[-1].values}
+    values = values_of(node.diagnostics[-1])
     assert level == DiagnosticStatus.ERROR
     assert words.startswith("no odometry without both wheels: /right_ticks silent for ")
     assert int(values["messages on /left_ticks"]) > int(values["messages on /right_ticks"])

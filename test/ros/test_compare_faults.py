@@ -17,9 +17,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
-from rclpy.time import Time
 
-from test.ros.test_compare_node import compare, pose_stamped, robot_file  # noqa: F401  (a fixture)
+from test.ros.messages import stamp_at, values_of
+from test.ros.test_compare_node import DEEP, pose_stamped, robot_file
+from test.ros.test_compare_node import compare as compare  # a fixture
 
 NUMBER = st.floats() | st.sampled_from(
     [0.0, 1.0, 1e308, 1.6e308, -1e308, 5e-324, math.nan, math.inf, -1.0]
@@ -28,7 +29,7 @@ SECONDS = st.integers(-(2**31), 2**31 - 1) | st.integers(100, 110)
 NANOSECONDS = st.integers(0, 10**9 - 1) | st.integers(0, 2**32 - 1)
 
 
-def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any) -> None:  # noqa: F811
+def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any) -> None:
     node = launch(robot_file()).begin()
     comparing = compare(node)
 
@@ -41,7 +42,7 @@ def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any
 
     for _ in range(20):
         both(2.0, 0.0)
-        before = {item.key: item.value for item in comparing.verdict().values}
+        before = values_of(comparing.verdict())
         if int(before.get("compared", 0)) > 10:
             break
     assert int(before["compared"]) > 10
@@ -54,13 +55,13 @@ def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith("no stamp of the reference falls between two of the odometry")
     assert "+1000." in status.message
-    assert {item.key: item.value for item in status.values}["waiting"] != "0"
+    assert values_of(status)["waiting"] != "0"
     comparing.stop()
 
 
 def odometry(second: int, variance: float) -> Odometry:
     message = Odometry()
-    message.header.stamp = Time(seconds=second, nanoseconds=0).to_msg()
+    message.header.stamp = stamp_at(second)
     message.pose.pose.position.x = 0.5 * second
     message.twist.twist.linear.x = 0.5
     message.pose.pose.orientation.w = 1.0
@@ -71,7 +72,7 @@ def odometry(second: int, variance: float) -> Odometry:
 
 def stated(second: int) -> PoseWithCovarianceStamped:
     message = PoseWithCovarianceStamped()
-    message.header.stamp = Time(seconds=second, nanoseconds=0).to_msg()
+    message.header.stamp = stamp_at(second)
     message.pose.pose.orientation.w = 1.0
     return message
 
@@ -99,23 +100,20 @@ class Talk:
 
 
 @pytest.fixture
-def talk(launch: Any, compare: Any, robot: dict[str, Any]) -> Any:  # noqa: F811
+def talk(launch: Any, compare: Any, robot: dict[str, Any]) -> Any:
     comparing = compare(
         launch(robot),
         *("-r", "odom:=wheels", "-r", "reference:=laser"),
         reference_type="pose_with_covariance_stamped",
         leg=0.1,
-        qos_overrides={
-            f"/{topic}": {"subscription": {"reliability": "reliable", "depth": 10_000}}
-            for topic in ("wheels", "laser")
-        },
+        qos_overrides={"/wheels": DEEP, "/laser": DEEP},
     )
     return comparing, Talk(comparing.launched)
 
 
 def counts(comparing: Any) -> dict[str, int]:
-    pairs = ((item.key, item.value) for item in comparing.verdict().values)
-    return {key: int(value) for key, value in pairs if value.isdigit()}
+    told = values_of(comparing.verdict())
+    return {key: int(value) for key, value in told.items() if value.isdigit()}
 
 
 def test_a_covariance_that_stands_for_unknown_is_refused(talk: Any) -> None:

@@ -46,12 +46,7 @@ def legs_of(
     """
     random = np.random.default_rng(seed)
     run: Any = drive(
-        TRUE,
-        wandering(random, seconds),
-        random,
-        sigma_xy=sigmas[0],
-        sigma_yaw=sigmas[1],
-        every=7,
+        TRUE, wandering(random, seconds), random, sigma_xy=sigmas[0], sigma_yaw=sigmas[1], every=7
     )
     counts = (part.astype(np.int64) for part in (run.ticks.left, run.ticks.right))
     path = trajectory(TRUE.entered(noise=noise), run.ticks.time, *counts)

@@ -29,10 +29,10 @@ from geometry_msgs.msg import (
     Vector3Stamped,
 )
 from nav_msgs.msg import Odometry
-from rclpy.time import Time
 from std_msgs.msg import Float64
 
 from test.package.launching import launched as launched_by
+from test.ros.messages import in_plane, seconds_of, stamp_at, turn, values_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.ros.compare_inputs import Clockwork, odometry_of, reference_reader
 from werrimbi_odom.ros.compare_parameters import PARAMETERS
@@ -57,10 +57,7 @@ def robot_file(noise: float = 1.0) -> dict[str, Any]:
         "left_wheel_noise": noise * TRUE.left_noise,
         "right_wheel_noise": noise * TRUE.right_noise,
         "position_unit": "ticks",
-        "qos_overrides": {
-            "/joint_states": DEEP,
-            "/odom": {"publisher": {"reliability": "reliable", "depth": 10_000}},
-        },
+        "qos_overrides": {"/joint_states": DEEP, "/odom": {"publisher": DEEP["subscription"]}},
     }
 
 
@@ -101,7 +98,7 @@ class Comparing:
 
     def reached(self, time: float) -> bool:
         """Whether an error has come of a later instant."""
-        return bool(self.errors) and stamp(self.errors[-1]) > time
+        return bool(self.errors) and seconds_of(self.errors[-1]) > time
 
     def verdict(self) -> Any:
         """The next /diagnostics."""
@@ -145,9 +142,9 @@ def recorded(seed: int, seconds: float = 70.0) -> Any:
 
 def pose_stamped(time: float, x: float, y: float, yaw: float) -> PoseStamped:
     message = PoseStamped()
-    message.header.stamp = Time(nanoseconds=round(1e9 * (1000.0 + time))).to_msg()
+    message.header.stamp = stamp_at(1000.0 + time)
     message.pose.position.x, message.pose.position.y = x, y
-    message.pose.orientation.z, message.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    turn(message.pose, yaw)
     return message
 
 
@@ -184,16 +181,12 @@ def play(launched: Any, run: Any, compare: Comparing) -> None:
         launched.executor.spin_once(timeout_sec=0.0)
     end = run.ticks.time[-1] + 1000.0
     launched.until(
-        lambda: bool(launched.odometry) and abs(stamp(launched.odometry[-1]) - end) < 1e-6,
+        lambda: bool(launched.odometry) and abs(seconds_of(launched.odometry[-1]) - end) < 1e-6,
         "the last odometry",
         60.0,
     )
     launched.until(partial(compare.reached, end - 0.5), "its error", 60.0)
     compare.verdict()
-
-
-def stamp(message: Any) -> float:
-    return float(message.header.stamp.sec) + 1e-9 * float(message.header.stamp.nanosec)
 
 
 def test_an_honest_covariance_is_said_to_be_so(launch: Any, compare: Any) -> None:
@@ -208,7 +201,7 @@ def test_an_honest_covariance_is_said_to_be_so(launch: Any, compare: Any) -> Non
     assert figures["nees_low"][-1] < figures["nees"][-1] < figures["nees_high"][-1]
     assert figures["nees"][-1] == pytest.approx(np.mean(figures["leg_nees"][-WINDOW:]))
     assert figures["coverage"][-1] >= 0.8
-    told = {item.key: item.value for item in comparing.verdict().values}
+    told = values_of(comparing.verdict())
     assert float(told["NEES"]) == pytest.approx(figures["nees"][-1], abs=1e-3)
     assert "refused" not in " ".join(told)
     # The error itself, in the robot's frame, with the covariance promised for it.
@@ -216,7 +209,7 @@ def test_an_honest_covariance_is_said_to_be_so(launch: Any, compare: Any) -> Non
     assert last.header.frame_id == "base_link"
     assert math.hypot(last.vector.x, last.vector.y) < 0.05
     assert pose.pose.pose.position.x == last.vector.x
-    block = pose.pose.covariance.reshape(6, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
+    block = in_plane(pose.pose.covariance)
     assert (np.linalg.eigvalsh(block) > 0.0).all()
     assert (block == block.T).all() or np.allclose(block, block.T, rtol=1e-9)
     comparing.stop()
@@ -232,9 +225,7 @@ def test_a_covariance_a_third_of_the_true_sigma_is_said_to_be_too_small(
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith("the covariance is too small, the errors are larger")
     figures = {name: kept[-1].data for name, kept in comparing.figures.items() if kept}
-    assert (
-        figures["nees"] > figures["nees_high"]
-    )  # which legs are in the window depends on the machine
+    assert figures["nees"] > figures["nees_high"]  # which legs are there depends on the machine
     assert figures["coverage"] < 0.9
     assert "the covariance is too small" in comparing.stop()
 
@@ -283,7 +274,7 @@ def test_silence_and_clocks_that_do_not_meet_are_said(launch: Any, compare: Any)
     }
 
     def counted() -> dict[str, str]:
-        return {item.key: item.value for item in comparing.said[-1].values}
+        return values_of(comparing.said[-1])
 
     launched.until(lambda: refused <= counted().keys(), "what was refused")
     assert {counted()[each] for each in refused} == {"1"}

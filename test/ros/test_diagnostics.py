@@ -92,9 +92,7 @@ def test_what_the_node_cannot_keep_up_with_is_counted(launch: Any, robot: dict[s
     del robot["qos_overrides"]
     node = launch(robot)
     flood = node.node.create_publisher(
-        JointState,
-        "joint_states",
-        QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT),
+        JointState, "joint_states", QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
     )
     node.until(lambda: flood.get_subscription_count() > 0, "subscriber")
     node.rest(0.3)

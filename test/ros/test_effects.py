@@ -16,10 +16,10 @@ import pytest
 pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import PoseStamped
-from rclpy.time import Time
-from sensor_msgs.msg import Imu
+from sensor_msgs.msg import Imu, JointState
 
 from test.model.drives import Ticks, random_drive
+from test.ros.messages import seconds_of, stamp_at, turn, yaw_of
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
 from werrimbi_odom.model.robot import Robot
@@ -70,25 +70,15 @@ def play(node: Any, ticks: Ticks) -> None:
 
 def poses(messages: list[Any]) -> np.ndarray:
     """Stamp, x, y, yaw of odometry."""
-    table = []
-    for message in messages:
-        pose, stamp = message.pose.pose, message.header.stamp
-        yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
-        table.append((stamp.sec + 1e-9 * stamp.nanosec, pose.position.x, pose.position.y, yaw))
-    return np.array(table)
+    each = ((message, message.pose.pose) for message in messages)
+    return np.array([(seconds_of(m), p.position.x, p.position.y, yaw_of(p)) for m, p in each])
 
 
 def found_each_other(node: Any) -> None:
     """Before the first reading, without sending one: the effects' memory begins with it."""
-    node.publisher(type_of_joints(), "joint_states")
+    node.publisher(JointState, "joint_states")
     node.until(lambda: node.node.count_publishers("odom") > 0, "publisher of odom")
     node.rest(0.5)
-
-
-def type_of_joints() -> type:
-    from sensor_msgs.msg import JointState
-
-    return JointState
 
 
 def test_live_is_what_werrimbi_odom_says_of_the_record(
@@ -194,10 +184,8 @@ def test_the_phase_of_a_wheel_is_learnt_from_a_topic(
             time += 0.025  # the mean rate of the next step
         else:
             message = PoseStamped()
-            yaw = true.yaw[row] + chance.normal(0.0, 0.001)
-            message.pose.orientation.z = math.sin(0.5 * yaw)
-            message.pose.orientation.w = math.cos(0.5 * yaw)
-        message.header.stamp = Time(nanoseconds=round(1e9 * time)).to_msg()
+            turn(message.pose, true.yaw[row] + chance.normal(0.0, 0.001))
+        message.header.stamp = stamp_at(time)
         node.send(message_type, "heading", message)
         if row % 40 == 39:  # less than the node keeps, however busy the machine
             node.last()

@@ -19,10 +19,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-import rclpy
-from rclpy.context import Context
-from rclpy.parameter import Parameter
-
+from test.ros.messages import read_by_ros
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.robot import Robot
 
@@ -37,15 +34,7 @@ DEFAULT_NOISE = np.diag([0.05, 0.05, 0.06, 0.025, 0.025, 0.02, 0.01, 0.01])
 @functools.cache
 def configured() -> dict[str, Any]:
     """The file as ROS reads it: the types of its lists must agree, or no node starts with it."""
-    context = Context()
-    rclpy.init(context=context, args=[])
-    arguments = ["--ros-args", "--params-file", str(FILE)]
-    node = rclpy.create_node("ekf_filter_node", context=context, cli_args=arguments)
-    with node.handle:
-        values = {name: p.value for name, p in node.handle.get_parameters(Parameter).items()}
-    node.destroy_node()
-    rclpy.shutdown(context=context)
-    return values
+    return read_by_ros("ekf_filter_node", ["--ros-args", "--params-file", str(FILE)])[1]
 
 
 @functools.cache

@@ -16,11 +16,11 @@ pytest.importorskip("rclpy")
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
+from test.ros.messages import in_plane, values_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
 NOISY = Robot(0.35, 0.05, 2000.0, 1000.0, left_wheel_noise=0.05, right_wheel_noise=0.05)
-PLANE = np.ix_((0, 1, 5), (0, 1, 5))
 
 
 def test_the_node_publishes_exact_moments_about_its_pose(
@@ -41,12 +41,12 @@ def test_the_node_publishes_exact_moments_about_its_pose(
     counts = np.array(time), np.array(left), np.array(right)
     exact = trajectory(replace(NOISY, covariance_order="exact"), *counts)
     first = trajectory(NOISY, *counts)
-    published = np.asarray(last.pose.covariance).reshape(6, 6)[PLANE]
+    published = in_plane(last.pose.covariance)
     assert published == pytest.approx(exact.covariance.matrix()[-1], rel=1e-6, abs=1e-12)
     assert last.pose.pose.position.x == pytest.approx(first.x[-1], abs=1e-9)
     assert np.abs(published - first.covariance.matrix()[-1]).max() > 0.02 * published.max()
     assert exact.mean_shift is not None
-    shift = {item.key: item.value for item in told[-1].values}["mean shift"]
+    shift = values_of(told[-1])["mean shift"]
     x, y = (float(number) for number in re.findall(r"[+-][\d.]+", shift))
     assert x == pytest.approx(1e3 * exact.mean_shift[0][-1], abs=0.06)
     assert y == pytest.approx(1e3 * exact.mean_shift[1][-1], abs=0.06)

@@ -18,6 +18,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int64MultiArray
@@ -78,7 +79,7 @@ def test_namespace_names_and_remapping(launch: Launch, robot: Robot) -> None:
     ]
     frames = {"odom_frame_id": "k/odom", "base_frame_id": "k/base"}
     node = launch(robot | overrides | frames, *arguments)
-    odometry = node.keep(type_of_odometry(), "/wheel_odom")
+    odometry = node.keep(Odometry, "/wheel_odom")
     names = ["left_wheel_joint", "right_wheel_joint"]
     message = JointState(name=names, position=[0.0, 0.0])
     for second in range(1, 1000):
@@ -93,12 +94,6 @@ def test_namespace_names_and_remapping(launch: Launch, robot: Robot) -> None:
     assert "/kangaroo/legs/reset" in services
     assert node.node.count_publishers("/kangaroo/legs/status") == 1
     assert node.node.count_publishers("/kangaroo/legs/pieces") == 1
-
-
-def type_of_odometry() -> type:
-    from nav_msgs.msg import Odometry
-
-    return Odometry
 
 
 def test_simulated_time_stamps_what_has_no_stamp(launch: Launch, robot: Robot) -> None:

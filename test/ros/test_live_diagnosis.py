@@ -20,6 +20,7 @@ from std_srvs.srv import Trigger
 
 import werrimbi_odom as wo
 from test.ros.beside import arguments
+from test.ros.messages import values_of
 from test.ros.test_compare_node import (
     COMMAND,
     DEEP,
@@ -58,7 +59,7 @@ def watched(
 
 def missing(comparing: Comparing) -> tuple[Any, dict[str, str]]:
     status = comparing.told["what is missing"][-1]
-    return status, {item.key: item.value for item in status.values}
+    return status, values_of(status)
 
 
 def test_what_is_missing_is_told_and_written_beside_the_file_in_use(

@@ -12,11 +12,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip("rclpy")
 
-import rclpy
-from rclpy.context import Context
-from rclpy.parameter import Parameter
-
 from test.robot_file import BARE
+from test.ros.messages import read_by_ros
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.ros.domain import free_domain
@@ -52,14 +49,6 @@ def test_a_number_is_the_same_to_both(tmp_path: Path, number: str) -> None:
 def to_ros(file: Path) -> object:
     """What ROS's reader hands to a node."""
     domain, lock = free_domain()
-    context = Context()
-    rclpy.init(args=["--ros-args", "--params-file", str(file)], context=context, domain_id=domain)
-    try:
-        node = rclpy.create_node("odom_node", context=context)
-        with node.handle:
-            given = node.handle.get_parameters(Parameter)
-        node.destroy_node()
-    finally:
-        rclpy.shutdown(context=context)
-        lock.close()
-    return given["right_ticks_per_revolution"].value
+    with lock:
+        _, given = read_by_ros("odom_node", ["--ros-args", "--params-file", str(file)], domain)
+    return given["right_ticks_per_revolution"]

@@ -21,10 +21,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from werrimbi_odom.effects import find, lookup
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import PARAMETERS, VIRTUAL_TICKS_PER_REVOLUTION
-from werrimbi_odom.ros.odom_parameters import (
-    CHANGEABLE,
-    settings_of,
-)
+from werrimbi_odom.ros.odom_parameters import CHANGEABLE, settings_of
 
 Robot = dict[str, Any]
 Refused = Callable[..., str]
@@ -185,9 +182,7 @@ def test_the_table_is_declared_with_words_and_ranges(node: Any, robot: Robot) ->
     ).result.names
     assert set(names) < set(listed)
     described = node.call(
-        DescribeParameters,
-        "odom_node/describe_parameters",
-        DescribeParameters.Request(names=names),
+        DescribeParameters, "odom_node/describe_parameters", DescribeParameters.Request(names=names)
     ).descriptors
     for item, descriptor in zip(PARAMETERS, described, strict=True):
         assert descriptor.description.startswith(item.says)

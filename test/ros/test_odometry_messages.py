@@ -14,6 +14,7 @@ pytest.importorskip("rclpy")
 
 from builtin_interfaces.msg import Time
 
+from test.ros.messages import assert_covariances, matrix_of, yaw_of
 from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_across
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
@@ -50,12 +51,8 @@ def test_matrices_are_symmetric_and_semi_definite_for_any_robot_and_drive(
             if estimate is None:
                 continue
             odometry = message.filled(Time(), estimate)
-            for covariance in (odometry.pose.covariance, odometry.twist.covariance):
-                matrix = np.asarray(covariance).reshape(6, 6)
-                assert (matrix == matrix.T).all()
-                # Eigenvalues of the correlations, so that metres and radians weigh alike.
-                size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
-                assert np.linalg.eigvalsh(matrix / np.outer(size, size))[0] >= -1e-14
+            assert_covariances(odometry)
+            for matrix in map(matrix_of, (odometry.pose.covariance, odometry.twist.covariance)):
                 assert np.linalg.eigvalsh(matrix)[0] >= -1e-14 * matrix.max()
 
 
@@ -73,12 +70,7 @@ def test_far_away_and_back_with_a_heading_that_nobody_knows() -> None:
             estimate = odometer.update(time, round(at * far), round(at * 1.0001 * far))
             assert estimate is not None
             negative += min(estimate.covariance.xx, estimate.covariance.yy) < 0.0
-            odometry = message.filled(Time(), estimate)
-            matrix = np.asarray(odometry.pose.covariance).reshape(6, 6)
-            assert (matrix == matrix.T).all()
-            assert (matrix.diagonal() >= 0.0).all()
-            size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
-            assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -1e-14
+            assert_covariances(message.filled(Time(), estimate))
     assert negative, "nothing cancelled: this shows nothing"
 
 
@@ -87,12 +79,10 @@ def test_a_heading_of_many_turns_is_a_unit_quaternion() -> None:
     odometer.update(0.0, 0, 0)
     estimate = odometer.update(1000.0, -1_000_000, 500_000)
     assert estimate is not None
-    orientation = (
-        OdometryMessage("odom", "base_link").filled(Time(), estimate).pose.pose.orientation
-    )
-    assert math.hypot(orientation.z, orientation.w) == pytest.approx(1.0, abs=1e-15)
-    yaw = 2.0 * math.atan2(orientation.z, orientation.w)
-    assert math.remainder(yaw - estimate.pose.yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+    pose = OdometryMessage("odom", "base_link").filled(Time(), estimate).pose.pose
+    assert math.hypot(pose.orientation.z, pose.orientation.w) == pytest.approx(1.0, abs=1e-15)
+    too_far = math.remainder(yaw_of(pose) - estimate.pose.yaw, 2.0 * math.pi)
+    assert too_far == pytest.approx(0.0, abs=1e-9)
 
 
 def test_sigmas_are_read_in_the_robots_frame() -> None:

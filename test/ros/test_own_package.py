@@ -24,10 +24,7 @@ from werrimbi_odom.model.trajectory import trajectory
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "example" / "my_robot"
-HOLDING = {
-    "effects": ["tread_lies_down"],
-    "tread_lies_down": {"loss": 0.1},
-}
+HOLDING = {"effects": ["tread_lies_down"], "tread_lies_down": {"loss": 0.1}}
 
 
 @pytest.fixture(scope="module")

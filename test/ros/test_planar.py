@@ -17,11 +17,11 @@ pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import Quaternion
 
+from test.ros.messages import PLANE
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.ros import planar
 
-PLANE = np.ix_((0, 1, 5), (0, 1, 5))
 BLOCKS = arrays.arrays(np.float64, (3, 3), elements=st.floats())
 SCALES = arrays.arrays(np.float64, 3, elements=st.floats(1e-9, 1e9))
 SIXES = st.tuples(*[st.floats(-1e24, 1e24)] * 6)

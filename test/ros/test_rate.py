@@ -18,6 +18,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 from test.memory import resident
+from test.ros.messages import in_plane, seconds_of, yaw_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -66,12 +67,12 @@ def soak(node: Any, folder: Path, seconds: float) -> list[int]:
     assert counts["published"] == counts["messages"] - 1
     # This test's own listener may be starved on a busy machine, which says nothing of the node.
     assert 0 < received <= counts["published"]
-    position, orientation = last.pose.pose.position, last.pose.pose.orientation
+    position = last.pose.pose.position
     assert position.x == pytest.approx(model.x[-1], abs=1e-9)
     assert position.y == pytest.approx(model.y[-1], abs=1e-9)
-    yaw = 2.0 * math.atan2(orientation.z, orientation.w)
-    assert math.remainder(yaw - model.yaw[-1], 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
-    covariance = np.asarray(last.pose.covariance).reshape(6, 6)[np.ix_((0, 1, 5), (0, 1, 5))]
+    turned = math.remainder(yaw_of(last.pose.pose) - model.yaw[-1], 2.0 * math.pi)
+    assert turned == pytest.approx(0.0, abs=1e-9)
+    covariance = in_plane(last.pose.covariance)
     np.testing.assert_allclose(covariance, model.covariance.matrix()[-1], rtol=1e-8)
     return memory
 
@@ -82,7 +83,7 @@ def listened(node: Any, expected: int) -> tuple[int, Any, list[int], float]:
     received, last, memory = 0, None, []
     node.until(lambda: bool(node.odometry), "odometry")
     begin = cpu_time(node.process.pid)
-    while last is None or abs(stamp_of(last) - last_stamp) > 1e-6:
+    while last is None or abs(seconds_of(last) - last_stamp) > 1e-6:
         seen = len(node.diagnostics)
         node.until(
             lambda seen=seen: len(node.diagnostics) > seen or arrived(node, last_stamp), "report"
@@ -98,11 +99,7 @@ def listened(node: Any, expected: int) -> tuple[int, Any, list[int], float]:
 
 
 def arrived(node: Any, last_stamp: float) -> bool:
-    return bool(node.odometry) and abs(stamp_of(node.odometry[-1]) - last_stamp) < 1e-6
-
-
-def stamp_of(message: Any) -> float:
-    return float(message.header.stamp.sec) + 1e-9 * float(message.header.stamp.nanosec)
+    return bool(node.odometry) and abs(seconds_of(node.odometry[-1]) - last_stamp) < 1e-6
 
 
 def cpu_time(process: int) -> float:

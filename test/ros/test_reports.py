@@ -20,6 +20,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from visualization_msgs.msg import Marker
 
+from test.ros.messages import PLANE, in_plane, values_of, yaw_of
+
 TICK = 2.0 * math.pi * 0.05 / 2000.0
 LINE = [(100, 50)] * 60
 SPIN = [(-35, 17.5)] * 50  # 90 degrees
@@ -41,7 +43,7 @@ def test_status_is_plain_to_read(node: Any, status: list[Any]) -> None:
     node.reset()
     node.drive(LINE)
     told_since_now(node, status)
-    values = {item.key: item.value for item in status[-1].values}
+    values = values_of(status[-1])
     assert status[-1].name == "odom_node: estimate"
     assert status[-1].message == (
         "line 0.94 m; 0.94 m driven; 1 sigma 0.3 mm along, 1.1 mm across, 0.11 deg"
@@ -52,7 +54,7 @@ def test_status_is_plain_to_read(node: Any, status: list[Any]) -> None:
     assert values["piece radius"] == "straight"
     node.drive(SPIN)
     told_since_now(node, status)
-    values = {item.key: item.value for item in status[-1].values}
+    values = values_of(status[-1])
     assert status[-1].message.startswith("spin 90.0 deg to the left; 0.94 m driven; 1 sigma ")
     assert values["piece"] == "spin"
     assert values["piece turn"] == values["heading"] == "90.0 deg"
@@ -77,7 +79,7 @@ def test_diagnostics_say_the_rates(node: Any) -> None:
         node.rest(0.02)
     status = node.diagnostics[-1]
     assert status.level == DiagnosticStatus.OK
-    rates = {item.key: float(item.value.split()[0]) for item in status.values if "rate" in item.key}
+    rates = {k: float(v.split()[0]) for k, v in values_of(status).items() if "rate" in k}
     assert 25.0 < rates["input rate"] <= 50.0
     assert rates["output rate"] == rates["input rate"]
     assert status.message == f"{rates['input rate']} Hz in, {rates['output rate']} Hz out"
@@ -144,7 +146,7 @@ def test_each_piece_ends_in_its_ellipse(driven: dict[tuple[str, int], Any]) -> N
     # 95 % of a normal vector lies within 2.448 sigma; across a line sigma is 1.1 mm here.
     assert ellipse.scale.x == pytest.approx(2 * 2.448 * 1.095e-3, rel=0.05)
     assert ellipse.scale.y < ellipse.scale.x
-    across = 2.0 * math.atan2(ellipse.pose.orientation.z, ellipse.pose.orientation.w)
+    across = yaw_of(ellipse.pose)
     assert abs(math.sin(across)) == pytest.approx(1.0, abs=0.05)
 
 
@@ -181,7 +183,6 @@ def test_the_number_of_markers_is_bounded_and_a_late_viewer_sees_them_all(
     assert not [key for key in again if key[0] in ("line", "arc", "spin")]
 
 
-PLANE = np.ix_((0, 1, 5), (0, 1, 5))
 COVARIANCE = np.array([[0.04, 0.01, 0.002], [0.01, 0.09, -0.003], [0.002, -0.003, 0.01]])
 
 
@@ -206,23 +207,23 @@ def test_reset_sets_everything_to_zero(node: Any) -> None:
     message = node.drive([(0, 0)])
     assert (message.pose.pose.position.x, message.pose.pose.position.y) == (0.0, 0.0)
     assert message.pose.pose.orientation.w == 1.0
-    assert not np.asarray(message.pose.covariance).reshape(6, 6)[PLANE].any()
+    assert not in_plane(message.pose.covariance).any()
 
 
 def test_set_pose_goes_on_from_there(node: Any) -> None:
     node.drive([(100, 50)] * 30)
     node.set_pose(pose_message())
     message = node.drive([(0, 0)])
-    position, orientation = message.pose.pose.position, message.pose.pose.orientation
+    position = message.pose.pose.position
     assert (position.x, position.y) == (2.0, -1.0)
-    assert 2.0 * math.atan2(orientation.z, orientation.w) == pytest.approx(0.5 * math.pi)
-    got = np.asarray(message.pose.covariance).reshape(6, 6)[PLANE]
+    assert yaw_of(message.pose.pose) == pytest.approx(0.5 * math.pi)
+    got = in_plane(message.pose.covariance)
     np.testing.assert_allclose(got, COVARIANCE, rtol=1e-9)
     message = node.drive([(2000, 1000)])
     way = 2.0 * math.pi * 0.05
     assert message.pose.pose.position.y == pytest.approx(-1.0 + way, abs=1e-9)
     carried = np.array([[1.0, 0.0, -way], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    got = np.asarray(message.pose.covariance).reshape(6, 6)[PLANE]
+    got = in_plane(message.pose.covariance)
     np.testing.assert_allclose(got, carried @ COVARIANCE @ carried.T, atol=1e-5)
 
 
@@ -245,10 +246,7 @@ REFUSED = {
     "asymmetric": (pose_message(LOPSIDED), "covariance not symmetric"),
     "negative": (pose_message(INDEFINITE), "covariance not positive semi-definite"),
     "indefinite": (pose_message(TOO_CLOSE), "covariance not positive semi-definite"),
-    "beside_a_large_one": (
-        pose_message(HIDDEN_NEGATIVE),
-        "covariance not positive semi-definite",
-    ),
+    "beside_a_large_one": (pose_message(HIDDEN_NEGATIVE), "covariance not positive semi-definite"),
     "correlation_of_2": (pose_message(HIDDEN_TOO_CLOSE), "covariance not positive semi-definite"),
     "long_quaternion": (pose_message(qz=1e200, qw=0.0), "orientation not a rotation"),
     "long_tilted": (pose_message(qx=1e200, qz=0.0, qw=0.0), "orientation not a rotation"),

@@ -10,8 +10,9 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from rclpy.time import Time
 from sensor_msgs.msg import Imu
+
+from test.ros.messages import stamp_at
 
 
 @pytest.mark.parametrize("upwards", ["z", "y"])
@@ -27,7 +28,7 @@ def test_a_spin_that_the_gyro_denies_makes_the_heading_unsure(
             setattr(message.angular_velocity, upwards, body if 10 <= step < 60 else 0.0)
             setattr(message.linear_acceleration, upwards, 9.8)
             node.step(*((-13.4, 6.7) if 10 <= step < 60 else (0, 0)))
-            message.header.stamp = Time(nanoseconds=round(1e9 * node.now)).to_msg()
+            message.header.stamp = stamp_at(node.now)
             node.send(Imu, "imu", message)
             node.rest(0.002)
         return float(node.last().pose.covariance[35])

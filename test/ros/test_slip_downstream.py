@@ -20,8 +20,7 @@ import pytest
 pytest.importorskip("rclpy")
 pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[all])")
 
-from builtin_interfaces.msg import Time
-
+from test.ros.messages import in_plane, stamp_at
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.slip import NOTHING, SlipGuard
 from werrimbi_odom.ros.live_odometer import LiveOdometer
@@ -118,14 +117,13 @@ def followed(
             guard.gyro(time, live.gyro(time - 0.01, time))
         if period % 4:
             continue
-        whole, nano = divmod(round(1e9 * (time + 1.0)), 10**9)
-        stamp = Time(sec=whole, nanosec=nano)
+        stamp = stamp_at(time + 1.0)
         estimate = tracker.take(stamp, *live.counters(time))
         if estimate is not None:
             missed = guard.wheels(time, tracker.heading)
             odometry = message.filled(stamp, estimate, missed if watched else NOTHING)
             twist = odometry.twist.twist
-            block = odometry.twist.covariance.reshape(6, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
+            block = in_plane(odometry.twist.covariance)
             said = np.array([twist.linear.x, twist.linear.y, twist.angular.z])
             ekf.predict(said, block, time - before)
         before = time

@@ -16,12 +16,11 @@ import pytest
 pytest.importorskip("rclpy")
 
 from nav_msgs.msg import Odometry
-from rclpy.parameter import Parameter
 from rclpy.qos import ReliabilityPolicy, qos_profile_sensor_data
-from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
 from test.package.launching import launched
+from test.ros.messages import read_by_ros, stamp_at
 
 ROOT = Path(__file__).parents[2]
 
@@ -58,7 +57,7 @@ def test_each_robot_hears_its_own_wheels_and_tells_its_own_odometry(fleet: Any) 
         for name in kept:
             counts = [20.0 * row, 10.0 * row] if name == "robot1" else [10.0 * row, 5.0 * row]
             message = JointState(name=names, position=counts)
-            message.header.stamp = Time(nanoseconds=10**12 + row * 20_000_000).to_msg()
+            message.header.stamp = stamp_at(1000.0 + 0.02 * row)
             fleet.send(JointState, f"/{name}/joint_states", message)
         fleet.rest(0.02)
         if min(map(len, kept.values())) > 20:
@@ -93,19 +92,9 @@ def test_qos_overrides_reach_the_topic_in_its_namespace(fleet: Any) -> None:
 
 
 def test_the_filters_file_is_read_in_any_namespace() -> None:
-    import rclpy
-    from rclpy.context import Context
-
     for namespace in ("", "/robot1", "/site/robot1"):
-        processes = launched(ROOT, "odom_ekf.launch.xml", namespace=namespace)
-        arguments = list(processes[1].arguments)
-        context = Context()
-        rclpy.init(context=context, args=[])
-        node = rclpy.create_node("ekf_filter_node", context=context, cli_args=arguments)
-        with node.handle:
-            read = node.handle.get_parameters(Parameter)
-        assert node.get_namespace() == (namespace or "/")
-        assert read["odom0"].value == "odom"
-        assert len(read["process_noise_covariance"].value) == 225
-        node.destroy_node()
-        rclpy.shutdown(context=context)
+        _, ekf = launched(ROOT, "odom_ekf.launch.xml", namespace=namespace)
+        where, read = read_by_ros("ekf_filter_node", list(ekf.arguments))
+        assert where == (namespace or "/")
+        assert read["odom0"] == "odom"
+        assert len(read["process_noise_covariance"]) == 225

@@ -40,6 +40,7 @@ import werrimbi_odom as wo
 from test.driving.in_engine import InEngine
 from test.driving.test_watched_hours import TRUTH, patrol
 from test.memory import resident
+from test.ros.messages import stamp_at, turn, values_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.demo.node_processes import private_domain
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
@@ -133,10 +134,8 @@ def wanderings(seed: int, file: RobotFile, sets_in: float, hidden: str) -> Itera
         assert run.reference is not None
         x, y, yaw = run.reference.x, run.reference.y, run.reference.yaw
         there = Pose(float(x[-1]), float(y[-1]), float(yaw[-1]))
-        begun, counted = (
-            float(run.ticks.time[-1]),
-            np.array([run.ticks.left[-1], run.ticks.right[-1]]),
-        )
+        begun = float(run.ticks.time[-1])
+        counted = np.array([run.ticks.left[-1], run.ticks.right[-1]])
         noise = (sigma * rng.standard_normal(x.size) for sigma in (0.001, 0.001, 0.002))
         x, y, yaw = (one + other for one, other in zip((x, y, yaw), noise, strict=True))
         keep = slice(0, -1)  # the last reading is the next one's first
@@ -173,14 +172,7 @@ class Costs:
 
 
 class Watched:
-    """compare_node on a robot file, fed message by message.
-
-    Parameters
-    ----------
-    folder : Path
-    robot : Path
-        The robot file of both nodes.
-    """
+    """compare_node, fed message by message, on a robot file that is both nodes'."""
 
     def __init__(self, folder: Path, robot: Path) -> None:
         self._stack = ExitStack()
@@ -245,7 +237,7 @@ class Watched:
                 yield time
 
     def _wheels(self, time: float, left: float, right: float) -> None:
-        stamp = _stamp(time)
+        stamp = stamp_at(BEGINS + time)
         began = clock.process_time()
         estimate = self._tracker.take(stamp, left, right)
         odometry = None if estimate is None else self._message.filled(stamp, estimate)
@@ -268,10 +260,9 @@ class Watched:
 
     def _pose(self, time: float, x: float, y: float, yaw: float) -> None:
         message = PoseStamped()
-        message.header.stamp, message.header.frame_id = _stamp(time), "world"
-        place, turn = message.pose.position, message.pose.orientation
-        place.x, place.y = x, y
-        turn.z, turn.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+        message.header.stamp, message.header.frame_id = stamp_at(BEGINS + time), "world"
+        message.pose.position.x, message.pose.position.y = x, y
+        turn(message.pose, yaw)
         began = clock.process_time()
         self._take["/reference"](message)
         self.costs.comparing += clock.process_time() - began
@@ -302,11 +293,7 @@ class Watched:
 
     def told(self, name: str, key: str) -> str:
         """A value of a status."""
-        return str({each.key: each.value for each in self.status[name].values}[key])
-
-
-def _stamp(time: float) -> Any:
-    return Time(nanoseconds=round(1e9 * (BEGINS + time))).to_msg()
+        return values_of(self.status[name])[key]
 
 
 def looks(

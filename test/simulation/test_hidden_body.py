@@ -24,12 +24,8 @@ from test.simulation.dead_reckoning import (
 )
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.chassis import SKID_BEHIND
-from werrimbi_odom.simulation.hidden.geometry import (
-    TrackWidth,
-    UnequalWheelRadii,
-    WheelRadiusScale,
-)
-from werrimbi_odom.simulation.hidden.mount import AskewAxle
+from werrimbi_odom.simulation.hidden.axle_and_reference import AskewAxle
+from werrimbi_odom.simulation.hidden.geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from werrimbi_odom.simulation.hidden.tyres import (
     RadiusFollowsPayload,
     RadiusFollowsTemperature,

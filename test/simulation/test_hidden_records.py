@@ -15,6 +15,12 @@ import pytest
 
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.hidden import Entry
+from werrimbi_odom.simulation.hidden.axle_and_reference import (
+    ReferenceDelay,
+    ReferenceMirrored,
+    ReferenceMount,
+    WarmingGyro,
+)
 from werrimbi_odom.simulation.hidden.counters import (
     EncoderSkew,
     MissedTicks,
@@ -22,12 +28,6 @@ from werrimbi_odom.simulation.hidden.counters import (
     WheelsSwapped,
 )
 from werrimbi_odom.simulation.hidden.geometry import TrackWidth, WheelRadiusScale
-from werrimbi_odom.simulation.hidden.mount import (
-    ReferenceDelay,
-    ReferenceMirrored,
-    ReferenceMount,
-    WarmingGyro,
-)
 from werrimbi_odom.simulation.sensors import wrap
 
 EXACT = sim.ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)

@@ -9,14 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from test.simulation.dead_reckoning import (
-    BASE,
-    CALM,
-    drive,
-    errors,
-    rolled,
-    turned,
-)
+from test.simulation.dead_reckoning import BASE, CALM, drive, errors, rolled, turned
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.hidden.creep import (
     CastorKick,

@@ -5,18 +5,17 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from test.command_line import ROOT, WERRIMBI
+from test.command_line import WERRIMBI, started
 from test.workbench.session import written
 from werrimbi_odom.report.save import find_browser
 
@@ -31,18 +30,6 @@ class Served:
     process: subprocess.Popen[str]
 
 
-def begun(folder: Path, words: Sequence[object]) -> subprocess.Popen[str]:
-    """The command, in a folder."""
-    return subprocess.Popen(
-        [*WERRIMBI, *map(str, words)],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     pytest.importorskip(
@@ -52,7 +39,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     robot, train, holdout = written(folder)
     told = tmp_path_factory.mktemp("told") / "address.json"
     words = ["workbench", "--robot", robot, *train, "--holdout", *holdout, "--json", told]
-    process = begun(folder, words)
+    process = started([*WERRIMBI, *words], folder)
     try:
         while not told.exists():
             if process.poll() is not None:

@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 from test.axe import RUN, axe_script
-from test.workbench.conftest import PATIENCE, begun
+from test.command_line import WERRIMBI, started
+from test.workbench.conftest import PATIENCE
 from test.workbench.session import written
 
 
@@ -36,7 +37,8 @@ def held(tmp_path: Path) -> Iterator[tuple[str, int]]:
     """Address of a workbench, and the process that compares for it, held before it begins."""
     pytest.importorskip("nicegui", reason="the workbench needs NiceGUI")
     robot, train, holdout = written(tmp_path)
-    process = begun(tmp_path, ["workbench", "--robot", robot, *train, "--holdout", *holdout])
+    words = ["workbench", "--robot", robot, *train, "--holdout", *holdout]
+    process = started([*WERRIMBI, *words], tmp_path)
     try:
         worker = None
         while worker is None:

@@ -56,17 +56,11 @@ def write_run(
 
 
 def ticks_of(
-    t: ArrayLike,
-    left: ArrayLike,
-    right: ArrayLike,
-    channels: Mapping[str, ArrayLike] | None = None,
+    t: ArrayLike, left: ArrayLike, right: ArrayLike, channels: Mapping[str, ArrayLike] | None = None
 ) -> Ticks:
     """Check and convert arrays of ticks; for their meaning see `write_run`.
 
-    Raises
-    ------
-    InputError
-        If one holds no numbers, or they are not one column each, all of one length.
+    InputError if one holds no numbers, or they are not one column each, all of one length.
     """
     given = {"t": t, "left": left, "right": right, **(channels or {})}
     columns = {name: numbers(name, values) for name, values in given.items()}
@@ -92,10 +86,7 @@ def _counts(values: NDArray[np.int64] | Floats) -> NDArray[np.int64] | Floats:
 def numbers(name: str, values: ArrayLike) -> NDArray[np.int64] | Floats:
     """An array of int64 or float64; None is NaN.
 
-    Raises
-    ------
-    InputError
-        If it holds no numbers; the message has its name.
+    InputError if it holds no numbers; the message has its name.
     """
     found = np.asarray(values)
     if found.dtype.kind in "mM":

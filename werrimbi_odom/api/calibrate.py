@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.api.calibrate_umbmark import before_after
+from werrimbi_odom.api.calibrate_umbmark import calibration
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
-from werrimbi_odom.api.result import NewRobot, Result
+from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.results_table import read_results
@@ -27,10 +27,10 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.calibration.document import calibration_document, leg_figure, noise_figure
+from werrimbi_odom.report.calibration.document import leg_figure, noise_figure
 from werrimbi_odom.report.calibration.fit_words import fit_in_words, fit_json
 from werrimbi_odom.report.calibration.noise_words import noise_in_words, noise_json
-from werrimbi_odom.report.document import Document, paragraphs
+from werrimbi_odom.report.document import paragraphs
 from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
 if TYPE_CHECKING:
@@ -76,24 +76,17 @@ def calibrated(given: Recordings) -> Result[Calibration]:
         figures["holdout"] = _judged(holdout, found)
         said.append(_told(figures["holdout"]))
     words = [*fit_in_words(found), *paragraphs(said, apart=True)]
-    changes = found.changes
-
-    def document() -> Document:
-        return calibration_document(
-            "Calibration by maximum likelihood",
-            words,
-            "Errors of short legs, before and after calibration",
-            "Each mark is a short leg, seen by the robot: the error along, and to its left. After "
-            "the calibration the cloud should be smaller and lie about the origin.",
-            lambda: _figure(runs, source, found),
-            before_after(source, changes),
-        )
-
-    return Result(
-        found=found,
-        document=document,
-        figures_of_json=lambda: figures,
-        new_robot=NewRobot(source, changes),
+    return calibration(
+        source,
+        found,
+        found.changes,
+        lambda: figures,
+        title="Calibration by maximum likelihood",
+        words=words,
+        heading="Errors of short legs, before and after calibration",
+        see="Each mark is a short leg, seen by the robot: the error along, and to its left. After "
+        "the calibration the cloud should be smaller and lie about the origin.",
+        figure=lambda: _figure(runs, source, found),
     )
 
 
@@ -179,12 +172,7 @@ def calibrate_noise(
         If the table is not usable; the message gives the place.
     """
     track = robot.robot.track
-    options = {
-        "distance": distance,
-        "reference_sigma_xy": reference_sigma_xy,
-        "reference_sigma_yaw": reference_sigma_yaw,
-    }
-    errors = _errors(Path(results), options)
+    errors = _errors(Path(results), distance, reference_sigma_xy, reference_sigma_yaw)
     pieces = out_and_back(distance, track, turn_round=turn_round)
     model = design(pieces, track, sigma_xy=reference_sigma_xy, sigma_yaw=reference_sigma_yaw)
     try:
@@ -197,38 +185,31 @@ def calibrate_noise(
         "right_wheel_noise": float(f"{fit.right.value:.6g}"),
     }
 
-    def document() -> Document:
-        return calibration_document(
-            "Noise of the wheels from drives out and back",
-            words,
-            f"Noise of the wheels: {fit.runs} runs of {distance:g} m out and back",
-            "Each mark is a drive out and back. The solid ellipse of the model should be as large "
-            "and lie as the dashed one of the drives themselves.",
-            lambda: noise_figure(errors, fit.data, fit.model),
-            before_after(robot, changes),
-        )
-
-    return Result(
-        found=fit,
-        document=document,
-        figures_of_json=lambda: noise_json(fit, distance, COLUMNS),
-        new_robot=NewRobot(robot, changes),
+    return calibration(
+        robot,
+        fit,
+        changes,
+        lambda: noise_json(fit, distance, COLUMNS),
+        title="Noise of the wheels from drives out and back",
+        words=words,
+        heading=f"Noise of the wheels: {fit.runs} runs of {distance:g} m out and back",
+        see="Each mark is a drive out and back. The solid ellipse of the model should be as large "
+        "and lie as the dashed one of the drives themselves.",
+        figure=lambda: noise_figure(errors, fit.data, fit.model),
     )
 
 
-def _errors(results: Path, options: Mapping[str, float]) -> Floats:
-    for option, least in (
-        ("distance", "above"),
-        ("reference_sigma_xy", "from"),
-        ("reference_sigma_yaw", "from"),
+def _errors(results: Path, distance: float, sigma_xy: float, sigma_yaw: float) -> Floats:
+    for option, value, least in (
+        ("distance", distance, "above"),
+        ("reference-sigma-xy", sigma_xy, "from"),
+        ("reference-sigma-yaw", sigma_yaw, "from"),
     ):
-        value = options[option]
         if not math.isfinite(value) or value < 0.0 or (value == 0.0 and least == "above"):
-            name = option.replace("_", "-")
-            raise InputError(f"--{name} must be a number {least} zero, not {value:g}")
+            raise InputError(f"--{option} must be a number {least} zero, not {value:g}")
     errors = read_results(results, COLUMNS).numbers
     for limit, columns, unit in (
-        (options["distance"], (0, 1), "more than --distance; are the errors in metres?"),
+        (distance, (0, 1), "more than --distance; are the errors in metres?"),
         (math.pi, (2,), "more than half a turn; are the angles in radians?"),
     ):
         for column in columns:

@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from werrimbi_odom.api.result import NewRobot, Result
+from werrimbi_odom.api.result import Found, NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.results_table import read_results
@@ -35,7 +35,7 @@ from werrimbi_odom.report.calibration.umbmark_words import (
     gained_in_words,
     umbmark_json,
 )
-from werrimbi_odom.report.document import Document, paragraphs
+from werrimbi_odom.report.document import paragraphs
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -104,32 +104,39 @@ def calibrate_umbmark(
             OffsetCloud(name, shown.cw, shown.ccw) if shown else None,
         )
 
-    def document() -> Document:
-        return calibration_document(
-            "UMBmark: base and radii from squares",
-            words,
-            f"UMBmark: squares of {squares.side:g} m",
-            "Where squares ended, clockwise and anticlockwise, measured minus odometry. After the "
-            "calibration both clouds should lie about the origin; the circle is the larger offset.",
-            figure,
-            before_after(robot, changes),
-        )
-
-    return Result(
-        found=found,
-        document=document,
-        figures_of_json=lambda: umbmark_json(squares, found, old, later, again),
-        new_robot=NewRobot(robot, changes),
+    return calibration(
+        robot,
+        found,
+        changes,
+        lambda: umbmark_json(squares, found, old, later, again),
+        title="UMBmark: base and radii from squares",
+        words=words,
+        heading=f"UMBmark: squares of {squares.side:g} m",
+        see="Where squares ended, clockwise and anticlockwise, measured minus odometry. After the "
+        "calibration both clouds should lie about the origin; the circle is the larger offset.",
+        figure=figure,
     )
 
 
-def before_after(robot: RobotFile, changes: dict[str, float]) -> dict[str, tuple[float, float]]:
-    """Old and new values of a calibration."""
-    return {
+def calibration(
+    robot: RobotFile,
+    found: Found,
+    changes: dict[str, float],
+    figures: Callable[[], dict[str, Any]],
+    **told: Any,
+) -> Result[Found]:
+    """Result of a calibration; `told` are the other parts of its document."""
+    before_after = {
         name: (float(getattr(robot.robot, name)), value)
         for name, value in changes.items()
         if hasattr(robot.robot, name)
     }
+    return Result(
+        found=found,
+        document=lambda: calibration_document(**told, changes=before_after),
+        figures_of_json=figures,
+        new_robot=NewRobot(robot, changes),
+    )
 
 
 def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
@@ -166,16 +173,8 @@ def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Rea
         read.notes.extend(f"{path}: {note}" for note in drive.notes)
         if drive.reference is None:
             raise InputError(f"{path}: there is no reference to compare the odometry with")
-        ticks, reference = drive.ticks, drive.reference
-        record = SquareRecording(
-            str(path),
-            ticks.time,
-            ticks.left,
-            ticks.right,
-            reference.time,
-            reference.x,
-            reference.y,
-            reference.yaw,
-        )
+        ticks, seen = drive.ticks, drive.reference
+        poses = seen.time, seen.x, seen.y, seen.yaw
+        record = SquareRecording(str(path), ticks.time, ticks.left, ticks.right, *poses)
         found.append(recorded_square(record, robot, read.side, source.limits))
     return squares_of(found, read.side)

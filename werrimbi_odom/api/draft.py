@@ -88,10 +88,7 @@ def draft(
 def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted:
     """`draft` for recordings that are already read.
 
-    Parameters
-    ----------
-    insist
-        How to draft for any verdict, in words; "": already requested.
+    `insist` says how to draft for any verdict; "": already requested.
     """
     robot = given.robot
     diagnosis = search(

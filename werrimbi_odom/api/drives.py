@@ -129,13 +129,7 @@ def recordings_of(
 
 
 def require_robot(robot: object, kind: type | UnionType) -> None:
-    """Check that what should be a robot is one.
-
-    Raises
-    ------
-    TypeError
-        If it is not.
-    """
+    """Check that what should be a robot is one; TypeError if it is not."""
     if not isinstance(robot, kind):
         raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
 
@@ -156,10 +150,7 @@ def how_of(**options: Unpack[Options]) -> DriveOptions:
 def refuse_circles(given: Recordings) -> list[str]:
     """Check that the references are independent of the wheels; return remarks on them.
 
-    Raises
-    ------
-    InputError
-        If one is computed from the wheels, and this is not accepted by option.
+    InputError if one is computed from the wheels, and this is not accepted by option.
     """
     from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 

@@ -21,20 +21,11 @@ def next_command(
     out: str = "",
     one_line: bool = False,
 ) -> str:
-    """Shell command over several indented lines.
+    """Shell command over several indented lines, or in `one_line` for a sentence.
 
-    Parameters
-    ----------
-    verb
-        The words after `werrimbi`.
-    given
-        Input of the current verb.
-    robot, effects
-        The robot file, if it differs from the input, and additional effects.
-    out
-        Value of --out; "" for none.
-    one_line
-        For use within a sentence.
+    `verb` are the words after `werrimbi`, `given` is the input of the current verb. `robot` is the
+    robot file, if it differs from the input; `effects` are additional ones; `out` is the value of
+    --out.
     """
     words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given.how)]
     if given.how.force_reference and any(run.circle for run in given.runs):

@@ -57,10 +57,7 @@ def compared(
 ) -> Result[Comparison]:
     """`compare` for recordings that are already read.
 
-    Parameters
-    ----------
-    over
-        The drives already cut into legs, so that before and after use the same legs.
+    `over` are the drives already cut into legs, so that before and after use the same legs.
     """
     from werrimbi_odom.inference.comparison.compare import compare as judge
     from werrimbi_odom.inference.comparison.compare import judged
@@ -170,10 +167,7 @@ def add(
 def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings) -> list[Effect]:
     """Find effects by name: "A,B" or several; effects are passed through.
 
-    Raises
-    ------
-    InputError
-        If a name is unknown, or given twice.
+    InputError if a name is unknown, or given twice.
     """
     several: Sequence[str | Effect]
     if isinstance(wanted, str):
@@ -206,17 +200,9 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
 
 
 def refuse_unearned(added: Added, insist: str) -> None:
-    """Raise if there is an objection to any of the effects.
+    """InputError if there is an objection to any of the effects; it names those without one.
 
-    Parameters
-    ----------
-    insist
-        How to add them regardless, in words.
-
-    Raises
-    ------
-    InputError
-        The objections, and the effects that can be added without them.
+    `insist` says how to add them regardless.
     """
     if added.objection is None:
         return

@@ -54,10 +54,7 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
 def refuse_mixing(arguments: argparse.Namespace) -> None:
     """Check: one robot or a fleet, processes or a cluster.
 
-    Raises
-    ------
-    InputError
-        If options contradict each other.
+    InputError if options contradict each other.
     """
     if arguments.fleet is None:
         for name in ("jobs", "scheduler"):
@@ -76,12 +73,8 @@ def refuse_mixing(arguments: argparse.Namespace) -> None:
 def run_fleet(arguments: argparse.Namespace) -> int:
     """Diagnose all robots, report; return 0.
 
-    Raises
-    ------
-    InputError
-        If the folder or the cluster is not usable; results so far are reported and written.
-    KeyboardInterrupt
-        On Ctrl-C; results so far are reported and written.
+    InputError if the folder or the cluster is not usable; results so far are reported and written.
+    KeyboardInterrupt on Ctrl-C; results so far are reported and written.
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.recordings import Asked

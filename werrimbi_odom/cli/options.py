@@ -74,16 +74,8 @@ def add_recording_arguments(
 ) -> None:
     """Declare RUN..., --robot, the options for reading and evaluation, --json and --report.
 
-    Parameters
-    ----------
-    holdout : bool
-        Include --holdout.
-    report : bool
-        Include --report.
-    required : bool
-        Whether RUN and --robot are required; otherwise the verb checks this itself.
-    force : str
-        Additional meaning of --force for the verb.
+    If RUN and --robot are not `required`, the verb checks them itself. `force` is what else --force
+    means for the verb.
     """
     declare(parser, "runs", nargs="+" if required else "*")
     if holdout:
@@ -145,10 +137,7 @@ def add_recording_arguments(
 def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """Read robot file, effects and runs, with a progress bar.
 
-    Raises
-    ------
-    InputError
-        If an input is not usable, or a run is given twice.
+    InputError if an input is not usable, or a run is given twice.
     """
     from werrimbi_odom.api.drives import refuse_circles
     from werrimbi_odom.cli.progress import share_done
@@ -217,10 +206,7 @@ def how_of(arguments: argparse.Namespace) -> DriveOptions:
 def read_effects(arguments: argparse.Namespace) -> Collection:
     """Find all effects, including those of --effects; warnings go to stderr.
 
-    Raises
-    ------
-    InputError
-        If a file of --effects is not usable.
+    InputError if a file of --effects is not usable.
     """
     from werrimbi_odom.effects.lookup import all_effects
 

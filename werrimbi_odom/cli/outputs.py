@@ -38,12 +38,9 @@ Place = str | tuple[int, int]
 def refuse_files(arguments: argparse.Namespace) -> None:
     """Check that all outputs can be written.
 
-    Raises
-    ------
-    InputError
-        If --out, --json or --report is (or resolves to) an input or another output, or is not
-        writable: a folder, a missing parent folder, no permission, an existing file without
-        --force, an unknown file type for a report.
+    InputError if --out, --json or --report is (or resolves to) an input or another output, or is
+    not writable: a folder, a missing parent folder, no permission, an existing file without
+    --force, an unknown file type for a report.
     """
     outputs = [(name, Path(value)) for name in WRITTEN if (value := getattr(arguments, name, None))]
     if not outputs:
@@ -183,10 +180,7 @@ def tell_written(written: Sequence[Path]) -> None:
 def write_json(path: Path, figures: Mapping[str, Any]) -> None:
     """Write figures as JSON; values that are not finite become null.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be written.
+    InputError if the file cannot be written.
     """
     from werrimbi_odom.files.text_files import replacing
     from werrimbi_odom.report.number_format import plain

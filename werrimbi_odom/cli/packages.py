@@ -41,10 +41,7 @@ NEEDED = {
 def refuse_lacking(arguments: argparse.Namespace) -> None:
     """Check that all packages of a verb are installed.
 
-    Raises
-    ------
-    InputError
-        If one is missing; the message says how to install it.
+    InputError if one is missing; the message says how to install it.
     """
     needed = NEEDED.get(arguments.verb, ())
     for name in reversed(needed):  # the extra of the last one installs the others too

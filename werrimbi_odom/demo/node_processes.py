@@ -13,7 +13,6 @@ import time as clock
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from werrimbi_odom.errors import InputError
@@ -82,12 +81,7 @@ class Stage:
     def __enter__(self) -> Stage:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for node in self._running.values():
             end(node)
         self._stack.close()
@@ -125,10 +119,7 @@ class Stage:
     def until(self, done: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
         """Process messages until a condition is true.
 
-        Raises
-        ------
-        InputError
-            If a node ended, or it takes too long.
+        InputError if a node ended, or it takes too long.
         """
         until = clock.monotonic() + seconds
         while not done():

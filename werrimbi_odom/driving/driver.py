@@ -96,18 +96,10 @@ class Driver:
         return ""
 
     def start(self, now: float, busy: float = 0.0) -> None:
-        """Start the drive.
+        """Start the drive; InputError with the reason if it cannot start.
 
-        Parameters
-        ----------
-        busy : float
-            Time before `now` without processing of messages [s], as at the start of a recording. It
-            counts neither as silence nor as delay, because its messages are still to come.
-
-        Raises
-        ------
-        InputError
-            If it cannot start; the message says why.
+        For `busy` [s] before `now` no messages were processed, as at the start of a recording. That
+        counts neither as silence nor as delay, because these messages are still to come.
         """
         wrong = self.refusal(now - busy)
         if wrong:

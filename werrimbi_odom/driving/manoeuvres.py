@@ -52,21 +52,10 @@ NAMES = (*(each.name for each in MANOEUVRES), *OWN)
 def plan_of(
     name: str, *, size: float = 1.0, length: float = 0.0, repetitions: int = 1
 ) -> ManoeuvrePlan:
-    """Plan for the manoeuvre of this name.
+    """Plan for the manoeuvre of this name; InputError if there is none.
 
-    Parameters
-    ----------
-    size : float
-        Unit of length of the library's manoeuvres [m].
-    length : float
-        Side or length of the other manoeuvres [m]; 0 for the default.
-    repetitions : int
-        Number of times the moves are driven.
-
-    Raises
-    ------
-    InputError
-        If there is no manoeuvre of this name.
+    `size` is the unit of length of the library's manoeuvres [m], `length` the side or length of the
+    others [m], 0 for the default.
     """
     if name in OWN:
         words, usual, moves = OWN[name]
@@ -92,10 +81,7 @@ def _moves(ideal: Ideal, size: float) -> list[Move]:
 def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> ManoeuvrePlan:
     """Plan for the manoeuvre that `werrimbi diagnose --json FILE` proposes, for its stated time.
 
-    Raises
-    ------
-    InputError
-        If the file is not from diagnose, or proposes nothing that can be driven.
+    InputError if the file is not from diagnose, or proposes nothing that can be driven.
     """
     try:
         told: Any = json.loads(path.read_text(encoding="utf-8"))

@@ -45,22 +45,11 @@ def on_cluster(
 ) -> Iterator[Row]:
     """Rows in the order of completion.
 
-    Parameters
-    ----------
-    tasks : sequence of Task
-        Robots to diagnose.
-    address : str
-        Address of the scheduler, tcp://HOST:PORT or tls://HOST:PORT.
-    warn : callable
-        Called with warnings about versions that may change the last digits of results.
-    patience : float
-        Timeout for a scheduler to answer, and for a worker to be available [s].
+    `address` is tcp://HOST:PORT or tls://HOST:PORT, and `warn` is told of versions that may change
+    the last digits. A scheduler must answer, and a worker be available, within `patience` [s].
 
-    Raises
-    ------
-    InputError
-        If there is no scheduler or no worker, they are lost, or a worker runs other code than this
-        machine.
+    InputError if there is no scheduler or no worker, they are lost, or a worker runs other code
+    than this machine.
     """
     with _connected(address, patience) as client:
         _check_code(client, address, warn, patience)

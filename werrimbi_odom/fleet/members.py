@@ -38,12 +38,7 @@ def members_of(fleet: Path) -> tuple[Member, ...]:
     """The robots in a folder in natural order, robot_2 before robot_10.
 
     Folders with neither a robot file nor runs are ignored; one with only one of them is a robot
-    with a problem.
-
-    Raises
-    ------
-    InputError
-        If it is no folder, has no robot, or no robot in it has a run.
+    with a problem. InputError if it is no folder, has no robot, or no robot in it has a run.
     """
     try:
         if not fleet.is_dir():

@@ -44,12 +44,8 @@ def spread(
     If a process dies, the pool loses all running tasks, and the cause is unknown. So these are
     tried again one by one, and only a task that kills its process again is given up.
 
-    Parameters
-    ----------
-    work : callable
-        Function of a module, called in another process.
-    lost : callable
-        Makes the result of a task that ended its process, or with an unreadable result.
+    `work` is a function of a module; `lost` makes the result of a task that ended its process, or
+    whose result is unreadable.
     """
     left = deque(tasks)
     while left:

@@ -54,10 +54,7 @@ class Parcel:
 def packed(task: Task) -> bytes:
     """Serialise a task and its files.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be read, or they are too large.
+    InputError if a file cannot be read, or they are too large.
     """
     asked = task.asked
     how = asked.how

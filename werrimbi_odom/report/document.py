@@ -92,16 +92,10 @@ class Document:
 def paragraphs(
     texts: Iterable[str], *, hanging: Collection[str] = (), apart: bool = False
 ) -> tuple[Paragraph, ...]:
-    """A paragraph for each non-empty text.
+    """A paragraph for each non-empty text: "- " begins an item of a list, four spaces a command.
 
-    Parameters
-    ----------
-    texts : iterable of str
-        "- " begins an item of a list, four spaces a command.
-    hanging : collection of str
-        Keywords before a colon: "How sure" for "How sure: ...".
-    apart : bool
-        Whether an empty line is printed before each.
+    `hanging` are keywords before a colon ("How sure" for "How sure: ..."); `apart`: whether an
+    empty line is printed before each.
     """
     return tuple(
         Paragraph(dedent(text).rstrip(), "command", apart=apart)

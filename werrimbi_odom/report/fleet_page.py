@@ -55,12 +55,9 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
         before = [1e3 * row.errors[0] for row in rows]
         after = [1e3 * row.errors[1] for row in rows]
         names = [style.escaped(row.robot) for row in rows]
-        lines: dict[str, list[object]] = {"x": [], "y": []}
-        for name, first, last in zip(names, before, after, strict=True):
-            lines["x"] += [first, last, None]
-            lines["y"] += [name, name, None]
         line = {"color": colour, "width": 2}
-        style.plot(figure, lines["x"], lines["y"], group=group, shown=False, line=line)
+        x, y = style.apart(before, after), style.apart(names, names)
+        style.plot(figure, x, y, group=group, shown=False, line=line)
         hollow = {"color": style.PAPER, "symbol": mark, "size": 9, "line": line}
         told = "%{y}, as given: %{x:.2f} mm"
         style.plot(figure, before, names, group=group, shown=False, hover=told, marker=hollow)
@@ -118,19 +115,10 @@ def _group(row: Row, looks: Mapping[str, tuple[str, str]]) -> str:
 
 
 def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[Path]:
-    """Write the report; return the written files.
+    """Write the report as .html, or the figure alone as .pdf or .png; return the written files.
 
-    Parameters
-    ----------
-    path : Path
-        .html for a page, .pdf or .png for the figure alone.
-    made : mapping of str to str
-        Provenance: command, files, options.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written, or a picture is requested and there is nothing to draw.
+    `made` is the provenance: command, files, options. InputError if it cannot be written, or a
+    picture is requested and there is nothing to draw.
     """
     document = replace(document_of(fleet), made=made)
     if path.suffix.lower() in (".pdf", ".png") and fleet_figure(fleet) is None:

@@ -15,13 +15,7 @@ from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
-from werrimbi_odom.inference.recording_info import (
-    Held,
-    Info,
-    can_tell,
-    measures_of,
-    unseen_much,
-)
+from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of, unseen_much
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
 from werrimbi_odom.report.phrases import left_out_words

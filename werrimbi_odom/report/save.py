@@ -75,10 +75,7 @@ def _draw(pictures: Iterable[tuple[Figure, Path, Mapping[str, object]]]) -> None
 def refuse_report(path: Path) -> None:
     """Check the path of a report before any work is done.
 
-    Raises
-    ------
-    InputError
-        If the suffix is not one of a report, or no browser is installed for pictures.
+    InputError if the suffix is not one of a report, or no browser is installed for pictures.
     """
     kind = path.suffix.lower()
     if kind not in (*PAGES, *PICTURES):
@@ -94,12 +91,8 @@ def save_report(document: Document, path: Path) -> list[Path]:
     """Save a report as a page (.html), or its main figures as pictures for a paper (.pdf, .png).
 
     Each figure is a file of its own: the first has the requested name, the others have the key of
-    the figure appended.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be written, its suffix is another one, or no browser is installed.
+    the figure appended. InputError if a file cannot be written, its suffix is another one, or no
+    browser is installed.
     """
     refuse_report(path)
     if path.suffix.lower() in PAGES:
@@ -119,10 +112,7 @@ def save_report(document: Document, path: Path) -> list[Path]:
 def save_pictures(pictures: Sequence[tuple[Figure, Path]]) -> None:
     """Save figures in their light colours, drawn by one browser; .pdf has vector graphics.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be written.
+    InputError if a file cannot be written.
     """
     with tempfile.TemporaryDirectory(prefix="werrimbi-") as folder:
         drawn = [

@@ -8,7 +8,7 @@ Only the number of drawn points is reduced; statistics are of all data.
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,12 +70,8 @@ def plot(
 ) -> None:
     """Add lines (if `line` is given), marks (if `marker` is) or both.
 
-    Parameters
-    ----------
-    name, group, shown
-        Name in the legend, its group there, and whether it is listed.
-    hover : str, optional
-        Text shown by the pointer, a template of plotly's; "" for none, None for plotly's own.
+    `name`, `group` and `shown` are for the legend. `hover` is the text shown by the pointer, a
+    template of plotly's; "" for none, None for plotly's own.
     """
     mode = "+".join(f"{look}s" for look in ("line", "marker") if look in looks)
     shows = {"hovertemplate": hover if hover and "<extra>" in hover else f"{hover}<extra></extra>"}
@@ -84,6 +80,11 @@ def plot(
     figure.add_scatter(
         x=x, y=y, mode=mode, name=name, legendgroup=group, showlegend=shown, **shows, **looks
     )
+
+
+def apart(starts: Iterable[object], ends: Iterable[object]) -> list[object]:
+    """A coordinate of separate lines, for `plot`: from each start to its end, then a gap."""
+    return [each for line in zip(starts, ends, strict=True) for each in (*line, None)]
 
 
 def error_bars(

@@ -37,10 +37,7 @@ class Clockwork:
     def seconds(self, stamp: Any) -> float:
         """Convert a stamp to seconds since the first one.
 
-        Raises
-        ------
-        InputError
-            If the stamp is invalid; arguments are the cause and the detail.
+        InputError if the stamp is invalid; arguments are the cause and the detail.
         """
         if self._origin is None:
             self._origin = stamp.sec
@@ -58,10 +55,7 @@ class Clockwork:
 def odometry_of(message: Any, clockwork: Clockwork) -> tuple[TimedPose, BodyMotion[float]]:
     """Pose and twist of a nav_msgs/Odometry.
 
-    Raises
-    ------
-    InputError
-        If a number is invalid; arguments are the cause and the detail.
+    InputError if a number is invalid; arguments are the cause and the detail.
     """
     covariance = covariance_of(message.pose.covariance)
     pose = _pose(message.pose.pose.position, message.pose.pose.orientation)

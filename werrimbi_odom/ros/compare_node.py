@@ -37,7 +37,7 @@ from werrimbi_odom.ros.compare_track import OdometryTrack, TimedPose
 from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.live_diagnosis import watching_of
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.topics import Company, full_name, publisher, subscribe
 
 WAITING = 1_000
@@ -51,10 +51,7 @@ PERIOD = 1.0
 class CompareNode(Node):  # type: ignore[misc]
     """Compares `odom` with `reference`, leg by leg.
 
-    Raises
-    ------
-    InputError
-        If a parameter or a QoS override is invalid.
+    InputError if a parameter or a QoS override is invalid.
     """
 
     def __init__(self) -> None:

@@ -61,20 +61,10 @@ class OdometryTrack:
         return self._kept[-1].time if self._kept else -math.inf
 
     def add(self, reading: TimedPose, twist: BodyMotion[float]) -> Added:
-        """Add a reading.
+        """Add a reading, whose `path` and `turned` are ignored, and the twist of the same message.
 
-        Parameters
-        ----------
-        reading : TimedPose
-            Its `path` and `turned` are ignored.
-        twist : BodyMotion
-            Speeds in the same message [m/s, m/s, rad/s].
-
-        Returns
-        -------
-        str
-            first; next: it continues the last; old: not newer than the last, ignored; set: it
-            contradicts the last reading and the twist; back: the clock was set back.
+        Returns first; next: it continues the last; old: not newer than the last, ignored; set: it
+        contradicts the last reading and the twist; back: the clock was set back.
         """
         if not self._kept:
             self._kept.append(reading._replace(path=0.0, turned=0.0))

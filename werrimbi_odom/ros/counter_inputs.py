@@ -60,33 +60,25 @@ def robot_at_counters(values: Mapping[str, Value]) -> Robot:
     return robot
 
 
-def topics_of(values: Mapping[str, Value]) -> tuple[str, ...]:
-    """Topics of a kind of input, before remapping."""
-    return {
-        "joint_state": ("joint_states",),
-        "int32_pair": ("left_ticks", "right_ticks"),
-        "int64_pair": ("left_ticks", "right_ticks"),
-        "int64_multi_array": ("ticks",),
-    }[str(values["input_type"])]
+_KINDS: dict[str, tuple[type, tuple[str, ...]]] = {
+    "joint_state": (JointState, ("joint_states",)),
+    "int32_pair": (Int32, ("left_ticks", "right_ticks")),
+    "int64_pair": (Int64, ("left_ticks", "right_ticks")),
+    "int64_multi_array": (Int64MultiArray, ("ticks",)),
+}
 
 
-def type_of(values: Mapping[str, Value]) -> type:
-    """Message type of a kind of input."""
-    kinds: dict[str, type] = {
-        "joint_state": JointState,
-        "int32_pair": Int32,
-        "int64_pair": Int64,
-        "int64_multi_array": Int64MultiArray,
-    }
-    return kinds[str(values["input_type"])]
+def kind_of(values: Mapping[str, Value]) -> tuple[type, tuple[str, ...]]:
+    """Message type of the robot file's input, and its topics before remapping."""
+    return _KINDS[str(values["input_type"])]
 
 
 def subscribed(wiring: InputOptions) -> JointStates | Pair | TicksArray:
     """Subscribe to the input named in the robot file; InputError if a QoS override is invalid."""
-    kind = type_of(wiring.values)
+    kind, topics = kind_of(wiring.values)
     if kind is JointState:
         return JointStates(wiring)
-    return TicksArray(wiring) if kind is Int64MultiArray else Pair(wiring, kind)
+    return TicksArray(wiring) if kind is Int64MultiArray else Pair(wiring, kind, topics)
 
 
 class JointStates:
@@ -206,12 +198,12 @@ class UnitWatch:
 class Pair:
     """Two topics, one per wheel (std_msgs/Int32 or Int64), paired by arrival; see `Pairing`."""
 
-    def __init__(self, wiring: InputOptions, message_type: type) -> None:
+    def __init__(self, wiring: InputOptions, message_type: type, topics: tuple[str, ...]) -> None:
         self._take, self._health = wiring.take, wiring.health
         self._stamps = ArrivalStamps(wiring.node)
         window = float(wiring.values["pairing_window"])  # type: ignore[arg-type]
         self._pairing = Pairing(int(1e9 * window))
-        for side, topic in enumerate(topics_of(wiring.values)):
+        for side, topic in enumerate(topics):
             _subscribe(wiring, message_type, topic, partial(self._arrived, side))
 
     def tally(self) -> dict[str, int]:

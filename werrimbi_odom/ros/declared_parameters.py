@@ -17,13 +17,22 @@ from werrimbi_odom.files.effect_parameters import EFFECTS
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
 
 
+def above_zero(name: str, default: float, unit: str, maximum: float, says: str) -> NodeParameter:
+    """A number above zero."""
+    return NodeParameter(name, default, says, unit=unit, above=0.0, maximum=maximum)
+
+
+def within(
+    name: str, default: float, unit: str, minimum: float, maximum: float, says: str
+) -> NodeParameter:
+    """A number in a range."""
+    return NodeParameter(name, default, says, unit=unit, minimum=minimum, maximum=maximum)
+
+
 def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
     """Declare every parameter, with the values that the node was started with.
 
-    Raises
-    ------
-    InputError
-        If any is unknown or invalid; the message names all of them.
+    InputError if any is unknown or invalid; the message names all of them.
     """
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Given).items()}

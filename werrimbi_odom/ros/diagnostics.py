@@ -11,9 +11,10 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_across
+from werrimbi_odom.model.covariance import sigmas_along_and_across
 from werrimbi_odom.model.pieces import Piece
-from werrimbi_odom.model.pose import Pose, wrap
+from werrimbi_odom.model.pose import wrap
+from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.topics import publisher
 
 
@@ -53,20 +54,11 @@ def tell(log: Any, words: str, *, fine: bool) -> None:
         log.warning(words)
 
 
-def status_of(
-    name: str,
-    pose: Pose,
-    covariance: PoseCovariance[float],
-    piece: Piece,
-    distance: float,
-    mean_shift: tuple[float, float] | None,
-) -> DiagnosticStatus:
-    """Create a status message from the estimate.
-
-    Pose and covariance are the present ones in the odometry frame, `piece` is the open one, and
-    `distance` the travel since the start [m]. `mean_shift` is the mean of the true position minus
-    the pose, with exact moments [m].
-    """
+def status_of(name: str, tracker: LiveOdometer) -> DiagnosticStatus:
+    """Create a status message from the present estimate, which is in the odometry frame."""
+    pose, odometer = tracker.pose, tracker.odometer
+    covariance, piece, distance = odometer.covariance(), odometer.piece, odometer.distance
+    mean_shift = odometer.errors().mean_shift
     along, across = sigmas_along_and_across(covariance, pose.yaw)
     heading = math.degrees(math.sqrt(covariance.yawyaw))
     values = {

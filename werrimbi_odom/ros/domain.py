@@ -18,10 +18,7 @@ DOMAINS = range(1, 102)
 def free_domain() -> tuple[int, TextIO]:
     """Reserve a ROS domain for as long as the returned file stays open.
 
-    Raises
-    ------
-    InputError
-        If all are in use.
+    InputError if all are in use.
     """
     for domain in DOMAINS:
         path = Path(tempfile.gettempdir()) / f"werrimbi_odom_ros_domain_{domain}"

@@ -35,7 +35,7 @@ from werrimbi_odom.ros import drive_parameters, planar
 from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.topics import full_name, others_on, publisher, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
@@ -56,12 +56,8 @@ class DriveNode(Node):  # type: ignore[misc]
 
     It publishes on `cmd_vel` from the start of a drive to a second after its end. A node that waits
     disturbs nobody; a second one that is started is refused, or both see each other and stop in the
-    second that a robot stands still before it drives.
-
-    Raises
-    ------
-    InputError
-        If a parameter is invalid, or no area is given.
+    second that a robot stands still before it drives. InputError if a parameter is invalid, or no
+    area is given.
     """
 
     def __init__(self) -> None:

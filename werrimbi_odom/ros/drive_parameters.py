@@ -13,7 +13,7 @@ from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
 from werrimbi_odom.driving.plan import ManoeuvrePlan
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
-from werrimbi_odom.ros.declared_parameters import table
+from werrimbi_odom.ros.declared_parameters import above_zero, table, within
 
 FASTEST = 5.0
 """Upper limit of all speeds [m/s], [rad/s]."""
@@ -23,114 +23,53 @@ def _length(name: str, says: str) -> NodeParameter:
     return NodeParameter(name, 0.0, says, unit="m", minimum=0.0, maximum=1000.0)
 
 
+# fmt: off
 PARAMETERS: tuple[NodeParameter, ...] = (
     NodeParameter("manoeuvre", "square", "What to drive.", choices=NAMES),
-    NodeParameter(
-        "diagnosis",
-        "",
-        "File of `werrimbi diagnose --json`: drive what it proposes, in place of `manoeuvre`.",
-    ),
-    NodeParameter(
-        "size",
-        1.0,
+    NodeParameter("diagnosis", "",
+        "File of `werrimbi diagnose --json`: drive what it proposes, in place of `manoeuvre`."),
+    above_zero("size", 1.0, "m", 100.0,
         "Size of the manoeuvres that `diagnose` proposes: a square has sides of twice this. 1 "
-        "suits wheels 35 cm apart.",
-        unit="m",
-        above=0.0,
-        maximum=100.0,
-    ),
+        "suits wheels 35 cm apart."),
     _length("length", "Side of UMBmark's squares, way of `paper_out_and_back`; 0: 4 m, and 10 m."),
     NodeParameter("repetitions", 1, "How often to drive it in one go.", minimum=1, maximum=1000),
-    NodeParameter("max_vel_x", 0.3, "Fastest command.", unit="m/s", above=0.0, maximum=FASTEST),
-    NodeParameter("max_vel_theta", 1.0, "Fastest turn.", unit="rad/s", above=0.0, maximum=FASTEST),
-    NodeParameter(
-        "acc_lim_x",
-        0.5,
-        "Hardest change of the speed; a stop is a zero at once.",
-        unit="m/s^2",
-        above=0.0,
-        maximum=FASTEST,
-    ),
-    NodeParameter(
-        "acc_lim_theta",
-        1.5,
-        "Hardest change of the rate of turning.",
-        unit="rad/s^2",
-        above=0.0,
-        maximum=4.0 * FASTEST,
-    ),
+    above_zero("max_vel_x", 0.3, "m/s", FASTEST, "Fastest command."),
+    above_zero("max_vel_theta", 1.0, "rad/s", FASTEST, "Fastest turn."),
+    above_zero("acc_lim_x", 0.5, "m/s^2", FASTEST,
+        "Hardest change of the speed; a stop is a zero at once."),
+    above_zero("acc_lim_theta", 1.5, "rad/s^2", 4.0 * FASTEST,
+        "Hardest change of the rate of turning."),
     _length("area_radius", "The robot stays within this of its first start; 0: not given."),
     _length("area_ahead", "Or within a rectangle: this far ahead of its first start,"),
     _length("area_behind", "behind it,"),
     _length("area_left", "to its left,"),
     _length("area_right", "and to its right. Of a rectangle all four must be given."),
-    NodeParameter(
-        "robot_radius",
-        0.3,
-        "Of the circle about the middle of the axle that holds all of the robot.",
-        unit="m",
-        above=0.0,
-        maximum=100.0,
-    ),
+    above_zero("robot_radius", 0.3, "m", 100.0,
+        "Of the circle about the middle of the axle that holds all of the robot."),
     NodeParameter("dry_run", False, "`~/start` checks all and shows the path, and moves nothing."),
-    NodeParameter(
-        "use_stamped_vel", False, "Publish geometry_msgs/TwistStamped on `cmd_vel`, else Twist."
-    ),
-    NodeParameter(
-        "odom_timeout",
-        0.15,
-        "Stop when the odometry is silent for so long, or comes so much later than before.",
-        unit="s",
-        minimum=0.02,
-        maximum=2.0,
-    ),
-    NodeParameter(
-        "max_deviation",
-        0.15,
-        "Stop when the robot is so far from where it should be by now.",
-        unit="m",
-        above=0.0,
-        maximum=2.0,
-    ),
+    NodeParameter("use_stamped_vel", False,
+        "Publish geometry_msgs/TwistStamped on `cmd_vel`, else Twist."),
+    within("odom_timeout", 0.15, "s", 0.02, 2.0,
+        "Stop when the odometry is silent for so long, or comes so much later than before."),
+    above_zero("max_deviation", 0.15, "m", 2.0,
+        "Stop when the robot is so far from where it should be by now."),
     NodeParameter("scan_topic", "", "A sensor_msgs/LaserScan that stops the robot; empty: none."),
-    NodeParameter(
-        "scan_min_distance",
-        0.5,
-        "Stop when the scan sees something nearer to the scanner.",
-        unit="m",
-        above=0.0,
-        maximum=100.0,
-    ),
-    NodeParameter(
-        "imu_topic",
-        "",
-        "A sensor_msgs/Imu (not upside down) whose turn rate stops the robot when its wheels "
-        "slip; empty: none.",
-    ),
-    NodeParameter(
-        "max_slip",
-        0.06,
-        "Stop when turns of the wheels and of the gyro differ by so much within 0.2 s.",
-        unit="rad",
-        above=0.0,
-        maximum=3.0,
-    ),
-    NodeParameter(
-        "record",
-        "",
-        "Folder in which each drive is recorded as a rosbag2 (MCAP; needs rosbags); empty: none.",
-    ),
-    NodeParameter(
-        "record_topics",
+    above_zero("scan_min_distance", 0.5, "m", 100.0,
+        "Stop when the scan sees something nearer to the scanner."),
+    NodeParameter("imu_topic", "",
+        "A sensor_msgs/Imu (not upside down) whose turn rate stops the robot when its wheels slip; "
+        "empty: none."),
+    above_zero("max_slip", 0.06, "rad", 3.0,
+        "Stop when turns of the wheels and of the gyro differ by so much within 0.2 s."),
+    NodeParameter("record", "",
+        "Folder in which each drive is recorded as a rosbag2 (MCAP; needs rosbags); empty: none."),
+    NodeParameter("record_topics",
         ("joint_states", "odom", "imu", "reference", "scan", "/tf", "/tf_static"),
-        "What is recorded, of it what there is.",
-    ),
-    NodeParameter(
-        "robot_file",
-        "",
-        "Robot file, for the command that is told at the end; nothing is read from it.",
-    ),
+        "What is recorded, of it what there is."),
+    NodeParameter("robot_file", "",
+        "Robot file, for the command that is told at the end; nothing is read from it."),
 )
+# fmt: on
 
 
 def limits_of(values: Mapping[str, Value]) -> Limits:
@@ -142,10 +81,7 @@ def limits_of(values: Mapping[str, Value]) -> Limits:
 def area_of(values: Mapping[str, Value]) -> Area:
     """Area in which the robot must stay.
 
-    Raises
-    ------
-    InputError
-        If no area is given, or not all sides of a rectangle.
+    InputError if no area is given, or not all sides of a rectangle.
     """
     sides = {name: _number(values, f"area_{name}") for name in ("ahead", "behind", "left", "right")}
     radius = _number(values, "area_radius")

@@ -20,7 +20,9 @@ ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 _OTHERS = 8
 """Joints that are named in a message, at most."""
 
-_REFUSALS = ("refused: ", "refused set_pose: ", "not learnt from: ")
+OF_POSE, NOT_LEARNT = "refused set_pose", "not learnt from"
+_REFUSED = {"refused": "input refused", OF_POSE: "set_pose refused", NOT_LEARNT: NOT_LEARNT}
+"""What is rejected, as it is counted and as it is logged."""
 _WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock jumps", "out of order", "gaps")
 _UNUSABLE = {
     "duplicates": "their stamps stand still",
@@ -38,14 +40,8 @@ loses no motion, and a radio link loses some."""
 class Health:
     """Counts since the start of the node, and their evaluation over the last second.
 
-    Parameters
-    ----------
-    logger : rclpy logger
-        Logs the first rejection of each cause; the rest is only counted.
-    topics : tuple of str
-        Resolved names of the required topics.
-    silent_after : float
-        Time without a message [s] after which a topic counts as silent.
+    The first rejection of each cause is logged; the rest is only counted. A topic counts as silent
+    `silent_after` seconds without a message.
     """
 
     def __init__(self, logger: Any, topics: tuple[str, ...], silent_after: float) -> None:
@@ -63,9 +59,7 @@ class Health:
         self._answered = [0] * len(topics)
         self._numbers = [_Numbers() for _ in topics]
         self._missed = 0
-        self._refused: Counter[str] = Counter()
-        self._refused_poses: Counter[str] = Counter()
-        self._not_learnt: Counter[str] = Counter()
+        self._refused: dict[str, Counter[str]] = {what: Counter() for what in _REFUSED}
         self._lost = 0
         self._before: dict[str, int] = {}
         self._reported_at = time.monotonic()
@@ -83,17 +77,13 @@ class Health:
         self._heard[topic] += 1
         self._heard_at[topic] = time.monotonic()
 
-    def refuse(self, cause: str, detail: str) -> None:
-        """Count an input message that was rejected."""
-        self._note(self._refused, f"input refused: {cause}", cause, detail)
-
-    def refuse_pose(self, cause: str, detail: str) -> None:
-        """Count a message on set_pose that was rejected."""
-        self._note(self._refused_poses, f"set_pose refused: {cause}", cause, detail)
-
-    def refuse_to_learn(self, cause: str, detail: str) -> None:
-        """Count a rejected message of the topic for phase estimation."""
-        self._note(self._not_learnt, f"not learnt from: {cause}", cause, detail)
+    def refuse(self, cause: str, detail: str, what: str = "refused") -> None:
+        """Count a message that was rejected: of the input, or one of the other `_REFUSED`."""
+        tally = self._refused[what]
+        if cause not in tally:
+            words = f"{_REFUSED[what]}: {cause}: {detail}"
+            self._logger.warning(f"{words} (from now on only counted on /diagnostics)")
+        tally[cause] += 1
 
     def lose(self, event: Any) -> None:
         """Store the number of input messages lost by DDS."""
@@ -151,11 +141,14 @@ class Health:
                 for event, count in tally.as_dict().items()
                 if event not in ("messages", "accepted")
             },
-            "refused": self._refused.total(),
-            **{f"refused: {cause}": n for cause, n in self._refused.items()},
-            "refused set_pose": self._refused_poses.total(),
-            **{f"refused set_pose: {cause}": n for cause, n in self._refused_poses.items()},
-            **{f"not learnt from: {cause}": n for cause, n in self._not_learnt.items()},
+            **{
+                key: number
+                for what, tally in self._refused.items()
+                for key, number in (
+                    *([(what, tally.total())] if what != NOT_LEARNT else []),
+                    *((f"{what}: {cause}", n) for cause, n in tally.items()),
+                )
+            },
         }
 
     def _verdict(
@@ -183,7 +176,7 @@ class Health:
         refusals = [
             f"{key.removeprefix('refused: ')} ({n})"
             for key, n in new.items()
-            if n > 0 and key.startswith(_REFUSALS)
+            if n > 0 and ": " in key
         ]
         # One message more than answered is normal: the first one only starts an interval.
         unanswered = (a - b for a, b in zip(self._heard, self._answered, strict=True))
@@ -199,11 +192,6 @@ class Health:
         happened = ", ".join(refusals + events)
         words = [f"in the last second: {happened}"] if happened else []
         return (WARN, "; ".join([*words, *wrong])) if words or wrong else (OK, "")
-
-    def _note(self, tally: Counter[str], words: str, cause: str, detail: str) -> None:
-        if cause not in tally:
-            self._logger.warning(f"{words}: {detail} (from now on only counted on /diagnostics)")
-        tally[cause] += 1
 
 
 class _Numbers:

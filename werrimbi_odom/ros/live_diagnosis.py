@@ -78,9 +78,9 @@ class Watching(NoWatching):
         self._new = Path(named or self._robot.with_name(f"{self._robot.stem}_better.yaml"))
         if place_of(self._new) == place_of(self._robot):
             raise InputError(f"new_robot_file: {self._new} is the robot file in use; name another")
-        wheels = [node.resolve_topic_name(topic) for topic in counter_inputs.topics_of(robot)]
+        of_wheels, names = counter_inputs.kind_of(robot)
+        wheels = [node.resolve_topic_name(name) for name in names]
         reference = node.resolve_topic_name("reference")
-        of_wheels = counter_inputs.type_of(robot)
         self._reference = len(wheels)
         kind_of = str(values["reference_kind"])
         self._asked = {

@@ -14,8 +14,7 @@ from builtin_interfaces.msg import Time as Stamp
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
-from werrimbi_odom.model.driven_motion import DrivenStep
-from werrimbi_odom.model.encoder_online import EncoderLimits, EncoderTally
+from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pieces_online import PieceTolerance
@@ -30,10 +29,7 @@ _TURNS = ((0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.5, 2.0), (-1.0, -1.0), (100.0,
 def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
     """Simulate a robot on every kind of piece.
 
-    Raises
-    ------
-    InputError
-        If pose, twist or a covariance is not finite.
+    InputError if pose, twist or a covariance is not finite.
     """
     odometer = Odometer(robot, tolerance)
     left = right = time = 0.0
@@ -71,13 +67,7 @@ class Finished(NamedTuple):
 
 
 class LiveOdometer:
-    """Pose of the robot, reading by reading.
-
-    Parameters
-    ----------
-    robot, tolerance, limits
-        As for `Odometer`.
-    """
+    """Pose of the robot, reading by reading."""
 
     def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
         self.pose = Pose()
@@ -86,59 +76,32 @@ class LiveOdometer:
         self._known = CERTAIN
         self.stamp = Stamp()
         """Stamp of the last accepted reading."""
-        self._odometer = Odometer(robot, tolerance, limits)
+        self.odometer = Odometer(robot, tolerance, limits)
+        """The model's: to be read; what changes it goes through here."""
         self._origin: int | None = None
         self.started = False
         """Whether any reading was accepted."""
 
-    @property
-    def tally(self) -> EncoderTally:
-        """Counts of accepted and rejected readings."""
-        return self._odometer.tally
-
-    @property
-    def distance(self) -> float:
-        """Travel since the start or the last reset [m]."""
-        return self._odometer.distance
-
-    @property
-    def piece(self) -> Piece:
-        """The open piece."""
-        return self._odometer.piece
-
-    @property
-    def covariance(self) -> PoseCovariance[float]:
-        """Covariance of the present pose."""
-        return self._odometer.covariance()
-
-    @property
-    def mean_shift(self) -> tuple[float, float] | None:
-        """Mean of the true position minus the pose (x, y) [m]; None without exact moments."""
-        return self._odometer.errors().mean_shift
-
     def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
         """Process a reading; return None for the first, and for one that is rejected.
 
-        Raises
-        ------
-        InputError
-            If the result is not finite, for example from a user's effect at an impossible speed.
-            The pose is then unchanged.
+        InputError if the result is not finite, for example from a user's effect at an impossible
+        speed. The pose is then unchanged.
         """
         if self._origin is None:
             self._origin = stamp.sec
         time = self.seconds(stamp)
-        accepted, distance = self.tally.accepted, self.distance
+        accepted, distance = self.odometer.tally.accepted, self.odometer.distance
         try:
-            estimate = self._odometer.update(time, left, right)
+            estimate = self.odometer.update(time, left, right)
             lost = estimate is not None and not is_finite(estimate)
         except ArithmeticError:
             lost = True
         if lost:
-            self._odometer.set_pose(self.pose, self._known)
-            self._odometer.distance = distance
+            self.odometer.set_pose(self.pose, self._known)
+            self.odometer.distance = distance
             raise InputError("beyond all numbers", f"what counts {left} and {right} make")
-        if self.tally.accepted > accepted:
+        if self.odometer.tally.accepted > accepted:
             self.started, self.stamp = True, stamp
         if estimate is not None:
             self.heading += estimate.pose.yaw - self.pose.yaw
@@ -154,27 +117,22 @@ class LiveOdometer:
             return math.nan
         return float(stamp.sec - self._origin) + 1e-9 * float(stamp.nanosec)
 
-    @property
-    def driven_step(self) -> DrivenStep | None:
-        """The latest step as effects see it; None for a robot without effects."""
-        return self._odometer.driven_step
-
     def finished_by(self, estimate: Estimate) -> Finished | None:
         """The piece that ended with this estimate, which must be the last one."""
         if estimate.closed is None:
             return None
-        return Finished(estimate.closed, self._odometer.piece.covariance_start)
+        return Finished(estimate.closed, self.odometer.piece.covariance_start)
 
     def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Finished | None:
         """Continue from another pose; return the piece that ends here, if it is not empty."""
-        end = self.covariance
-        piece = self._odometer.set_pose(pose, covariance)
+        end = self.odometer.covariance()
+        piece = self.odometer.set_pose(pose, covariance)
         self.pose, self._known = pose, covariance
         return Finished(piece, end) if any(piece.travel) else None
 
     def grow(self, missed: Missed) -> Finished | None:
         """Increase the covariance; return the piece that ends here, if it is not empty."""
-        known, yaw = self.covariance, self.pose.yaw
+        known, yaw = self.odometer.covariance(), self.pose.yaw
         cos, sin = math.cos(yaw), math.sin(yaw)
         more = known._replace(
             xx=known.xx + missed.along * cos * cos,
@@ -187,7 +145,7 @@ class LiveOdometer:
     def reset(self) -> None:
         """Continue from the origin, with zero distance."""
         self.set_pose(Pose())
-        self._odometer.distance = 0.0
+        self.odometer.distance = 0.0
 
     def retune(
         self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits
@@ -197,6 +155,6 @@ class LiveOdometer:
         Returns the piece that ends here, if any and not empty. The resolution of the encoders
         cannot be changed.
         """
-        covariance = self.covariance
-        piece = self._odometer.retune(robot, tolerance, limits)
+        covariance = self.odometer.covariance()
+        piece = self.odometer.retune(robot, tolerance, limits)
         return Finished(piece, covariance) if piece is not None and any(piece.travel) else None

@@ -35,14 +35,7 @@ class PieceTrail:
 
     A piece's path is in the namespace of its kind, its ellipse in "line ellipse" and so on, so that
     RViz can show and hide them by kind. Both have the piece's number. The open piece is in "open"
-    and "open ellipse".
-
-    Parameters
-    ----------
-    frame : str
-        Odometry frame.
-    track : float
-        Wheel separation [m]: the size of a spin, which has no radius of its own.
+    and "open ellipse". The wheel separation `track` [m] is the size of a spin, which has no radius.
     """
 
     def __init__(self, frame: str, track: float) -> None:
@@ -63,10 +56,7 @@ class PieceTrail:
     ) -> MarkerArray | None:
         """Store a finished piece, and the covariance of the pose at its end.
 
-        Returns
-        -------
-        MarkerArray or None
-            The message to publish; None if `shown` is false.
+        Returns the message to publish; None if `shown` is false.
         """
         oldest = self._kept.popleft() if len(self._kept) == KEPT else None
         self._kept.append((self._number, piece, covariance))

@@ -28,12 +28,12 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import doubtful_sizes
 from werrimbi_odom.ros import counter_inputs, odom_parameters
 from werrimbi_odom.ros.diagnostics import diagnostics_publisher, status_of, tell
-from werrimbi_odom.ros.input_health import Health
+from werrimbi_odom.ros.input_health import OF_POSE, Health
 from werrimbi_odom.ros.live_odometer import Finished, LiveOdometer
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.odometry_messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.phase_learning import learning_of, status_of_effects
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.topics import Company, full_name, publisher, subscribe, transform_sender
 
@@ -46,10 +46,7 @@ DIAGNOSTICS_EVERY = 5
 class OdomNode(Node):  # type: ignore[misc]
     """Wheel odometry as a ROS 2 node.
 
-    Raises
-    ------
-    InputError
-        If a parameter is missing, unknown or invalid; the message names all of them.
+    InputError if a parameter is missing, unknown or invalid; the message names all of them.
     """
 
     def __init__(self) -> None:
@@ -58,9 +55,7 @@ class OdomNode(Node):  # type: ignore[misc]
         values, robot, limits = self._settings.values, self._settings.robot, self._settings.limits
         self._changeable = odom_parameters.changeable(self._settings.effects)
         self._frame = str(values["odom_frame_id"])
-        self._topics = tuple(
-            self.resolve_topic_name(name) for name in counter_inputs.topics_of(values)
-        )
+        self._topics = tuple(map(self.resolve_topic_name, counter_inputs.kind_of(values)[1]))
         self._tracker = LiveOdometer(robot, self._settings.tolerance, limits)
         self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
         self._trail = PieceTrail(self._frame, robot.track)
@@ -131,7 +126,8 @@ class OdomNode(Node):  # type: ignore[misc]
         try:
             pose, covariance = pose_from(message, self._frame)
         except InputError as error:
-            self._health.refuse_pose(*error.args)
+            cause, detail = error.args
+            self._health.refuse(cause, detail, OF_POSE)
             return
         self._keep(self._tracker.set_pose(pose, covariance))
 
@@ -185,23 +181,13 @@ class OdomNode(Node):  # type: ignore[misc]
         self._pieces.publish(self._trail.everything(self._tracker.stamp))
 
     def _show_open_piece(self) -> None:
-        tracker = self._tracker
+        tracker, odometer = self._tracker, self._tracker.odometer
         self._pieces.publish(
-            self._trail.unfinished(tracker.stamp, tracker.piece, tracker.covariance)
+            self._trail.unfinished(tracker.stamp, odometer.piece, odometer.covariance())
         )
 
     def _publish_status(self) -> None:
-        tracker, name = self._tracker, f"{full_name(self)}: estimate"
-        self._status.publish(
-            status_of(
-                name,
-                tracker.pose,
-                tracker.covariance,
-                tracker.piece,
-                tracker.distance,
-                tracker.mean_shift,
-            )
-        )
+        self._status.publish(status_of(f"{full_name(self)}: estimate", self._tracker))
 
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
@@ -210,7 +196,7 @@ class OdomNode(Node):  # type: ignore[misc]
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
         self._foreign = self._health.foreign
         crowded = self._company.crowded
-        tally, counts = self._tracker.tally, self._input.tally()
+        tally, counts = self._tracker.odometer.tally, self._input.tally()
         status = self._health.report(name, tally, counts, effects, crowded, wrong)
         if status.level != self._level:
             self._level = status.level

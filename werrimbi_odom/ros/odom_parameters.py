@@ -75,10 +75,7 @@ class Settings(NamedTuple):
     def after(self, changes: Mapping[str, Value]) -> Settings:
         """Return the settings with some values changed.
 
-        Raises
-        ------
-        ValueError
-            If the node could not continue with them.
+        ValueError if the node could not continue with them.
         """
         own = {name: value for name, value in changes.items() if name in self.values}
         settings = Settings({**self.values, **own}, with_changes(self.effects, changes))
@@ -96,10 +93,7 @@ def changeable(effects: tuple[AppliedEffect, ...]) -> Changeable:
 def declared(node: Node) -> Settings:
     """Declare every parameter on a node, with the values it was started with.
 
-    Raises
-    ------
-    InputError
-        If any is missing, unknown or invalid; the message names all of them.
+    InputError if any is missing, unknown or invalid; the message names all of them.
     """
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Parameter).items()}
@@ -141,10 +135,7 @@ def _declare_effects(node: Node, effects: tuple[AppliedEffect, ...]) -> None:
 def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> Settings:
     """Check the given parameters, and fill in the defaults of the others.
 
-    Raises
-    ------
-    InputError
-        If any is missing, unknown or invalid; the message names all of them in one line.
+    InputError if any is missing, unknown or invalid; the message names all of them in one line.
     """
     values: dict[str, Value] = table.defaults()
     wrong: list[str] = []

@@ -102,12 +102,9 @@ def pose_from(
 ) -> tuple[Pose, PoseCovariance[float]]:
     """Planar pose of a message.
 
-    Raises
-    ------
-    InputError
-        If the frame is not the odometry frame, a number is not finite, the orientation is not a
-        rotation about the vertical, or the covariance is invalid. The first argument is the cause,
-        the second the detail.
+    InputError if the frame is not the odometry frame, a number is not finite, the orientation is
+    not a rotation about the vertical, or the covariance is invalid. The first argument is the
+    cause, the second the detail.
     """
     frame = message.header.frame_id
     if frame != odom_frame:

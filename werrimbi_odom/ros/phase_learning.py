@@ -20,6 +20,7 @@ from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import counter_inputs, planar
+from werrimbi_odom.ros.input_health import NOT_LEARNT
 from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.topics import subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
@@ -76,16 +77,17 @@ class Learning(NoLearning):
         """Parameters that are about to be set by the node itself."""
         message_type, see = {
             "imu": (Imu, self._see_imu),
-            "pose_stamped": (PoseStamped, self._see_pose),
-            "odometry": (Odometry, self._see_odometry),
+            "pose_stamped": (PoseStamped, lambda m: self._see_yaw(m, m.pose.orientation)),
+            "odometry": (Odometry, lambda m: self._see_yaw(m, m.pose.pose.orientation)),
         }[kind]
         subscribe(wiring.node, message_type, topic, see, overridable=True)
 
     def after(self, tracker: LiveOdometer) -> None:
         """Process the last reading of the odometer."""
         self._tracker = tracker
-        if tracker.driven_step is not None and not self._done:
-            self._learner.step(tracker.seconds(tracker.stamp), tracker.driven_step)
+        step = tracker.odometer.driven_step
+        if step is not None and not self._done:
+            self._learner.step(tracker.seconds(tracker.stamp), step)
 
     def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
         """Change the parameter values of the robot; a phase set by someone else is final."""
@@ -126,27 +128,22 @@ class Learning(NoLearning):
 
     def _see_imu(self, message: Any) -> None:
         if message.angular_velocity_covariance[0] < 0.0:  # REP-145: the Imu does not measure this
-            self._health.refuse_to_learn("no angular velocity", "the Imu measures none")
+            self._health.refuse("no angular velocity", "the Imu measures none", NOT_LEARNT)
             return
         rate = self._gyro.rate(message)
         if not abs(rate) < FASTEST:
-            self._health.refuse_to_learn("rate out of range", f"{rate} rad/s")
+            self._health.refuse("rate out of range", f"{rate} rad/s", NOT_LEARNT)
             return
         if not self._done:
             self._learner.see_rate(self._time_of(message), rate)
-
-    def _see_pose(self, message: Any) -> None:
-        self._see_yaw(message, message.pose.orientation)
-
-    def _see_odometry(self, message: Any) -> None:
-        self._see_yaw(message, message.pose.pose.orientation)
 
     def _see_yaw(self, message: Any, orientation: Any) -> None:
         if not self._done:
             try:
                 yaw = planar.yaw_of(orientation, slack=1.0)
             except InputError as error:
-                self._health.refuse_to_learn(*error.args)
+                cause, detail = error.args
+                self._health.refuse(cause, detail, NOT_LEARNT)
                 return
             self._learner.see_yaw(self._time_of(message), yaw)
 

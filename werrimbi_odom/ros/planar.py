@@ -36,10 +36,7 @@ _PLANE = (0, 1, 5)  # indices of x, y and yaw among x, y, z, roll, pitch, yaw
 def place_of(place: Any) -> tuple[float, float]:
     """Position [m] in the plane.
 
-    Raises
-    ------
-    InputError
-        As all functions here: the first argument is the cause, the second the detail.
+    InputError, as of all functions here, has the cause and the detail as its arguments.
     """
     if not (math.isfinite(place.x) and math.isfinite(place.y)):
         raise InputError("pose not finite", "NaN or infinite")

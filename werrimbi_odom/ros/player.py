@@ -82,14 +82,8 @@ class Player(Node):  # type: ignore[misc]
     ) -> Answers:
         """Set the start pose, then send every row as fast as the node answers.
 
-        Parameters
-        ----------
-        time, left, right : ndarray, shape (n,)
-            Stamps [s] and cumulative counts, as recorded.
-        left_names, right_names : sequence of str
-            Joint names of the wheels; all wheels of a side get the same count.
-        start : (x, y, yaw)
-            [m, m, rad], in `frame`.
+        Stamps [s] and cumulative counts as recorded, shape (n,); all wheels of a side get the same
+        count. The start is x, y [m] and yaw [rad] in `frame`.
         """
         # A stamp of zero means "no stamp" in ROS, so a record that begins at zero is shifted.
         self.offset = max(0.0, 2.0 - float(time[0]))

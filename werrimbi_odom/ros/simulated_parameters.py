@@ -10,105 +10,50 @@ from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.node_parameter import NodeParameter
-from werrimbi_odom.ros.declared_parameters import table
+from werrimbi_odom.ros.declared_parameters import above_zero, table, within
 
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, LiveRobot, TrueRobot
 
+# fmt: off
 PARAMETERS: tuple[NodeParameter, ...] = (
-    NodeParameter(
-        "hide",
-        "",
+    NodeParameter("hide", "",
         "Effect to hide in the robot, `EFFECT` or `EFFECT=STRENGTH` as for `werrimbi simulate "
-        "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any; `none`.",
-    ),
-    NodeParameter(
-        "seed",
-        1,
+        "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any; `none`."),
+    NodeParameter("seed", 1,
         "Of all that is random: noises, wheel angles, counters, the gyro, what `hide` leaves open.",
-        minimum=0,
-        maximum=2**31,
-    ),
-    NodeParameter(
-        "real_time_factor",
-        1.0,
+        minimum=0, maximum=2**31),
+    NodeParameter("real_time_factor", 1.0,
         "Simulated seconds in a second. Other than 1: with `publish_clock`, and `use_sim_time` for "
-        "all other nodes.",
-        above=0.0,
-        maximum=20.0,
-    ),
-    NodeParameter(
-        "publish_clock",
-        False,
-        "Publish simulated time on /clock, and stamp with it; else stamps are the time of day.",
-    ),
-    NodeParameter(
-        "use_stamped_vel", False, "Take geometry_msgs/TwistStamped on `cmd_vel`, else Twist."
-    ),
-    NodeParameter(
-        "cmd_vel_timeout",
-        0.5,
-        "The robot stops when no command has come for so long.",
-        unit="s",
-        above=0.0,
-        maximum=10.0,
-    ),
-    NodeParameter(
-        "joint_states_rate",
-        50.0,
-        "Messages a second on `joint_states`.",
-        unit="Hz",
-        above=0.0,
-        maximum=200.0,
-    ),
-    NodeParameter("imu_rate", 100.0, "The same on `imu`.", unit="Hz", above=0.0, maximum=200.0),
-    NodeParameter(
-        "reference_rate", 20.0, "The same on `reference`.", unit="Hz", above=0.0, maximum=200.0
-    ),
-    NodeParameter(
-        "reference_sigma_xy",
-        0.001,
-        "Noise of the reference: standard deviation of x and of y.",
-        unit="m",
-        minimum=0.0,
-        maximum=10.0,
-    ),
-    NodeParameter(
-        "reference_sigma_yaw",
-        0.002,
-        "The same of its heading.",
-        unit="rad",
-        minimum=0.0,
-        maximum=1.0,
-    ),
-    NodeParameter(
-        "room",
-        "none",
+        "all other nodes.", above=0.0, maximum=20.0),
+    NodeParameter("publish_clock", False,
+        "Publish simulated time on /clock, and stamp with it; else stamps are the time of day."),
+    NodeParameter("use_stamped_vel", False,
+        "Take geometry_msgs/TwistStamped on `cmd_vel`, else Twist."),
+    above_zero("cmd_vel_timeout", 0.5, "s", 10.0,
+        "The robot stops when no command has come for so long."),
+    above_zero("joint_states_rate", 50.0, "Hz", 200.0, "Messages a second on `joint_states`."),
+    above_zero("imu_rate", 100.0, "Hz", 200.0, "The same on `imu`."),
+    above_zero("reference_rate", 20.0, "Hz", 200.0, "The same on `reference`."),
+    within("reference_sigma_xy", 0.001, "m", 0.0, 10.0,
+        "Noise of the reference: standard deviation of x and of y."),
+    within("reference_sigma_yaw", 0.002, "rad", 0.0, 1.0, "The same of its heading."),
+    NodeParameter("room", "none",
         "What a lidar sees and publishes on `scan`, with walls that the robot drives through; the "
-        "robot begins in the middle.",
-        choices=("none", "living_room", "arena"),
-    ),
-    NodeParameter(
-        "enable_tf",
-        False,
+        "robot begins in the middle.", choices=("none", "living_room", "arena")),
+    NodeParameter("enable_tf", False,
         "Broadcast world -> odom (where the robot began) and world -> base_link_true (the truth) "
-        "on /tf; needs tf2_ros.",
-    ),
-    NodeParameter(
-        "robot_file",
-        "",
-        "New file to write: the robot as its maker believes it to be, for odom_node.",
-    ),
+        "on /tf; needs tf2_ros."),
+    NodeParameter("robot_file", "",
+        "New file to write: the robot as its maker believes it to be, for odom_node."),
 )
+# fmt: on
 
 
 def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
     """The simulated robot, its hidden effects, and the nominal robot.
 
-    Raises
-    ------
-    InputError
-        If the effect to hide is unknown, or mujoco is not installed.
+    InputError if the effect to hide is unknown, or mujoco is not installed.
     """
     try:
         from werrimbi_odom import simulation

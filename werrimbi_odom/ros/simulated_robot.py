@@ -29,7 +29,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import simulated_parameters
 from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic
-from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.run_node import run
 from werrimbi_odom.ros.topics import full_name, publisher, subscribe, transform_sender
 
 if TYPE_CHECKING:
@@ -48,10 +48,7 @@ BEGINS = 1.0
 class SimulatedRobot(Node):  # type: ignore[misc]
     """A simulated robot driven by `cmd_vel`.
 
-    Raises
-    ------
-    InputError
-        If a parameter is invalid, or mujoco is not installed.
+    InputError if a parameter is invalid, or mujoco is not installed.
     """
 
     def __init__(self) -> None:
@@ -244,15 +241,9 @@ class SimulatedRobot(Node):  # type: ignore[misc]
 
 
 class _Due:
-    """A sensor that publishes at its own rate, as soon as its data are available.
+    """A sensor that publishes at its own rate [Hz], as soon as its data are available.
 
-    Parameters
-    ----------
-    rate : float
-        [Hz]
-    lag : float
-        Delay from a stamp until its data are available [s].
-    publish : callable of (time, time before)
+    These lag behind their stamp [s]. `publish` gets that time, and the time before it.
     """
 
     def __init__(self, rate: float, lag: float, publish: Callable[[float, float], None]) -> None:

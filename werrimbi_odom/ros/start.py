@@ -1,31 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Executables of the nodes; without ROS they explain how to install it."""
+"""Executables of the nodes, which return the exit code; without ROS they say how to install it."""
 
 from __future__ import annotations
 
 import sys
+from functools import partial
 from importlib import import_module
-
-
-def odom_node() -> int:
-    """Run `odom_node`; return the exit code."""
-    return _started("odom_node")
-
-
-def compare_node() -> int:
-    """Run `compare_node`; return the exit code."""
-    return _started("compare_node")
-
-
-def simulated_robot() -> int:
-    """Run `simulated_robot`; return the exit code."""
-    return _started("simulated_robot")
-
-
-def drive_node() -> int:
-    """Run `drive_node`; return the exit code."""
-    return _started("drive_node")
 
 
 def _started(name: str) -> int:
@@ -42,3 +23,9 @@ def _started(name: str) -> int:
         return 2
     code: int = node.main()
     return code
+
+
+odom_node = partial(_started, "odom_node")
+compare_node = partial(_started, "compare_node")
+simulated_robot = partial(_started, "simulated_robot")
+drive_node = partial(_started, "drive_node")

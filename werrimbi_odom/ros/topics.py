@@ -43,16 +43,10 @@ def subscribe(
     raw: bool = False,
     lost: Callable[[Any], None] | None = None,
 ) -> None:
-    """Subscribe, by default with `sensor_qos`.
+    """Subscribe, by default with `sensor_qos`; `raw`: `take` gets serialised messages.
 
-    Parameters
-    ----------
-    overridable : bool
-        Whether the QoS can be overridden by parameters; if one is invalid, InputError names it.
-    raw : bool
-        Whether `take` gets serialised messages.
-    lost : callable, optional
-        Called when messages are lost.
+    `overridable`: the QoS can be overridden by parameters; InputError names one that is invalid.
+    `lost` is called when messages are lost.
     """
     with _errors_of_overrides(topic, overridable):
         node.create_subscription(
@@ -103,10 +97,7 @@ SendTransform = Callable[[TransformStamped], None]
 def transform_sender(node: Node, parameter: str) -> SendTransform:
     """Create a function that broadcasts a transform.
 
-    Raises
-    ------
-    InputError
-        If tf2_ros is not installed; `parameter` is the one that requests it.
+    InputError if tf2_ros is not installed; `parameter` is the one that requests it.
     """
     try:
         from tf2_ros import TransformBroadcaster

@@ -22,13 +22,8 @@ class WheelSide:
     rolled like the others of its side. If all of them fall, the mean falls too, and the model's
     encoder detects the reset.
 
-    Parameters
-    ----------
-    counts_per_unit : float
-        Counts per unit of position.
-    bits : int
-        Width at which the counters wrap, to be unwrapped here; 0: they do not wrap, or the model's
-        encoder unwraps them.
+    `bits` is the width at which the counters wrap, to be unwrapped here; 0: they do not wrap, or
+    the model's encoder unwraps them.
     """
 
     def __init__(self, counts_per_unit: float, counts_per_revolution: float, bits: int = 0) -> None:

@@ -47,48 +47,15 @@ from .manoeuvres import (
 )
 from .recorder import record
 from .recording import Recording, write_run
-from .robot import Nominal, TrueRobot
-from .robot_file import write_robot_file
+from .robot import Nominal, TrueRobot, write_robot_file
 from .sensors import ReferenceSensor
 from .sessions import drives, session
 
 __all__ = [
-    "CATALOGUE",
-    "AxlePose",
-    "FieldDrive",
-    "FieldSensors",
-    "Hidden",
-    "LiveRobot",
-    "Manoeuvre",
-    "MoveLimits",
-    "Nominal",
-    "Peculiarity",
-    "Recording",
-    "ReferenceSensor",
-    "StrengthError",
-    "TruePath",
-    "TrueRobot",
-    "UnknownEffectError",
-    "UnstableError",
-    "WishError",
-    "arcs",
-    "as_in_the_field",
-    "chain",
-    "drives",
-    "figure_eight",
-    "free",
-    "hide",
-    "moves",
-    "out_and_back",
-    "pivots",
-    "record",
-    "session",
-    "spin",
-    "spins",
-    "square",
-    "start_stop",
-    "wished",
-    "write_field_bag",
-    "write_robot_file",
-    "write_run",
-]
+    "CATALOGUE", "AxlePose", "FieldDrive", "FieldSensors", "Hidden", "LiveRobot", "Manoeuvre",
+    "MoveLimits", "Nominal", "Peculiarity", "Recording", "ReferenceSensor", "StrengthError",
+    "TruePath", "TrueRobot", "UnknownEffectError", "UnstableError", "WishError", "arcs",
+    "as_in_the_field", "chain", "drives", "figure_eight", "free", "hide", "moves",
+    "out_and_back", "pivots", "record", "session", "spin", "spins", "square", "start_stop",
+    "wished", "write_field_bag", "write_robot_file", "write_run",
+]  # fmt: skip

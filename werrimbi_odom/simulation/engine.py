@@ -262,23 +262,11 @@ def drive(
     shifters: Sequence[Shifter] = (),
     reshapers: Sequence[Reshaper] = (),
 ) -> TruePath:
-    """Drive a robot with given motor speeds.
+    """Drive a robot with given motor speeds; return a path of n + 1 rows.
 
-    Parameters
-    ----------
-    wheel_speeds : ndarray, shape (n, 2)
-        Commanded mean speeds of the left and right motor in each PERIOD [rad/s].
-    angles : (left, right)
-        Angles of the encoder shafts at the start [rad].
-    shifters : sequence of Shifter
-        Motions in addition to rolling, applied after each PERIOD; all get the same stride.
-    reshapers : sequence of Reshaper
-        Changes of the robot, applied after each PERIOD.
-
-    Returns
-    -------
-    TruePath
-        With n + 1 rows.
+    `wheel_speeds` are the commanded mean speeds of the left and right motor in each PERIOD [rad/s],
+    shape (n, 2); `angles` those of the encoder shafts at the start, left and right [rad]. Shifters
+    (which all get the same stride) and reshapers are applied after each PERIOD.
     """
     robot = DrivenRobot(chassis, start, angles, shifters, reshapers)
     rows = np.empty((len(wheel_speeds) + 1, 6))

@@ -114,14 +114,10 @@ def as_in_the_field(
 ) -> FieldDrive:
     """Measure a drive with ordinary sensors, after somebody held and carried the robot in it.
 
-    Parameters
-    ----------
-    seed, robot_seed : int
-        Seeds of this drive, and of properties common to all drives of the robot (the gyro).
-    hidden : sequence of Peculiarity
-        Peculiarities that the drive was recorded with. Those of counters change the wheels' angles.
-        Those of a reference change the localiser; the gyro, if they delay a heading; and the lidar,
-        in its mount and its delay.
+    `robot_seed` is of what all drives of the robot have in common (the gyro). The drive was
+    recorded with the `hidden` peculiarities. Those of counters change the wheels' angles. Those of
+    a reference change the localiser; the gyro, if they delay a heading; and the lidar, in its mount
+    and its delay.
     """
     sensors = sensors or FieldSensors()
     rng = np.random.default_rng([seed, 77])

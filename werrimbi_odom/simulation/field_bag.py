@@ -10,8 +10,7 @@ import numpy as np
 
 from .bag import Messages
 from .field import FieldDrive
-from .robot import TrueRobot
-from .robot_file import joints
+from .robot import TrueRobot, joints
 
 TOPICS = {
     "/robot_description": "std_msgs/msg/String",

@@ -33,18 +33,8 @@ KEPT = 400
 class LiveRobot:
     """A robot in the engine, driven period by period by commands as they arrive.
 
-    Parameters
-    ----------
-    seed : int
-        Seed of all random numbers, as in `record`.
-    start : AxlePose
-        Start pose in the world.
-    hidden : sequence of Peculiarity
-        Hidden peculiarities; their extra channels are not available live.
-    sensors : FieldSensors, optional
-        Errors of gyro and lidar.
-    room : Room, optional
-        Obstacles for the lidar only: in the engine the robot drives through the walls.
+    Seed, start and peculiarities are as in `record`; extra channels of the latter are not available
+    live. A `room` is for the lidar only: in the engine the robot drives through the walls.
     """
 
     def __init__(
@@ -97,13 +87,7 @@ class LiveRobot:
         self._wanted = speed, yaw_rate
 
     def advance(self) -> None:
-        """Drive for one PERIOD.
-
-        Raises
-        ------
-        UnstableError
-            If the engine became unstable.
-        """
+        """Drive for one PERIOD; UnstableError if the engine became unstable."""
         most = ACCELERATION * PERIOD, YAW_ACCELERATION * PERIOD
         self._speeds = (
             _towards(self._speeds[0], self._wanted[0], most[0]),

@@ -34,19 +34,11 @@ class Manoeuvre:
         return self.knots[-1][0]
 
     def commands(self, times: Floats) -> tuple[Floats, Floats]:
-        """Mean speed and yaw rate over each interval between `times`.
+        """Mean speed [m/s] and yaw rate [rad/s] over each interval between `times` [s].
 
-        Exact means, not samples, so that a commanded path closes on any time grid.
-
-        Parameters
-        ----------
-        times : ndarray, shape (n + 1,)
-            Increasing [s]. Commands are zero before the first and after the last knot.
-
-        Returns
-        -------
-        speed, yaw_rate : ndarray, shape (n,)
-            [m/s], [rad/s].
+        Exact means, not samples, so that a commanded path closes on any time grid. Commands are
+        zero before the first and after the last knot. Shapes are (n + 1,) of the times and (n,) of
+        the means.
         """
         t, speed, yaw_rate = (np.array(column) for column in zip(*self.knots, strict=True))
         return _means(t, speed, times), _means(t, yaw_rate, times)
@@ -88,10 +80,7 @@ def moves(
 ) -> Manoeuvre:
     """A manoeuvre of moves from rest to rest, each a line, an arc or a turn on the spot.
 
-    Parameters
-    ----------
-    steps : sequence of (length, turn)
-        Signed length [m] and turn [rad] of each move; both together make an arc.
+    Steps are (length, turn), signed [m, rad]; both together make an arc.
     """
     pace = pace or MoveLimits()
     knots: list[Knot] = [(0.0, 0.0, 0.0)]
@@ -219,18 +208,9 @@ def free(
 ) -> Manoeuvre:
     """Random driving as with a joystick: new speed and yaw rate every second or two.
 
-    Parameters
-    ----------
-    duration : float
-        Duration [s]; the drive ends at rest slightly later.
-    seed : int
-        The same seed gives the same drive.
-    speed, yaw_rate : float
-        Largest values [m/s, rad/s].
-    acceleration : float
-        Typical acceleration [m/s^2]; the yaw acceleration has four times its value [rad/s^2].
-    backwards : float
-        Share of the time spent driving backwards, 0 to 1.
+    It ends at rest slightly after `duration` [s]. Speed [m/s] and yaw rate [rad/s] are the largest
+    values. The yaw acceleration has four times the value of the typical acceleration [m/s^2].
+    `backwards` is the share of the time spent driving backwards.
     """
     rng = np.random.default_rng(seed)
     knots: list[Knot] = [(0.0, 0.0, 0.0)]

@@ -54,19 +54,11 @@ def record(
 ) -> Recording:
     """Drive `robot` through `manoeuvre` in the physics engine and record it.
 
-    Parameters
-    ----------
-    seed : int
-        Seed of all random numbers of this run: noises, start pose, wheel angles, counters, sampling
-        times. Each has its own stream, so that switching one off does not change the others.
-    reference : ReferenceSensor, optional
-        Default: motion capture at 20 Hz with 1 mm and 2 mrad of noise.
-    ticks_rate_hz : float
-        Sampling rate of the counters.
-    start : AxlePose, optional
-        Start pose in the world; by default random within a metre, with a random heading.
-    hidden : sequence of Peculiarity
-        Peculiarities of the robot, its floor or its recording, applied in this order.
+    The seed is of all random numbers of this run: noises, start pose, wheel angles, counters,
+    sampling times. Each has its own stream, so that switching one off does not change the others.
+    By default the reference is motion capture at 20 Hz with 1 mm and 2 mrad of noise, and the start
+    is random within a metre. Peculiarities of the robot, its floor or its recording are applied in
+    their order.
     """
     ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
     robot = ready.robot
@@ -177,10 +169,7 @@ def _sample(
 def wheel_speeds(robot: TrueRobot, manoeuvre: Manoeuvre) -> Floats:
     """Motor speeds commanded by the robot's own controller with its nominal geometry.
 
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Left and right [rad/s] in each PERIOD, with REST before and after.
+    Left and right [rad/s] in each PERIOD, with REST before and after, shape (n, 2).
     """
     periods = math.ceil((manoeuvre.duration + 2 * REST) / PERIOD)
     times = PERIOD * np.arange(periods + 1, dtype=np.float64) - REST

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The true robot, and its nominal parameters. Both immutable."""
+"""The true robot, its nominal parameters, and the robot file that its user would have."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -46,3 +47,61 @@ class TrueRobot:
     """Number of wheels per side in the robot file."""
     nominal: Nominal = field(default_factory=Nominal)
     """Parameters of the controller and of the robot file."""
+
+
+_TEMPLATE = """\
+# The robot as its maker believes it to be. The node and the command line read this same file:
+#   odom_node --ros-args --params-file robot.yaml
+#   werrimbi odom --robot robot.yaml RUN --out odom.csv
+odom_node:
+  ros__parameters:
+    wheel_separation: {wheel_separation:<17} # m, between the wheels' contact points
+    wheel_radius: {wheel_radius:<21} # m
+    wheel_separation_multiplier: 1.0    # calibration of the base; 1: as measured with the ruler
+    left_wheel_radius_multiplier: 1.0   # calibration of the left wheel
+    right_wheel_radius_multiplier: 1.0  # calibration of the right wheel
+    left_ticks_per_revolution: {left_ticks_per_revolution:<8} # counts in one turn of the wheel
+    right_ticks_per_revolution: {right_ticks_per_revolution}
+    encoder_bits: 0                     # the counters do not wrap
+    left_wheel_noise: {left_wheel_noise:<17} # k_L, m^0.5: a wheel errs by k * sqrt(path)
+    right_wheel_noise: {right_wheel_noise:<16} # k_R
+    odom_frame_id: odom
+    base_frame_id: base_link
+    enable_odom_tf: false               # true where no filter (EKF) publishes odom -> base_link
+    input_type: joint_state             # wheel angles in radians on joint_states
+    left_wheel_names: [{left_wheel_names}]
+    right_wheel_names: [{right_wheel_names}]
+"""
+
+
+def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
+    """Write the nominal parameters of `robot` and its noise, without its true geometry.
+
+    Returns the YAML file; its folder must exist.
+    """
+    path = Path(path)
+    text = _TEMPLATE.format(
+        wheel_separation=_real(robot.nominal.wheel_separation),
+        wheel_radius=_real(robot.nominal.wheel_radius),
+        left_ticks_per_revolution=_real(robot.left_ticks_per_revolution),
+        right_ticks_per_revolution=_real(robot.right_ticks_per_revolution),
+        left_wheel_noise=_real(robot.left_wheel_noise),
+        right_wheel_noise=_real(robot.right_wheel_noise),
+        left_wheel_names=", ".join(joints("left", robot.wheels_a_side)),
+        right_wheel_names=", ".join(joints("right", robot.wheels_a_side)),
+    )
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def joints(side: str, count: int) -> list[str]:
+    """Names of the wheel joints of one side."""
+    if count == 1:
+        return [f"{side}_wheel_joint"]
+    return [f"{place}_{side}_wheel_joint" for place in ("front", "rear")]
+
+
+def _real(value: float) -> str:
+    """Digits that every YAML reader takes for a float: with a point, also before an exponent."""
+    digits = repr(float(value))
+    return digits if "." in digits else digits.replace("e", ".0e")

@@ -66,12 +66,7 @@ def corridor_with_cupboards(length: float = 40.0, width: float = 2.0, seed: int 
 def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
     """A furnished room around a path that keeps clear of the path.
 
-    Parameters
-    ----------
-    x, y : ndarray
-        The path [m].
-    margin : float
-        Least distance from the path to a wall [m]; cupboards take up to half of it.
+    `margin` is the least distance from the path to a wall [m]; cupboards take up to half of it.
     """
     rng = np.random.default_rng([seed, 80])
     wide = margin + rng.uniform(0.0, 0.6, 4)
@@ -95,11 +90,5 @@ def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
 
 def box(left: float, lower: float, right: float, upper: float) -> Floats:
     """Four sides of a rectangle, shape (4, 4)."""
-    return np.array(
-        [
-            [left, lower, right, lower],
-            [right, lower, right, upper],
-            [right, upper, left, upper],
-            [left, upper, left, lower],
-        ]
-    )
+    corners = np.array([(left, lower), (right, lower), (right, upper), (left, upper)])
+    return np.hstack([corners, np.roll(corners, -1, axis=0)])

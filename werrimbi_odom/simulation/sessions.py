@@ -83,21 +83,10 @@ def session(
     hidden: Sequence[Peculiarity] = (),
     only: Container[str] | None = None,
 ) -> Iterator[tuple[str, Recording]]:
-    """Record the drives of the session, one after the other.
+    """Record the drives of the session, one after the other, with the names of their run folders.
 
-    Parameters
-    ----------
-    seed : int
-        Seed of the session; the seeds of the runs follow from it.
-    hidden : sequence of Peculiarity
-        Peculiarities, the same in all runs.
-    only : container of str, optional
-        Names of the drives to record, each as in the whole session; all if None.
-
-    Yields
-    ------
-    (name, Recording)
-        Name of the run folder, as in `drives`.
+    The seeds of the runs follow from that of the session. With `only` some drives are recorded,
+    each as in the whole session.
     """
     for number, (name, manoeuvre) in enumerate(drives(seed).items()):
         if only is None or name in only:

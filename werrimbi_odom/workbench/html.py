@@ -113,11 +113,8 @@ def serve_drawing() -> None:
 def ask_for_drawing(at_once: bool) -> None:
     """Load plotly.js in the background.
 
-    Parameters
-    ----------
-    at_once : bool
-        Whether figures are shown at once. Loading blocks the page for a second, so otherwise it
-        waits until the rest is shown.
+    Loading blocks the page for a second, so it waits until the rest is shown, unless figures are
+    shown at once.
     """
     begin = "ask()" if at_once else "addEventListener('load', () => setTimeout(ask, 50))"
     ui.add_head_html(

@@ -59,19 +59,8 @@ class Job:
     async def result(self, given: Recordings, known: Mapping[str, Any]) -> Any:
         """Run the task without blocking the event loop.
 
-        Parameters
-        ----------
-        given : Recordings
-            Input of the task.
-        known : mapping of str to object
-            Objects that the worker has too and need not send back, by their common names.
-
-        Raises
-        ------
-        InputError
-            If the task fails on these drives.
-        CancelledError
-            If it was cancelled.
+        `known` are objects that the worker has too and need not send back, by their common names.
+        InputError if the task fails on these drives; CancelledError if it was cancelled.
         """
         import asyncio
 
@@ -83,10 +72,7 @@ class Job:
     def start(self) -> None:
         """Start the process, which imports its modules before the task is known.
 
-        Raises
-        ------
-        CancelledError
-            If it was cancelled already.
+        CancelledError if it was cancelled already.
         """
         # Not forked: a fork of a process with threads (those of the server) may deadlock.
         context = multiprocessing.get_context("spawn")
@@ -102,7 +88,7 @@ class Job:
 
     def ask(self, given: Recordings) -> None:
         """Send the task to a process that was started."""
-        from werrimbi_odom.workbench.crossing import packed
+        from werrimbi_odom.workbench.pickling import packed
 
         data = packed((self.task, given), {})
         # The process may still be importing, and a pipe blocks until it reads.
@@ -136,7 +122,7 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
-        from werrimbi_odom.workbench.crossing import unpacked
+        from werrimbi_odom.workbench.pickling import unpacked
 
         while True:
             what, value, words = receiving.recv()

@@ -81,10 +81,7 @@ def saved(
 ) -> Session:
     """Write the robot file of the current step.
 
-    Raises
-    ------
-    InputError
-        If it cannot be written; then nothing is.
+    InputError if it cannot be written; then nothing is.
     """
     path = target.of(session, taken)
     robot = session.now.look.robot

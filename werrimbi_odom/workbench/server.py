@@ -30,10 +30,7 @@ ICON = (
 def listening(port: int) -> socket.socket:
     """A listening socket on loopback; port 0 for a free one.
 
-    Raises
-    ------
-    InputError
-        If the port is in use or not allowed.
+    InputError if the port is in use or not allowed.
     """
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -55,23 +52,11 @@ def serve(
     ready: Callable[[str], None],
     opened: Callable[[str, Shared], None],
 ) -> None:
-    """Serve the page until interrupted.
+    """Serve the page on a listening socket until interrupted.
 
-    Parameters
-    ----------
-    opening : Opening
-        Input of the page.
-    at : socket
-        Listening socket.
-    ready : callable
-        Called with the address when it can be opened.
-    opened : callable
-        Called with the address and the result when the comparison is done.
-
-    Raises
-    ------
-    InputError
-        If the drives could not be opened; the server has ended then.
+    `ready` is called with the address when it can be opened, `opened` with the address and the
+    result when the comparison is done. InputError if the drives could not be opened; the server has
+    ended then.
     """
     import uvicorn
     from fastapi import FastAPI

@@ -23,10 +23,10 @@ from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.report.number_format import listed
-from werrimbi_odom.workbench.crossing import NOT_SENT, known_before, known_to_both
 from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.leg_selection import Part
 from werrimbi_odom.workbench.loaded_input import Look, Opened
+from werrimbi_odom.workbench.pickling import NOT_SENT, known_before, known_to_both
 from werrimbi_odom.workbench.saving import Target, saved
 from werrimbi_odom.workbench.session import Session
 from werrimbi_odom.workbench.task import Add, Diagnose, Task
@@ -242,10 +242,7 @@ class Opening:
     async def result(self) -> Shared:
         """The result, when ready; cancelling one wait does not affect the others.
 
-        Raises
-        ------
-        InputError
-            If the drives cannot be used.
+        InputError if the drives cannot be used.
         """
         if self._task is None:
             self._task = asyncio.create_task(self._finished())

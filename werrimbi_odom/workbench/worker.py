@@ -16,14 +16,14 @@ from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.progress import Show
-from werrimbi_odom.workbench.crossing import (
+from werrimbi_odom.workbench.loaded_input import opened
+from werrimbi_odom.workbench.pickling import (
     known_before,
     known_to_both,
     left_there,
     packed,
     unpacked,
 )
-from werrimbi_odom.workbench.loaded_input import opened
 from werrimbi_odom.workbench.task import Diagnose, Open, Task
 
 

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.diagnosis.response_curve import before_after
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.progress import Show
-from werrimbi_odom.report.diagnosis.before_after import before_after_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure
 from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
 from werrimbi_odom.workbench.loaded_input import Opened, split
 from werrimbi_odom.workbench.session import Diagnosed, ModelVersion
@@ -23,10 +23,7 @@ from werrimbi_odom.workbench.task import Add, Diagnose
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:
     """Diagnose, with the same held-out drives as the page.
 
-    Raises
-    ------
-    InputError
-        If it fails on these drives; the message says why.
+    InputError if it fails on these drives; the message says why.
     """
     told = diagnosis_of(split(replace(given, fitted=task.robot)), show).found
     show(0.99, "figures")
@@ -51,10 +48,7 @@ def _figures(advised: AdvisedDiagnosis) -> dict[str, str]:
 def added(task: Add, opened: Opened, show: Show) -> ModelVersion:
     """Fit effects, and compare over the same legs as before.
 
-    Raises
-    ------
-    InputError
-        If it fails on these drives; the message says why.
+    InputError if it fails on these drives; the message says why.
     """
     given = split(replace(opened.given, fitted=task.robot))
     effects = [given.collection.find(name) for name in task.effects]

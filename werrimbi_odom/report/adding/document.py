@@ -169,12 +169,8 @@ def clouds_of_legs(
 ) -> Figure:
     """Scatter plot of leg errors for several models, with their medians; equal scales.
 
-    Parameters
-    ----------
-    clouds : iterable of (name, errors, colour, symbol)
-        Errors along and sideways [m], shape (m, 2) or more columns; NaN if not measured.
-    digits : int
-        Decimals of millimetres.
+    Clouds are (name, errors, colour, symbol), with errors along and sideways [m], shape (m, 2) or
+    more columns, NaN if not measured. `digits`: decimals of millimetres.
     """
     figure = style.blank()
     for name, errors, colour, symbol in clouds:

@@ -26,16 +26,9 @@ def calibration_document(
     figure: Callable[[], Figure],
     changes: Mapping[str, tuple[float, float]],
 ) -> Document:
-    """A document with one figure.
+    """A document with one figure, which has a heading and says what to see in it.
 
-    Parameters
-    ----------
-    heading, see : str
-        Heading of the figure, and what to see in it.
-    figure : callable
-        Makes the figure.
-    changes : mapping of str to (float, float)
-        Written parameters by name, before and after.
+    `changes` are the written parameters by name, before and after.
     """
     rows = [[name, f"{before:.6g}", f"{after:.6g}"] for name, (before, after) in changes.items()]
     table = Table("", ("parameter", "before", "after"), rows)
@@ -113,12 +106,8 @@ def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
 def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
     """Errors of repeated drives with the 95 % ellipses of data and model (figures 4 a to c).
 
-    Parameters
-    ----------
-    errors : ndarray, shape (n, 3)
-        x, y [m], yaw [rad].
-    data, model : ndarray, shape (3, 3)
-        Covariances; both ellipses are centred at the mean of the runs.
+    `errors` are x, y [m], yaw [rad], shape (n, 3). Both ellipses, of covariances of shape (3, 3),
+    are centred at the mean of the runs.
     """
     from plotly.subplots import make_subplots
 
@@ -150,10 +139,8 @@ def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
 def leg_figure(before: Floats, after: Floats) -> Figure:
     """Measured minus predicted position at the end of each leg, before and after.
 
-    Parameters
-    ----------
-    before, after : ndarray, shape (m, 2) or (m, 3)
-        Errors in the frame of the robot at the leg's start [m]; NaN where not measured.
+    Errors in the frame of the robot at the leg's start [m], shape (m, 2) or (m, 3); NaN where not
+    measured.
     """
     looks = (("before", before, ORANGE, "circle-open"), ("after", after, BLUE, "circle"))
     return clouds_of_legs(looks, digits=1, height=820)

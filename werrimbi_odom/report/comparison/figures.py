@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -58,9 +57,9 @@ def nees_figure(comparison: Comparison) -> Figure:
             )
         if not at:
             continue
-        x, y = _bars(at, low, high)
         bar = {"color": style.paled(style.GREY, 0.45), "width": 16}
         words = "where an honest covariance lies, 19 times in 20"
+        x, y = style.apart(at, at), style.apart(low, high)
         style.plot(figure, x, y, words, group="bounds", shown=not drawn, line=bar)
         drawn = True
         marker = {"color": colour, "symbol": symbol, "size": 12}
@@ -75,16 +74,6 @@ def nees_figure(comparison: Comparison) -> Figure:
     figure.update_yaxes(type="log", tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
     figure.update_xaxes(zeroline=False)
     return figure
-
-
-def _bars(at: Sequence[float], low: Sequence[float], high: Sequence[float]) -> tuple[list, list]:  # type: ignore[type-arg]
-    """Vertical bars as one line with gaps."""
-    x: list[float | None] = []
-    y: list[float | None] = []
-    for where, bottom, top in zip(at, low, high, strict=True):
-        x += [where, where, None]
-        y += [bottom, top, None]
-    return x, y
 
 
 def legs_by_motion_figure(comparison: Comparison) -> Figure:

@@ -22,10 +22,7 @@ _ELLIPSES = 12
 def path_figure(comparison: Comparison, run: int | None = None) -> Figure:
     """Measured path with its legs coloured by position error; for one run also the model's path.
 
-    Parameters
-    ----------
-    run : int, optional
-        Index of one run; None for all, with the model's paths only for few runs.
+    `run` is the index of one run; None for all, with the model's paths only for few runs.
     """
     figure = style.blank()
     which = range(len(comparison.paths)) if run is None else (run,)

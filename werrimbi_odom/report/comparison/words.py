@@ -17,12 +17,7 @@ from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import capital, counted, length, listed, two_digits
-from werrimbi_odom.report.phrases import (
-    left_out_words,
-    leg_words,
-    rarer_than_asked,
-    remark_words,
-)
+from werrimbi_odom.report.phrases import left_out_words, leg_words, rarer_than_asked, remark_words
 
 _CHANNELS = {
     "along": "the error along the way",
@@ -41,14 +36,8 @@ def words_of(
 ) -> tuple[Paragraph, ...]:
     """Summary of a comparison.
 
-    Parameters
-    ----------
-    next_step : str
-        Command that searches for a missing effect; "" to omit it.
-    verdict : Verdict, optional
-        The verdict, if already known.
-    command : str
-        Full command of the next step.
+    `next_step` is the command that searches for a missing effect, "" to omit it, and `command` the
+    full command of the next step.
     """
     verdict = verdict or verdict_of(comparison)
     said = [headline(comparison, verdict)]

@@ -14,9 +14,9 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.before_after import before_after_figure
 from werrimbi_odom.report.diagnosis.dependence import label_of
 from werrimbi_odom.report.diagnosis.evidence_figures import (
+    before_after_figure,
     dependence_figure,
     evidence_map_figure,
     ordered_cells,

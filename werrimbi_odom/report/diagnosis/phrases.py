@@ -23,7 +23,7 @@ from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.expected import expected_words
+from werrimbi_odom.report.diagnosis.manual_check import expected_words
 from werrimbi_odom.report.number_format import (
     capital,
     chance_words,

@@ -115,11 +115,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     ending = ": the model explains them to their noise." if noise else "."
     if old:
         ending = ", but values of effects in the robot file are off."
-    lines = [
-        f"Nothing is missing that these drives could show{ending}",
-        *old,
-        *_rest(advised),
-    ]
+    lines = [f"Nothing is missing that these drives could show{ending}", *old, *_rest(advised)]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
         like = remarks.like_noise(diagnosis) if noise else ""

@@ -16,5 +16,6 @@ def effect_sketch(effect: Effect) -> str | None:
     sketch = effect.sketch
     if sketch is None:
         return None
-    parts = DRAWINGS[sketch.drawing](*sketch.labels)
+    drawn = DRAWINGS[sketch.drawing]
+    parts = drawn(*sketch.labels) if callable(drawn) else drawn
     return drawing(effect.name, sketch.says, sketch.caption, parts)

@@ -6,15 +6,11 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 INK = "currentColor"
-BLUE, ORANGE, GREEN, GREY = (
-    "var(--blue, #0072B2)",
-    "var(--orange, #D55E00)",
-    "var(--green, #009E73)",
-    "var(--grey, #6B6B6B)",
-)
+BLUE, ORANGE = "var(--blue, #0072B2)", "var(--orange, #D55E00)"
+GREEN, GREY = "var(--green, #009E73)", "var(--grey, #6B6B6B)"
 SIDES = {"left": BLUE, "right": ORANGE}
 WIDTH, HEIGHT = 340, 170
 
@@ -23,6 +19,7 @@ DASH = "6 5"
 
 Point = tuple[float, float]
 Parts = list[str]
+Drawing = Parts | Callable[..., Parts]
 
 
 def drawing(name: str, says: str, caption: str, parts: Sequence[str]) -> str:
@@ -53,16 +50,9 @@ def circle(
 
 
 def oblong(
-    x: float,
-    y: float,
-    width: float,
-    height: float,
-    *,
-    turn: float = 0.0,
-    colour: str = INK,
-    fill: str = "",
-    dash: str = "",
-) -> str:
+    x: float, y: float, width: float, height: float,
+    *, turn: float = 0.0, colour: str = INK, fill: str = "", dash: str = "",
+) -> str:  # fmt: skip
     """A rectangle by its centre, rotated clockwise [degrees]."""
     return (
         f'<rect x="{x - width / 2:.1f}" y="{y - height / 2:.1f}" width="{width:.1f}" '
@@ -80,16 +70,9 @@ def arrow(start: Point, end: Point, *, colour: str = ORANGE, both: bool = False)
 
 
 def arc(
-    x: float,
-    y: float,
-    r: float,
-    begin: float,
-    end: float,
-    *,
-    colour: str = INK,
-    dash: str = "",
-    head: bool = False,
-) -> str:
+    x: float, y: float, r: float, begin: float, end: float,
+    *, colour: str = INK, dash: str = "", head: bool = False,
+) -> str:  # fmt: skip
     """Part of a circle between two angles [degrees, anticlockwise from the right]."""
     count = max(6, int(abs(end - begin) / 6))
     points = [
@@ -120,15 +103,9 @@ def words(x: float, y: float, text: str, *, colour: str = INK, anchor: str = "mi
 
 
 def robot(
-    x: float,
-    y: float,
-    *,
-    turn: float = 0.0,
-    size: float = 1.0,
-    left: str = INK,
-    right: str = INK,
-    marker: bool = False,
-) -> str:
+    x: float, y: float, *, turn: float = 0.0, size: float = 1.0,
+    left: str = INK, right: str = INK, marker: bool = False,
+) -> str:  # fmt: skip
     """A robot from above, facing right, rotated anticlockwise [degrees]; left is up on the page."""
     s = size
     parts = [

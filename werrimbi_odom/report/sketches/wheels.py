@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from werrimbi_odom.report.sketches.parts import (
     BLUE,
@@ -15,6 +15,7 @@ from werrimbi_odom.report.sketches.parts import (
     INK,
     ORANGE,
     SIDES,
+    Drawing,
     Parts,
     arc,
     arrow,
@@ -82,68 +83,6 @@ def _tread_bump(side: str) -> Parts:
     ]
 
 
-def _unequal_radii() -> Parts:
-    return [
-        floor(112),
-        circle(95, 80, 32, colour=BLUE),
-        circle(205, 87, 25, colour=ORANGE),
-        line((95, 80), (205, 87)),
-        words(95, 40, "left", colour=BLUE),
-        words(205, 50, "right", colour=ORANGE),
-        arc(300, 30, 80, 215, 275, colour=ORANGE, head=True),
-    ]
-
-
-def _radius_scale() -> Parts:
-    return [
-        floor(125),
-        circle(80, 90, 35, colour=ORANGE),
-        circle(80, 98, 27, colour=GREY, dash=DASH),
-        line((80, 90), (104, 65), colour=ORANGE),
-        words(125, 62, "true", colour=ORANGE, anchor="start"),
-        words(125, 82, "entered", colour=GREY, anchor="start"),
-        arrow((130, 108), (300, 108)),
-        arrow((130, 118), (255, 118), colour=GREY),
-    ]
-
-
-def _squash() -> Parts:
-    return [
-        floor(120),
-        circle(75, 82, 38, colour=BLUE),
-        words(75, 86, "slow", colour=BLUE),
-        arrow((120, 60), (150, 60), colour=GREY),
-        arc(235, 88, 38, -57, 237, colour=ORANGE),
-        line((214, 120), (256, 120), colour=ORANGE, width=3),
-        words(235, 92, "fast", colour=ORANGE),
-        arrow((280, 60), (328, 60), colour=GREY),
-        arrow((290, 84), (290, 119), both=True),
-    ]
-
-
-def _by_channel() -> Parts:
-    return [
-        floor(125),
-        circle(70, 85, 40, colour=ORANGE),
-        circle(70, 93, 32, colour=GREY, dash=DASH),
-        line((150, 120), (150, 40), colour=GREY),
-        line((150, 120), (320, 120), colour=GREY),
-        line((150, 100), (190, 60), (235, 92), (280, 52), (318, 70), colour=ORANGE),
-        words(235, 40, "a column of ticks.csv", colour=GREY),
-    ]
-
-
-def _radius_drift() -> Parts:
-    return [
-        floor(115),
-        circle(75, 77, 38, colour=BLUE),
-        circle(180, 82, 33, colour=BLUE, dash=DASH),
-        circle(280, 88, 27, colour=ORANGE),
-        arrow((30, 130), (310, 130), colour=GREY),
-        words(170, 146, "time, distance", colour=GREY),
-    ]
-
-
 def _backlash(side: str) -> Parts:
     colour = SIDES[side]
     return [
@@ -183,18 +122,6 @@ def _missed_ticks(side: str) -> Parts:
     return [*parts, words(105, 120, "slow", colour=GREY), words(265, 120, "fast", colour=GREY)]
 
 
-def _swapped() -> Parts:
-    return [
-        robot(90, 80, left=BLUE, right=ORANGE),
-        oblong(270, 50, 70, 30),
-        words(270, 55, "left", colour=INK),
-        oblong(270, 110, 70, 30),
-        words(270, 115, "right", colour=INK),
-        line((102, 54), (150, 54), (200, 110), (235, 110), colour=BLUE, width=2.5),
-        line((102, 106), (150, 106), (200, 50), (235, 50), colour=ORANGE, width=2.5),
-    ]
-
-
 def _reversed(side: str) -> Parts:
     left, right = (ORANGE, INK) if side == "left" else (INK, ORANGE)
     wrong, good = (54, 106) if side == "left" else (106, 54)
@@ -207,8 +134,73 @@ def _reversed(side: str) -> Parts:
     ]
 
 
-def _load() -> Parts:
-    return [
+_ROUND = [math.tau * (step / 72 - 0.5) for step in range(73)]
+
+
+DRAWINGS: Mapping[str, Drawing] = {
+    "eccentric": _eccentric,
+    "oval": _oval,
+    "tread_bump": _tread_bump,
+    "unequal": [
+        floor(112),
+        circle(95, 80, 32, colour=BLUE),
+        circle(205, 87, 25, colour=ORANGE),
+        line((95, 80), (205, 87)),
+        words(95, 40, "left", colour=BLUE),
+        words(205, 50, "right", colour=ORANGE),
+        arc(300, 30, 80, 215, 275, colour=ORANGE, head=True),
+    ],
+    "radius": [
+        floor(125),
+        circle(80, 90, 35, colour=ORANGE),
+        circle(80, 98, 27, colour=GREY, dash=DASH),
+        line((80, 90), (104, 65), colour=ORANGE),
+        words(125, 62, "true", colour=ORANGE, anchor="start"),
+        words(125, 82, "entered", colour=GREY, anchor="start"),
+        arrow((130, 108), (300, 108)),
+        arrow((130, 118), (255, 118), colour=GREY),
+    ],
+    "squash": [
+        floor(120),
+        circle(75, 82, 38, colour=BLUE),
+        words(75, 86, "slow", colour=BLUE),
+        arrow((120, 60), (150, 60), colour=GREY),
+        arc(235, 88, 38, -57, 237, colour=ORANGE),
+        line((214, 120), (256, 120), colour=ORANGE, width=3),
+        words(235, 92, "fast", colour=ORANGE),
+        arrow((280, 60), (328, 60), colour=GREY),
+        arrow((290, 84), (290, 119), both=True),
+    ],
+    "by_channel": [
+        floor(125),
+        circle(70, 85, 40, colour=ORANGE),
+        circle(70, 93, 32, colour=GREY, dash=DASH),
+        line((150, 120), (150, 40), colour=GREY),
+        line((150, 120), (320, 120), colour=GREY),
+        line((150, 100), (190, 60), (235, 92), (280, 52), (318, 70), colour=ORANGE),
+        words(235, 40, "a column of ticks.csv", colour=GREY),
+    ],
+    "shrinking": [
+        floor(115),
+        circle(75, 77, 38, colour=BLUE),
+        circle(180, 82, 33, colour=BLUE, dash=DASH),
+        circle(280, 88, 27, colour=ORANGE),
+        arrow((30, 130), (310, 130), colour=GREY),
+        words(170, 146, "time, distance", colour=GREY),
+    ],
+    "backlash": _backlash,
+    "lost_counts": _missed_ticks,
+    "swapped": [
+        robot(90, 80, left=BLUE, right=ORANGE),
+        oblong(270, 50, 70, 30),
+        words(270, 55, "left", colour=INK),
+        oblong(270, 110, 70, 30),
+        words(270, 115, "right", colour=INK),
+        line((102, 54), (150, 54), (200, 110), (235, 110), colour=BLUE, width=2.5),
+        line((102, 106), (150, 106), (200, 50), (235, 50), colour=ORANGE, width=2.5),
+    ],
+    "wrong_sign": _reversed,
+    "load": [
         floor(122),
         oblong(170, 66, 110, 28, fill=GREY),
         oblong(112, 92, 22, 60, colour=BLUE),
@@ -217,25 +209,6 @@ def _load() -> Parts:
         words(280, 92, "outer", colour=ORANGE),
         arrow((140, 34), (205, 34)),
         words(132, 30, "load", colour=ORANGE, anchor="end"),
-    ]
-
-
-_ROUND = [math.tau * (step / 72 - 0.5) for step in range(73)]
-
-
-DRAWINGS: Mapping[str, Callable[..., Parts]] = {
-    "eccentric": _eccentric,
-    "oval": _oval,
-    "tread_bump": _tread_bump,
-    "unequal": _unequal_radii,
-    "radius": _radius_scale,
-    "squash": _squash,
-    "by_channel": _by_channel,
-    "shrinking": _radius_drift,
-    "backlash": _backlash,
-    "lost_counts": _missed_ticks,
-    "swapped": _swapped,
-    "wrong_sign": _reversed,
-    "load": _load,
+    ],
 }
-"""Drawings by name; their arguments are the labels of a `Sketch`."""
+"""By name; the arguments of those that have any are the labels of a `Sketch`."""

@@ -11,14 +11,6 @@ from .hidden_effect import Peculiarity
 from .hiding import Hidden, StrengthError, UnknownEffectError, WishError, find, hide, wished
 
 __all__ = [
-    "CATALOGUE",
-    "Entry",
-    "Hidden",
-    "Peculiarity",
-    "StrengthError",
-    "UnknownEffectError",
-    "WishError",
-    "find",
-    "hide",
-    "wished",
-]
+    "CATALOGUE", "Entry", "Hidden", "Peculiarity", "StrengthError", "UnknownEffectError",
+    "WishError", "find", "hide", "wished",
+]  # fmt: skip

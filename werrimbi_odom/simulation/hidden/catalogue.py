@@ -9,6 +9,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from .axle_and_reference import (
+    AskewAxle,
+    DriftingClock,
+    ReferenceDelay,
+    ReferenceMirrored,
+    ReferenceMount,
+    WarmingGyro,
+)
 from .beyond_library import (
     BaseByPayload,
     OneTyreBackwards,
@@ -22,14 +30,6 @@ from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .hidden_effect import Peculiarity, Rng
 from .knocks import Knock, ReferenceJump
-from .mount import (
-    AskewAxle,
-    DriftingClock,
-    ReferenceDelay,
-    ReferenceMirrored,
-    ReferenceMount,
-    WarmingGyro,
-)
 from .skid import skid_steer
 from .tyres import LoadTransfer, RadiusFollowsPayload, RadiusFollowsTemperature, TyreSquash
 from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side, TreadBump

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..recording import Recording
 from ..robot import TrueRobot
-from ..sensors import Counts, count
+from ..sensors import count
 from .hidden_effect import Counted, Peculiarity, Rng
 from .wheels import Side
 
@@ -23,12 +23,6 @@ def _rows(recording: Recording) -> Iterator[tuple[float, float, float]]:
         *(each.tolist() for each in (path.t_s, path.left_angle_rad, path.right_angle_rad)),
         strict=True,
     )
-
-
-def _with_ticks(recording: Recording, side: Side, ticks: Counts) -> Recording:
-    if side == "left":
-        return replace(recording, left_ticks=ticks)
-    return replace(recording, right_ticks=ticks)
 
 
 @dataclass(frozen=True)
@@ -53,8 +47,8 @@ class MissedTicks(Peculiarity):
             count(path.t_s, angle, recording.t_s, resolution)
             for angle in (getattr(path, f"{self.side}_angle_rad"), counted)
         )
-        ticks: Counts = getattr(recording, f"{self.side}_ticks")
-        return _with_ticks(recording, self.side, ticks - (exact - lossy))
+        name = f"{self.side}_ticks"
+        return replace(recording, **{name: getattr(recording, name) - (exact - lossy)})
 
     def counted(self, robot: TrueRobot) -> Counted:
         """Both shaft angles, that of this side reduced by the loss so far."""
@@ -115,4 +109,5 @@ class WheelReversed(Peculiarity):
 
     def recording(self, recording: Recording, robot: TrueRobot, rng: Rng) -> Recording:
         """Negate the counter."""
-        return _with_ticks(recording, self.side, -getattr(recording, f"{self.side}_ticks"))
+        name = f"{self.side}_ticks"
+        return replace(recording, **{name: -getattr(recording, name)})

@@ -47,16 +47,10 @@ def find(name: str) -> Entry:
 
 
 def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0) -> Hidden:
-    """Draw a hidden effect.
+    """Draw a hidden effect, of the library if `name` is "random".
 
-    Parameters
-    ----------
-    name : str
-        Name of an entry, or "random" for any effect of the library.
-    strength : float, optional
-        In the entry's unit; by default drawn from the realistic range.
-    seed, number : int
-        Seed of the robot, and number of the effect among its hidden effects.
+    The strength is in the entry's unit, by default drawn from the realistic range. `seed` is that
+    of the robot, and `number` that of the effect among its hidden effects.
     """
     rng = np.random.default_rng([seed, number, *name.encode()])
     if name == "random":
@@ -93,12 +87,8 @@ def _any_effect(rng: Rng, seed: int, number: int) -> str:
 def wished(wishes: Sequence[str], *, seed: int) -> list[Hidden]:
     """Parse each EFFECT or EFFECT=STRENGTH and draw the hidden effects as in `hide`.
 
-    `random` draws none that is hidden already.
-
-    Raises
-    ------
-    WishError
-        If a name is unknown or comes twice, or a strength is none that a robot can have.
+    `random` draws none that is hidden already. WishError if a name is unknown or comes twice, or a
+    strength is none that a robot can have.
     """
     parted = [wish.partition("=") for wish in wishes]
     names = [name for name, _, _ in parted if name != "random"]

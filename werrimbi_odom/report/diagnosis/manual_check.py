@@ -8,6 +8,7 @@ Each is the formula of the effect's own Ruler section (`werrimbi explain`) at th
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 
 from werrimbi_odom.effects.lookup import find
@@ -28,7 +29,7 @@ def expected_words(name: str, values: Values, robot: Robot) -> str:
 
     Values are by the effect's parameters; per-run parameters are NaN or absent.
     """
-    words = _EXPECTED.get(name)
+    words = _EXPECTED.get(re.sub("(left|right)_", "", name))
     if words is None or not all(map(math.isfinite, _needed(name, values))):
         return ""
     return f"expect {words(values, robot)}"
@@ -68,10 +69,6 @@ def _radii(values: Values, robot: Robot) -> str:
     return f"{_length(aside)} to the {'left' if aside > 0.0 else 'right'} on 3 m"
 
 
-def _scale(values: Values, robot: Robot) -> str:
-    return f"{10.0 / values['multiplier']:.3f} m by the odometry on 10.000 m of tape"
-
-
 def _track(values: Values, robot: Robot) -> str:
     sense, sharp = 2.0 * TURNS * values["sense"], TURNS * values["sharpness"]
     parts = []
@@ -104,10 +101,6 @@ def _kick(values: Values, robot: Robot) -> str:
     words = " and ".join(f"{math.degrees(kick):+.2g}°" for kick in each)
     total = 5.0 * sum(each)
     return f"{words} at reversals to forwards and to backwards, {_angle(total)} in all after five"
-
-
-def _seen_late(values: Values, robot: Robot) -> str:
-    return f"{_length(2.0 * values['delay'] * FAST)} at {FAST} m/s"
 
 
 def _arm(values: Values, robot: Robot) -> str:
@@ -172,23 +165,22 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "skid_steer": _base,
     "track_width": _base,
     "unequal_wheel_radii": _radii,
-    "wheel_radius_scale": _scale,
+    "wheel_radius_scale": lambda values, robot: (
+        f"{10.0 / values['multiplier']:.3f} m by the odometry on 10.000 m of tape"
+    ),
     "turn_dependent_track": _track,
     "floor_slope": _slope,
     "castor_kick": _kick,
-    "reference_delay": _seen_late,
+    "reference_delay": lambda values, robot: (
+        f"{_length(2.0 * values['delay'] * FAST)} at {FAST} m/s"
+    ),
     "reference_lever_arm": _arm,
     "radius_drift": _drift,
-    "left_missed_ticks": _missed,
-    "right_missed_ticks": _missed,
-    "left_backlash": lambda values, robot: _length(values["travel"]),
-    "right_backlash": lambda values, robot: _length(values["travel"]),
-    "eccentric_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "eccentric_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "oval_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "oval_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
-    "left_tread_bump": lambda values, robot: _bump(values["height"]),
-    "right_tread_bump": lambda values, robot: _bump(values["height"]),
+    "missed_ticks": _missed,
+    "backlash": lambda values, robot: _length(values["travel"]),
+    "eccentric_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "oval_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "tread_bump": lambda values, robot: _bump(values["height"]),
     "reference_clock_drift": lambda values, robot: (
         f"{1000.0 * 120.0 * values['rate']:.0f} ms after two minutes"
     ),

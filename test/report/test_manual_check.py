@@ -20,7 +20,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.result import Diagnosis
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.diagnosis import phrases
-from werrimbi_odom.report.diagnosis.expected import expected_words
+from werrimbi_odom.report.diagnosis.manual_check import expected_words
 
 
 def number(words: str) -> float:

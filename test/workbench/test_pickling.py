@@ -12,7 +12,7 @@ import numpy as np
 from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.workbench.crossing import packed, unpacked
+from werrimbi_odom.workbench.pickling import packed, unpacked
 
 OWN = '''
 from dataclasses import replace

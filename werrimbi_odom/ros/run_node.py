@@ -28,23 +28,11 @@ def run(
     *,
     farewell: Callable[[Made], None] | None = None,
 ) -> int:
-    """Run a node until it is stopped.
+    """Run a node until it is stopped; return the exit code.
 
-    Parameters
-    ----------
-    make_node : callable
-        Creates the node; raises InputError if its input is invalid.
-    name : str
-        Prefix of messages before the node exists.
-    args : list of str, optional
-        Arguments for ROS; default: those of the command line.
-    farewell : callable of the node, optional
-        Called before the node ends, for any reason, while it can still publish.
-
-    Returns
-    -------
-    int
-        Exit code: 0 after SIGINT and SIGTERM, 2 after invalid input.
+    That is 0 after SIGINT and SIGTERM, 2 after invalid input, for which `make_node` raises
+    InputError. `name` is the prefix of messages before the node exists. `farewell` is called before
+    the node ends, for any reason, while it can still publish.
     """
     told = _Told()
     try:
