@@ -290,7 +290,7 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """In the middle of a hall a lidar sees nothing; the command that is printed works."""
-    bag = in_a_hall(tmp_path / "hall", "/scan")
+    bag = in_a_hall(tmp_path / "hall", "/scan", "/stable_scan")
     printed = werrimbi("info", bag, "--reference-topic", "/scan").out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
     said = werrimbi(*shlex.split(printed.splitlines()[-1].strip())[1:]).words

@@ -9,6 +9,7 @@ import shlex
 from dataclasses import asdict
 from typing import Any
 
+from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
@@ -129,11 +130,13 @@ def _otherwise(found: Info) -> tuple[str, str]:
         known = held.contents.preferred
         # Those before it may have led here: the commands would go round in a circle.
         first = known.index(held.reference) + 1 if held.reference in known else 0
-        others = [each.name for each in known[first:]]
+        # Where a lidar sees nothing, what is made of its scans holds nothing either.
+        scans = held.reference.kind == SCAN
+        others = sorted(known[first:], key=lambda each: scans and each.kind == SCAN)
         if others:
             words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
             robot = [] if found.given is None else ["--robot", str(found.given)]
-            command = shlex.join([*words, *robot, "--reference-topic", others[0]])
+            command = shlex.join([*words, *robot, "--reference-topic", others[0].name])
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged.", ""
 
