@@ -298,6 +298,25 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     assert "It can show what happens at reversals" in said
 
 
+def test_the_commands_of_another_reference_keep_its_topic_and_the_robot(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """With the driver's parameters; they led back to the scans, and asked for the sizes again."""
+    bag = in_a_hall(tmp_path / "hall", "/scan")
+    driver = tmp_path / "diff_drive.yaml"
+    driver.write_text("c:\n  ros__parameters:\n    wheel_separation: 0.4\n    wheel_radius: 0.1\n")
+    out = tmp_path / "robot.yaml"
+    words = ["info", str(bag), "--robot", str(driver), "--reference-topic", "/scan"]
+    for then in ("info", "info", "compare"):
+        printed = werrimbi(*words).out
+        command = next(row for row in printed.splitlines()[::-1] if row.startswith("    werrimbi"))
+        words = shlex.split(command)[1:]
+        assert words[0] == then
+        assert words[words.index("--reference-topic") + 1] == "/imu"
+        words = [str(out) if word == "robot.yaml" else word for word in words]
+    assert words[words.index("--robot") + 1] == str(out)
+
+
 def test_what_cannot_be_judged_either_does_not_lead_back(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

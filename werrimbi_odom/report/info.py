@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import shlex
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -135,7 +136,8 @@ def _otherwise(found: Info) -> tuple[str, str]:
         others = sorted(known[first:], key=lambda each: scans and each.kind == SCAN)
         if others:
             words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
-            robot = [] if found.given is None else ["--robot", str(found.given)]
+            file = found.given or found.written or found.parameters
+            robot = [] if file is None else ["--robot", str(file)]
             command = shlex.join([*words, *robot, "--reference-topic", others[0].name])
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged.", ""
@@ -150,6 +152,16 @@ def _names_to_write(held: Held, found: Info) -> str:
     return f"if these are its wheels, write {' and '.join(lines)} into {found.given}."
 
 
+def _asked(usable: Sequence[Held]) -> list[str]:
+    """The option for a reference that would not be taken by itself."""
+    for held in usable:
+        if held.contents is None or held.reference is None:
+            continue
+        if held.reference in held.contents.preferred[1:]:
+            return ["--reference-topic", held.reference.name]
+    return []
+
+
 def command_of(found: Info) -> str:
     """The next command, quoted for a shell."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
@@ -157,7 +169,9 @@ def command_of(found: Info) -> str:
     robot = found.given or found.written
     if robot is None:
         given = [] if found.parameters is None else ["--robot", str(found.parameters)]
-        return shlex.join(["werrimbi", "info", *paths, *given, "--out", "robot.yaml"])
+        return shlex.join(
+            ["werrimbi", "info", *paths, *given, *_asked(usable), "--out", "robot.yaml"]
+        )
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]
