@@ -11,6 +11,7 @@ from dataclasses import asdict
 from typing import Any
 
 from werrimbi_odom.files.bag_contents import SCAN
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
@@ -97,23 +98,30 @@ def next_step(found: Info) -> tuple[str, str]:
                 "the parameter file of the diff_drive_controller with --robot."
             ), ""
         return "Next: a first robot file.", command_of(found)
-    return f"{_why_leg(found)}Next:", command_of(found)
+    return _before_command(found), command_of(found)
 
 
-def _why_leg(found: Info) -> str:
-    """Why the command has another length of legs than usual."""
+def _before_command(found: Info) -> str:
+    """Words before the command: why it has another length of legs than usual."""
     if found.leg > 1.0:
         return (
             f"By legs of {found.leg:g} m, because in shorter ones the noise of these positions "
-            "hides what the robot does. "
+            "hides what the robot does. Next:"
+        )
+    most = math.floor(found.legs_of(found.leg))
+    if found.leg < 1.0 and most < rules.FEWEST_LEGS:
+        return (
+            f"Too little was driven to judge by: it makes {counted(most, 'leg')} of {found.leg:g} "
+            f"m or a quarter turn at most, {rules.FEWEST_LEGS} are the least. Record more; what "
+            "these show is printed by:"
         )
     if found.leg < 1.0:
         legs = counted(math.floor(found.legs), "leg")
         return (
             f"By legs of {found.leg:g} m, because of a metre or a quarter turn these drives have "
-            f"only {legs}, too few to judge by. "
+            f"only {legs}, too few to judge by. Next:"
         )
-    return ""
+    return "Next:"
 
 
 def _otherwise(found: Info) -> tuple[str, str]:
