@@ -276,6 +276,30 @@ def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> N
     assert "Whether it can show base and radii is said once --robot gives their sizes." in said
 
 
+DRIVER = "c:\n  ros__parameters:\n    wheel_separation: 0.4\n    wheel_radius: 0.1\n"
+
+
+def test_too_little_driving_is_told_before_compare_tells_it(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    ros, entries = Messages(), []
+    noise = np.random.default_rng(1).normal(0.0, 3e-3, (200, 3))
+    for n in range(200):
+        stamp, roll = n * 10**8, 0.04 * min(n, 150)
+        entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, [roll, roll])))
+        seen = noise[n] + [0.1 * roll, 0.0, 0.0]
+        entries.append(("/pose", stamp, ros.pose(stamp, *seen)))
+    bag, robot = ros.write(tmp_path / "bag", entries), tmp_path / "robot.yaml"
+    sides = zip(("left", "right"), JOINTS, strict=True)
+    lines = "".join(
+        f"    {side}_ticks_per_revolution: 1000.0\n    {side}_wheel_names: [{joint}]\n"
+        for side, joint in sides
+    )
+    robot.write_text(DRIVER + lines)
+    said = werrimbi("info", bag, "--robot", robot).words
+    assert "it makes 2 legs of 0.25 m or a quarter turn at most, 10 are the least" in said
+
+
 def in_a_hall(folder: Path, *scans: str, turning: bool = True) -> Path:
     """A bag with a gyro, or none, and lidars that see nothing."""
     ros, lidar, run = Messages(), Lidar(), run_of(ROBOT, 1, 40)
@@ -290,12 +314,31 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     """In the middle of a hall a lidar sees nothing; the command that is printed works."""
-    bag = in_a_hall(tmp_path / "hall", "/scan")
+    bag = in_a_hall(tmp_path / "hall", "/scan", "/stable_scan")
     printed = werrimbi("info", bag, "--reference-topic", "/scan").out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
     said = werrimbi(*shlex.split(printed.splitlines()[-1].strip())[1:]).words
     assert "its yaw rate is integrated). It is taken." in said
     assert "It can show what happens at reversals" in said
+
+
+def test_the_commands_of_another_reference_keep_its_topic_and_the_robot(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """With the driver's parameters; they led back to the scans, and asked for the sizes again."""
+    bag = in_a_hall(tmp_path / "hall", "/scan")
+    driver = tmp_path / "diff_drive.yaml"
+    driver.write_text(DRIVER)
+    out = tmp_path / "robot.yaml"
+    words = ["info", str(bag), "--robot", str(driver), "--reference-topic", "/scan"]
+    for then in ("info", "info", "compare"):
+        printed = werrimbi(*words).out
+        command = next(row for row in printed.splitlines()[::-1] if row.startswith("    werrimbi"))
+        words = shlex.split(command)[1:]
+        assert words[0] == then
+        assert words[words.index("--reference-topic") + 1] == "/imu"
+        words = [str(out) if word == "robot.yaml" else word for word in words]
+    assert words[words.index("--robot") + 1] == str(out)
 
 
 def test_what_cannot_be_judged_either_does_not_lead_back(

@@ -232,6 +232,25 @@ def test_odometry_that_goes_sideways_is_of_no_two_wheels(
     assert run.ticks.right[-1] > 0.0, "once set elsewhere, it is no mecanum robot"
 
 
+@pytest.mark.parametrize("off", [-1.5, -0.5])
+def test_a_driver_that_steps_along_another_heading_does_not_go_sideways(
+    tmp_path: Path, ros: Any, robot: Any, off: float
+) -> None:
+    """The Neato's adds the turn of a step to the wrong side; over a poor radio steps are long."""
+    turns = 0.5 * np.sin(0.3 * np.arange(60.0))
+    yaw = np.cumsum(turns)
+    steps = np.where(np.arange(60) < 40, 0.1, -0.1)
+    path = np.cumsum(steps * np.exp(1j * (yaw - 0.5 * turns + off * turns)))
+    entries = [
+        ("/odom", n * 300 * MS, ros.odometry(n * 300 * MS, z.real, z.imag, angle))
+        for n, (z, angle) in enumerate(zip(path, yaw, strict=True), start=1)
+    ]
+    ticks = read_run(ros.write(tmp_path / "neato", entries), robot()).ticks
+    wheels = robot().robot
+    driven = 0.5 * (ticks.left[-1] * wheels.left_tick + ticks.right[-1] * wheels.right_tick)
+    assert driven == pytest.approx(1.9, rel=0.03)
+
+
 def test_a_robot_that_only_spins_does_not_go_sideways(tmp_path: Path, ros: Any, robot: Any) -> None:
     """A TurtleBot3 that turned by 2750 degrees and went 81 mm, by rounding as much sideways."""
     random = np.random.default_rng(1)

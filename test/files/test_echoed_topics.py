@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Topics as `rostopic echo -p` writes them are read as the bag of the same messages is."""
+"""Topics as `rostopic echo -p` or bagpy writes them are read as the bag of the same messages is."""
 
 from __future__ import annotations
 
@@ -45,6 +45,36 @@ def echoed(folder: Path, entries: Sequence[tuple[str, int, tuple[str, Any]]]) ->
             writer = csv.writer(file)
             writer.writerow(["%time", *rows[0][1]])
             writer.writerows([at, *row.values()] for at, row in rows)
+    return folder
+
+
+def of_bagpy(message: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """The same as bagpy names them: arrays in columns, or those deeper down in one cell."""
+    for each in fields(message):
+        if each.name.startswith("__"):
+            continue
+        name, value = f"{path}{each.name}", getattr(message, each.name)
+        if type(value).__name__.endswith("msg__Time"):
+            yield from ((f"{name}.secs", value.sec), (f"{name}.nsecs", value.nanosec))
+        elif is_dataclass(value):
+            yield from of_bagpy(value, f"{name}.")
+        elif isinstance(value, np.ndarray) and not path:
+            yield from ((f"{name}_{number}", item) for number, item in enumerate(value))
+        else:
+            yield name, tuple(value.tolist()) if isinstance(value, np.ndarray) else value
+
+
+def by_bagpy(folder: Path, entries: Sequence[tuple[str, int, tuple[str, Any]]], dot: str) -> Path:
+    """Write each topic to a file of its name; `dot` is before the names of rosbag_to_csv."""
+    folder.mkdir()
+    for topic in {name for name, *_ in entries}:
+        rows = [(at, dict(of_bagpy(seen))) for name, at, (_, seen) in entries if name == topic]
+        with (folder / f"{topic.strip('/')}.csv").open("w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(["time" if dot else "Time", *(f"{dot}{name}" for name in rows[0][1])])
+            date = "2001/09/09/03:46:40.000000"
+            for at, row in rows:
+                writer.writerow([date if dot else f"{1e-9 * at:.9f}", *row.values()])
     return folder
 
 
@@ -93,6 +123,16 @@ def test_topics_as_text_are_those_of_the_bag(
     bag, text = ros.write(tmp_path / "bag", entries), echoed(tmp_path / "text", entries)
     topic = "/tf:map:base_link" if number == 4 else None
     same(*(read_run(path, robot(), reference_topic=topic) for path in (text, bag)))
+
+
+@pytest.mark.parametrize("dot", ["", "."])
+@pytest.mark.parametrize("number", range(4))
+def test_what_bagpy_writes_is_the_bag(
+    tmp_path: Path, ros: Any, robot: Any, number: int, dot: str
+) -> None:
+    entries = drive(ros, number)
+    bag, text = ros.write(tmp_path / "bag", entries), by_bagpy(tmp_path / "text", entries, dot)
+    same(*(read_run(path, robot()) for path in (text, bag)))
 
 
 def test_rows_with_other_columns_are_told_and_left_out(

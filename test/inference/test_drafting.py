@@ -4,15 +4,20 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 
 from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.result import Diagnosis
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount
 from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells
 from werrimbi_odom.inference.drafting.candidate_law import keeps_laws, loaded
+from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.drafting.law_forms import Seen, forms_of, spot_form
 from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.model.drive import Span
@@ -125,3 +130,24 @@ def test_an_error_per_turn_is_where_the_robot_turned() -> None:
     cell = Dependence(amount, variable, "place", coefficients, 1.0, 1, 0.0, shares=(turned, turned))
     at_x, at_y = place_of(cell)
     assert np.hypot(at_x + 0.75, at_y + 0.75) < 0.25
+
+
+def test_what_no_law_can_be_written_of_is_no_draft() -> None:
+    """A heading that goes with the place on the floor was proposed, and hid what can be drafted."""
+    random = np.random.default_rng(5)
+    x, y = random.uniform(-1.5, 1.5, (2, 2000))
+    place = Variable("position", "m", x, y, "place", ("x", "y"))
+    speed = Variable("speed", "m/s", np.abs(x), np.abs(x), looks_at=("speed",))
+    cells = [
+        Dependence(Amount(channel, per), seen, seen.form, np.ones(8), gain, 8, 1e-9)
+        for channel, per, seen, gain in (
+            ("heading", "turn", place, 300.0),
+            ("sideways", "turn", speed, 90.0),
+        )
+    ]
+
+    def drafted(*left: Dependence) -> list[Dependence]:
+        return worth_drafting(cast(Diagnosis, SimpleNamespace(remaining=left)))
+
+    assert drafted(*cells) == cells[1:]
+    assert not drafted(cells[0])

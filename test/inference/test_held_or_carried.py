@@ -190,6 +190,24 @@ def test_a_robot_that_is_held_on_a_line_and_turns_when_let_go_is_found() -> None
     is_found(run, "held", begin, end)
 
 
+@pytest.mark.parametrize("turns", [False, True])
+def test_scans_beside_a_wall_do_not_say_for_certain_that_a_robot_was_held(turns: bool) -> None:
+    """A Neato that followed a wall: its scans slid along it, and it was told to have been held."""
+    time = 0.05 * np.arange(1200)
+    on_a_line = (time > 26.0) & (time < 40.0) & (not turns)
+    turning = np.where(on_a_line, 0.0, 1.2 * np.sign(np.sin(0.5 * time)))
+    run, begin, end = held(run_by(ROBOT, np.full(time.size, 0.4), turning), 30.0, 36.0)
+    assert run.reference is not None
+    walked = np.zeros((run.reference.time.size, 2))
+    run = replace(run, reference=replace(run.reference, own_axes=True, walked=walked))
+    is_found(run, "held", begin, end)
+    found = with_no_driving(run, ROBOT)
+    words = " ".join(part.words for part in found.no_driving or ())
+    assert ("or the scans slid along a bare one" in words) is not turns
+    spans = driven(counters_of(found, ROBOT, None), ROBOT, found.no_driving or ()).spans
+    assert ("slid" in [each.what for each in spans]) is not turns
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -> None:
     run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)

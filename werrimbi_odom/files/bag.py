@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens a bag (a rosbag2 folder, a single .mcap, .db3 or ROS 1 .bag) for reading, without ROS.
 
-Topics that `rostopic echo -p` wrote as text are read as one.
+Topics that `rostopic echo -p` or bagpy wrote as text are read as one.
 """
 
 from __future__ import annotations

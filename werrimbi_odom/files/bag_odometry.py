@@ -37,6 +37,9 @@ _ASIDE = 0.3
 """Sideways part of a step that goes sideways: 17 degrees. Made of two wheels it is zero."""
 _OFTEN = 0.1
 """Share of such steps; where the poses are set back to an origin there is one."""
+_OTHER_HEADING = 1.5
+"""Most that a driver's heading of a step is off from its middle, in turns of that step: half where
+it takes that of the step's begin or end; the Neato's adds the turn to the wrong side as well."""
 _ORIGIN = 1e-6
 """Place [m] and heading [rad] up to which a pose is the origin."""
 _LEAPS = 10.0
@@ -93,6 +96,7 @@ class OdometryTurnedBack:
         back = int(np.count_nonzero(np.diff(time) < 0.0))
         order = np.argsort(time, kind="stable")
         time, (steps, turns) = time[order], _chords(x[order], y[order], yaw[order])
+        steps = _along_own_heading(steps, turns)
         place = np.append(0.0, np.cumsum(steps))
         later = np.searchsorted(time, time + _WINDOW)
         begin = np.flatnonzero(later < time.size)
@@ -162,6 +166,19 @@ def _chords(x: Floats, y: Floats, yaw: Floats) -> tuple[NDArray[np.complex128], 
     turns: NDArray[np.float64] = np.angle(np.exp(1j * np.diff(yaw)))
     steps = (np.diff(x) + 1j * np.diff(y)) * np.exp(-1j * (yaw[:-1] + 0.5 * turns))
     return steps, turns
+
+
+def _along_own_heading(steps: NDArray[np.complex128], turns: Floats) -> NDArray[np.complex128]:
+    """Steps of a driver that goes along another heading than the middle one, set right.
+
+    Where messages are lost the turn of a step is large, and so is how far it seems to go sideways.
+    """
+    ahead = np.angle(np.where(steps.real < 0.0, -steps, steps))
+    large = np.ones(steps.size, dtype=bool)
+    for size in (np.abs(steps), np.abs(turns)):
+        large &= size > _SLOW * np.quantile(size, 0.9) if size.size else False
+    off = float(np.median(ahead[large] / turns[large])) if large.any() else 0.0
+    return steps * np.exp(-1j * off * turns) if abs(off) < 1.1 * _OTHER_HEADING else steps
 
 
 def _set_back(x: Floats, y: Floats, yaw: Floats) -> NDArray[np.bool_]:

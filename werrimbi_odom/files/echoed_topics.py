@@ -3,12 +3,14 @@
 """Reads topics that were written as text: `rostopic echo -p /odom > odom.csv`, a file each.
 
 The first line names the fields of the message: `%time,field.header.seq,field.header.stamp,...`. The
-topic is named as its file, and its type is told by the fields.
+topic is named as its file, and its type is told by the fields. What bagpy and rosbag_to_csv write
+is read as well: `Time,header.seq,header.stamp.secs,...`, with arrays in one cell or as `ranges_0`.
 """
 
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator, Sequence
 from heapq import merge
 from operator import attrgetter
@@ -21,6 +23,9 @@ from werrimbi_odom.files.unfinished_bag import Raw
 
 SUFFIX = ".csv"
 _FIRST = "%time"
+_STAMP = ("header.stamp.secs", "header.stamp.nsecs")
+"""Columns by which the text of other programs is known, whose first is `Time` or `time`."""
+_OF_STAMP = {"secs": "sec", "nsecs": "nanosec"}
 _KINDS = {
     "nav_msgs/msg/Odometry": ("pose.pose.position.x", "twist.twist.linear.x"),
     "geometry_msgs/msg/PoseWithCovarianceStamped": ("pose.pose.position.x", "pose.covariance0"),
@@ -66,15 +71,31 @@ def echoed_files(path: Path) -> list[Path]:
 
 def _begins(file: Path) -> bool:
     with file.open("rb") as opened:
-        return opened.read(len(_FIRST)) == _FIRST.encode()
+        if opened.read(len(_FIRST)) == _FIRST.encode():
+            return True
+    first = next(_rows(file), [])
+    return first[:1] in (["Time"], ["time"]) and set(_fields(first)).issuperset(_STAMP)
+
+
+def _fields(first: Sequence[str]) -> list[str]:
+    """Names of the columns after the first, as `rostopic` writes them."""
+    names = (each.strip().removeprefix("field.").removeprefix(".") for each in first[1:])
+    return [re.sub(r"_(\d+)$", r"\1", each) for each in names]
 
 
 def echoed_topic(file: Path) -> EchoedTopic:
     """Read the first line of a file, and count its rows."""
     rows = _rows(file)
-    header = [each.strip().removeprefix("field.") for each in next(rows)[1:]]
-    counts = [len(row) == len(header) + 1 for row in rows]
-    names = set(header)
+    header = _fields(next(rows))
+    names, counts = set(header), list[bool]()
+    for row in rows:
+        if not counts:  # an array in one cell has a first item as well
+            names |= {
+                f"{name}0" for name, cell in zip(header, row[1:], strict=False) if _many(cell)
+            }
+        counts.append(len(row) == len(header) + 1)
+    if names.issuperset(_STAMP):
+        names.add("header.stamp")
     kind = next((kind for kind, own in _KINDS.items() if names.issuperset(own)), "unknown")
     if kind == "std_msgs/msg/Int64" and len(header) > 1:
         kind = "unknown"
@@ -114,7 +135,18 @@ def _messages(topic: EchoedTopic) -> Iterator[Raw]:
             message = SimpleNamespace(**{name: [] for name in _ARRAYS})
             for path, cell in zip(topic.fields, row[1:], strict=True):
                 _put(message, path, cell, topic.file)
-            yield Raw(topic.name, topic.kind, _nanoseconds(topic.file, _FIRST, row[0]), message, "")
+            yield Raw(topic.name, topic.kind, _received(topic.file, row[0], message), message, "")
+
+
+def _received(file: Path, cell: str, message: Any) -> int:
+    """When a message came [ns]: whole ns, or seconds; of a date, its stamp."""
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    if cell.strip().isdecimal() or stamp is None:
+        return _nanoseconds(file, _FIRST, cell)
+    try:
+        return round(float(cell) * 1e9)
+    except ValueError:
+        return int(stamp.sec * 10**9 + stamp.nanosec)
 
 
 def _nanoseconds(file: Path, name: str, cell: str) -> int:
@@ -128,12 +160,18 @@ def _put(message: Any, path: Sequence[str], cell: str, file: Path) -> None:
     *parts, last = path
     for part in parts:
         message = _within(message, part)
+    if parts[-1:] == ["stamp"]:
+        name = ".".join(path)
+        setattr(message, _OF_STAMP.get(last, last), _nanoseconds(file, name, cell))
+        return
     if last == "stamp":
         seconds, rest = divmod(_nanoseconds(file, ".".join(path), cell), 10**9)
         message.stamp = SimpleNamespace(sec=seconds, nanosec=rest)
         return
     array = last.rstrip("0123456789")
-    if array != last:
+    if _many(cell):
+        setattr(message, last, [_value(last, each) for each in _items(cell)])
+    elif array != last:
         if not hasattr(message, array):
             setattr(message, array, [])
         getattr(message, array).append(_value(array, cell))
@@ -153,6 +191,15 @@ def _within(message: Any, part: str) -> Any:
     if int(part[len(array) :]) == len(items):
         items.append(SimpleNamespace())
     return items[-1]
+
+
+def _many(cell: str) -> bool:
+    """Whether a cell holds an array, as Python writes a tuple or a list."""
+    return cell[:1] + cell[-1:] in ("()", "[]")
+
+
+def _items(cell: str) -> list[str]:
+    return [each.strip().strip("'\"") for each in cell[1:-1].split(",") if each.strip()]
 
 
 def _value(name: str, cell: str) -> Any:

@@ -36,7 +36,7 @@ FROM_TEXT = (
     f"a log of text is read from a folder of its own with {TICKS} ({','.join(TICKS_COLUMNS)}: "
     "seconds, and counts since the start) and, as far as it was measured, "
     f"{REFERENCE} ({','.join(REFERENCE_COLUMNS)}); docs/recordings.md says how speeds and metres "
-    "become counts. What `rostopic echo -p` wrote is read as it is"
+    "become counts. What `rostopic echo -p` or bagpy wrote is read as it is"
 )
 
 

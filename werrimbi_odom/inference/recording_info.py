@@ -91,9 +91,15 @@ class Info:
     @property
     def legs(self) -> float:
         """Total driving that was measured, in legs of one metre or a quarter turn."""
+        return self.legs_of(1.0)
+
+    def legs_of(self, length: float) -> float:
+        """The same in legs of another length [m]."""
         drives = [each.judged for each in self.held]
         return sum(
-            each.way + each.turned / rules.QUARTER_TURN for each in drives if each is not None
+            each.way / length + each.turned / rules.QUARTER_TURN
+            for each in drives
+            if each is not None
         )
 
     @property

@@ -6,9 +6,12 @@ from __future__ import annotations
 
 import math
 import shlex
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from werrimbi_odom.files.bag_contents import SCAN
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
@@ -95,23 +98,30 @@ def next_step(found: Info) -> tuple[str, str]:
                 "the parameter file of the diff_drive_controller with --robot."
             ), ""
         return "Next: a first robot file.", command_of(found)
-    return f"{_why_leg(found)}Next:", command_of(found)
+    return _before_command(found), command_of(found)
 
 
-def _why_leg(found: Info) -> str:
-    """Why the command has another length of legs than usual."""
+def _before_command(found: Info) -> str:
+    """Words before the command: why it has another length of legs than usual."""
     if found.leg > 1.0:
         return (
             f"By legs of {found.leg:g} m, because in shorter ones the noise of these positions "
-            "hides what the robot does. "
+            "hides what the robot does. Next:"
+        )
+    most = math.floor(found.legs_of(found.leg))
+    if found.leg < 1.0 and most < rules.FEWEST_LEGS:
+        return (
+            f"Too little was driven to judge by: it makes {counted(most, 'leg')} of {found.leg:g} "
+            f"m or a quarter turn at most, {rules.FEWEST_LEGS} are the least. Record more; what "
+            "these show is printed by:"
         )
     if found.leg < 1.0:
         legs = counted(math.floor(found.legs), "leg")
         return (
             f"By legs of {found.leg:g} m, because of a metre or a quarter turn these drives have "
-            f"only {legs}, too few to judge by. "
+            f"only {legs}, too few to judge by. Next:"
         )
-    return ""
+    return "Next:"
 
 
 def _otherwise(found: Info) -> tuple[str, str]:
@@ -129,11 +139,14 @@ def _otherwise(found: Info) -> tuple[str, str]:
         known = held.contents.preferred
         # Those before it may have led here: the commands would go round in a circle.
         first = known.index(held.reference) + 1 if held.reference in known else 0
-        others = [each.name for each in known[first:]]
+        # Where a lidar sees nothing, what is made of its scans holds nothing either.
+        scans = held.reference.kind == SCAN
+        others = sorted(known[first:], key=lambda each: scans and each.kind == SCAN)
         if others:
             words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
-            robot = [] if found.given is None else ["--robot", str(found.given)]
-            command = shlex.join([*words, *robot, "--reference-topic", others[0]])
+            file = found.given or found.written or found.parameters
+            robot = [] if file is None else ["--robot", str(file)]
+            command = shlex.join([*words, *robot, "--reference-topic", others[0].name])
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged.", ""
 
@@ -147,6 +160,16 @@ def _names_to_write(held: Held, found: Info) -> str:
     return f"if these are its wheels, write {' and '.join(lines)} into {found.given}."
 
 
+def _asked(usable: Sequence[Held]) -> list[str]:
+    """The option for a reference that would not be taken by itself."""
+    for held in usable:
+        if held.contents is None or held.reference is None:
+            continue
+        if held.reference in held.contents.preferred[1:]:
+            return ["--reference-topic", held.reference.name]
+    return []
+
+
 def command_of(found: Info) -> str:
     """The next command, quoted for a shell."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
@@ -154,7 +177,9 @@ def command_of(found: Info) -> str:
     robot = found.given or found.written
     if robot is None:
         given = [] if found.parameters is None else ["--robot", str(found.parameters)]
-        return shlex.join(["werrimbi", "info", *paths, *given, "--out", "robot.yaml"])
+        return shlex.join(
+            ["werrimbi", "info", *paths, *given, *_asked(usable), "--out", "robot.yaml"]
+        )
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]

@@ -197,6 +197,7 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
             ("drove", "drove"),
             ("stood", "stood"),
             ("held", "was held"),
+            ("slid", "was held (or its scans slid along a wall)"),
             ("carried", "was carried or turned by hand"),
             ("lost", "drove with a heading that is not known"),
             ("silent", "moved unrecorded"),

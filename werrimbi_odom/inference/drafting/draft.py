@@ -81,10 +81,11 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
     InputError
         When there is no significant dependence, or no draft of it can be fitted.
     """
-    cells = _worth_drafting(diagnosis)
+    cells = worth_drafting(diagnosis)
     if not cells:
         raise InputError(
-            "there is nothing to draft: the errors go with no measured variable beyond chance"
+            "there is nothing to draft: the errors go with no measured variable beyond chance that "
+            "a law can be written of"
         )
     final = diagnosis.final
     drives = FitDrives(diagnosis.runs, final.point.excluded, final.point.options)
@@ -150,9 +151,11 @@ def _in_a_line(last: LawForm, fit: Fitted) -> str:
     return in_a_line(amount, [value_of(fit, last, name)], [[factor_of(amount, last.seen)]])
 
 
-def _worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:
-    """The strongest dependences, one for each channel and variable."""
-    believed = [cell for cell in diagnosis.remaining if cell.p_value < rules.SURE]
+def worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:
+    """The strongest dependences of which a law can be written, one a channel and variable."""
+    believed = [
+        cell for cell in diagnosis.remaining if cell.p_value < rules.SURE and _has_a_form(cell)
+    ]
     believed.sort(key=lambda cell: -(cell.gain - rules.USELESS_NUMBER * cell.degrees))
     chosen: dict[tuple[str, str, str], Dependence] = {}
     for cell in believed:
@@ -162,12 +165,18 @@ def _worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:
     return strong[: rules.MOST_DRAFTED]
 
 
+def _has_a_form(cell: Dependence) -> bool:
+    """A spot on the floor is a law of travel alone; an effect may read no other place."""
+    if cell.variable.form == "place":
+        return cell.amount.channel in ("left", "right", "along")
+    return seen_as(cell.variable) is not None
+
+
 def _forms(
     diagnosis: Diagnosis, cell: Dependence, variable: Variable
 ) -> Iterator[tuple[Seen, Form]]:
     if variable.form == "place":
-        if cell.amount.channel in ("left", "right", "along"):
-            yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell)
+        yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell)
         return
     seen = seen_as(variable)
     if seen is None:

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.legs.gaps import as_stuck
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
-from werrimbi_odom.inference.legs.motion_states import LOST, driven
+from werrimbi_odom.inference.legs.motion_states import LOST, SLID, driven
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -97,6 +97,14 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     if by_turns is not None:
         slid = (part for part in parts if part.why == "held" and not _among(part, doubted[0]))
         parts = sorted({*parts} - {part for part in slid if _follows(part, by_turns)})
+    if reference.walked is not None:  # scans: beside a bare wall they do not see the way
+        by_heading = [] if by_turns is None else doubted[0]
+        parts = [
+            part._replace(words=SLID)
+            if part.words == HELD and not _among(part, by_heading)
+            else part
+            for part in parts
+        ]
     parts = _with_rests(parts, counters, robot)
     parts = [part if part.words == CARRIED else as_stuck(part, reference) for part in parts]
     if turns is not None and by_turns is None:  # to and fro on a line, carried in between

@@ -19,9 +19,14 @@ from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # [s]
+SLID = (
+    "the wheels turned and the scans stood still: the robot was held or against a wall, or the "
+    "scans slid along a bare one"
+)
 LOST = "the robot drove, and its heading is not known: it was held or carried before or after"
-What = Literal["stood", "drove", "held", "carried", "lost", "silent"]
-"""`lost`: it drove, with a heading that is not known. `silent`: it moved, and no counts came."""
+What = Literal["stood", "drove", "held", "slid", "carried", "lost", "silent"]
+"""`slid`: held, or its scans slid. `lost`: it drove, with a heading that is not known. `silent`: it
+moved, and no counts came."""
 
 
 class TimeSpan(NamedTuple):
@@ -73,7 +78,7 @@ def driven(
         begin, end = counters.time[index : index + 2]
         state[(middle > begin) & (middle < end)] = "silent"
     for part in by_hand(no_driving):
-        what = "lost" if part.words == LOST else part.why
+        what = {LOST: "lost", SLID: "slid"}.get(part.words, part.why)
         state[(middle >= part.begin) & (middle <= part.end)] = what
     spans = tuple(
         TimeSpan(float(grid[begin]), float(grid[end]), state[begin])

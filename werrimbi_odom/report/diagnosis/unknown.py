@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
 from werrimbi_odom.report.diagnosis import phrases, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
@@ -52,9 +53,14 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
     lines += remarks.nearest(diagnosis, bool(cells))
     lines += remarks.at_bounds_told(diagnosis)
     lines += remarks.left_is_noise(advised)
-    if cells:
+    if worth_drafting(diagnosis):
         lines.append("Next: write it as an effect of your own, from what these drives show:")
         lines.append(f"    {draft}")
+    elif cells:
+        lines.append(
+            "No law can be written of it. Next: see where both paths part, by `werrimbi compare` "
+            "with --report."
+        )
     else:
         lines.append(
             "It goes with nothing that was looked at, so there is no law to write. Next: see where "
