@@ -51,6 +51,13 @@ def law(change: Callable[[Any, Any, float], Any], **declared: Any) -> Effect:
     return wheel_effect(amount=AMOUNT, **declared)(some_law)
 
 
+@pytest.mark.parametrize("name", ["longitudinal_slip", "coulomb_slip"])
+def test_a_law_keeps_them_where_it_is_refined(name: str) -> None:
+    slip = find(name)
+    lighter = replace(slip.parameters["turning"], typical=0.4)
+    check_effect(replace(slip, parameters={**slip.parameters, "turning": lighter}))
+
+
 def test_a_plain_law_of_ones_own_keeps_them() -> None:
     check_effect(law(lambda travel, drive, amount: travel.left * (1.0 + amount)))
 

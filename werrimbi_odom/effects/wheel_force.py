@@ -14,7 +14,7 @@ from werrimbi_odom.model.effect import Parameter
 TURNING = Parameter(
     "",
     null=1.0,
-    typical=0.5,
+    typical=1.0,
     bounds=(0.0, 4.0),
     says="share that counts of a wheel's acceleration beyond the robot's: moment of inertia over "
     "mass * (base / 2)^2",

@@ -64,7 +64,7 @@ class FittedParameter:
 
 
 def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, FittedParameter]:
-    """The effect's parameters after a fit, in the effect's order."""
+    """The effect's parameters after a fit, in the effect's order; none that it did not need."""
     if effect.name in CALIBRATED:
         return {next(iter(effect.parameters)): _calibrated(effect, fit, given)}
     model = fit.point.model
@@ -74,6 +74,8 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
     for name, item in effect.parameters.items():
         key = f"{effect.name}.{name}"
         number = numbers.get(key)
+        if number is None and item.refines:
+            continue
         if item.as_base:
             found[name] = _as_base(applied, item, fit, given)
         elif number is None and item.tries:
