@@ -54,9 +54,13 @@ which a noise common to all echoes of a scan is assumed. Without such noise the 
 in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15. And standard
 deviations of that ratio, of which short drives tell little (25 s to 0.3)."""
 
+MOVING = 0.02
+"""Way [m] or turn [rad] of ten scans from which on the lidar moves, there and back counted: ten
+times the noise of a match, and 2 cm/s."""
+
 CALM = 0.25
-"""Share of a drive, with the smallest changes of speed, in which that scatter is measured. In short
-moves with hard starts and stops, half of the drive would not be calm enough."""
+"""Share of the motion of a drive, with the smallest changes of speed, in which that scatter is
+measured. In short moves with hard starts and stops, half of it would not be calm enough."""
 
 LONGEST_SWEEP = 1.0
 """Longest plausible turn [s]: a longer one is in another unit, and its beams count as
