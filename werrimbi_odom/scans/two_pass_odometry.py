@@ -245,22 +245,22 @@ def common_noise(
         middle = middle[moving]
     if len(middle) < FEWEST_POSES:
         return 1.0, 0.0
-    changes = np.abs(step(3, _BESIDE) - step(-_BESIDE, -3))
-    calm = changes <= np.quantile(changes, CALM, axis=0)
+    changes = step(3, _BESIDE) - step(-_BESIDE, -3)
+    of_both = np.column_stack([np.hypot(*changes[:, :2].T), np.abs(changes[:, 2])])
+    still, steady = (of_both <= np.quantile(of_both, CALM, axis=0)).T
     rough = step(1, 2) - 3.0 * step(0, 1) + 3.0 * step(-1, 0) - step(-2, -1)
     stated = 70.0 * covariances[middle]  # 1, -4, 6, -4, 1
-    still = calm[:, 0] & calm[:, 1]
     place = rough[still, :2]
     solved = np.linalg.solve(stated[still, :2, :2], place[..., None])[..., 0]
     ratios = (
         float(np.median((place * solved).sum(axis=1))) / _MEDIAN_OF_TWO,
-        (MAD * float(np.median(np.abs(rough[calm[:, 2], 2])))) ** 2
-        / float(np.median(stated[calm[:, 2], 2, 2])),
+        (MAD * float(np.median(np.abs(rough[steady, 2])))) ** 2
+        / float(np.median(stated[steady, 2, 2])),
     )
     # A standard deviation by the median of n has a relative error of 1.17 / root n.
     least = [
         max(COMMON, 1.0 + 2.0 * 1.17 * COMMON_SURE / np.sqrt(np.count_nonzero(rows)))
-        for rows in (still, calm[:, 2])
+        for rows in (still, steady)
     ]
     wider, more = (
         ratio if ratio > bound else 1.0 for ratio, bound in zip(ratios, least, strict=True)
