@@ -50,9 +50,9 @@ straighter. Of the simulated rooms only a corridor's heading with 681 beams come
 
 COMMON, COMMON_SURE = 1.5, 3.0
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above
-which a noise common to all echoes of a scan is assumed. Without such noise the ratio is 0.6 to 1.7
-in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15. And standard
-deviations of that ratio, of which short drives tell little (25 s to 0.3)."""
+which more noise than theirs is assumed. Without such noise the ratio is 0.5 to 1.7 in simulated
+rooms, and with a real LD08 0.6 to 2.0. And standard deviations of that ratio, of which short drives
+tell little (25 s to 0.3)."""
 
 MOVING = 0.02
 """Way [m] or turn [rad] of ten scans from which on the lidar moves, there and back counted: ten
