@@ -371,6 +371,23 @@ def test_a_robot_that_a_hand_turns_faster_than_its_wheels_could_is_found_by_a_gy
     assert found[2] == {"carried"}
 
 
+def test_a_robot_that_runs_against_something_soon_after_its_first_turn_is_found() -> None:
+    """As a TurtleBot3 did: 7 s ahead, 2.6 s turning, and 9 s by two fifths of what wheels turn."""
+    time = np.arange(0.0, 22.0, 0.05)
+    forth = 0.19 * ((time > 2.0) & (time < 9.0))
+    turning = -0.216 * ((time > 9.0) & (time < 20.6))
+    slows = np.where(time > 11.6, 0.4, 1.0)
+    noise = np.random.default_rng(0).normal(0.0, [[1e-3], [1e-3], [2e-3]], (3, time.size))
+    yaw = np.cumsum(0.05 * slows * turning)
+    path = np.cumsum(0.05 * forth * np.exp(1j * yaw))
+    left, right = (
+        np.cumsum(0.05 * (forth + side * 0.5 * ROBOT.track * turning)) / ROBOT.left_tick
+        for side in (-1.0, 1.0)
+    )
+    seen = Reference(time, path.real + noise[0], path.imag + noise[1], yaw + noise[2])
+    is_found(Run("stuck", Path("stuck"), Ticks(time, left, right), seen), "held", 11.6, time[-1])
+
+
 def test_a_robot_that_is_lifted_ever_faster_until_it_is_lost() -> None:
     time = np.arange(0.0, 33.0, 0.1)
     spins, forth = 2.0 * (time > 20.0), 40.0 * (time < 15.0)

@@ -12,6 +12,7 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.leg_errors import errors_of, squared_deviation
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
@@ -88,9 +89,64 @@ def test_innovations_are_white_in_every_part_of_a_drive() -> None:
     found = innovations(robot, laid, predict_all(point.model, laid), variances, "absolute")
     white, shares = found.whitened(), laid.shares
     assert shares is not None
-    for part in (shares[:, 0] < 0.1, shares[:, 0] > 0.9):
+    share = shares[1, :, 0, 0]
+    for part in (share < 0.1, share > 0.9):
         assert part.sum() > 100
         assert np.sqrt(np.mean(white[part] ** 2)) == pytest.approx(1.0, abs=0.15)
+
+
+ALONG, ACROSS = 6e-3, 1e-3
+
+
+def in_a_corridor(seed: int) -> Run:
+    """A drive by scans that hold it across the corridor, at 0.4 rad to the axes, six times finer.
+
+    Position and heading err together, too: the lidar sits beside the middle of its walls.
+    """
+    random = np.random.default_rng(seed)
+    run = drive(GOOD_WHEELS, wandering(random, 60.0), random, sigma_xy=0.0, sigma_yaw=0.0, every=5)
+    seen = run.reference
+    assert seen is not None
+    cos, sin = np.cos(0.4), np.sin(0.4)
+    into = np.array([[cos, -sin, 1e-3], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    covariance = into @ np.diag(np.square([ALONG, ACROSS, NEAR[1]])) @ into.T
+    noise = np.linalg.cholesky(covariance) @ random.standard_normal((3, seen.time.size))
+    many = np.ones(seen.time.size)
+    reference = replace(
+        seen,
+        own_axes=True,
+        x=seen.x + noise[0],
+        y=seen.y + noise[1],
+        yaw=seen.yaw + noise[2],
+        sigma_xy=ALONG * many,
+        sigma_yaw=NEAR[1] * many,
+        covariance=many[:, None, None] * covariance,
+    )
+    return replace(run, name=f"run_{seed}", reference=reference)
+
+
+def test_along_and_across_a_corridor_a_pose_has_its_own_noise() -> None:
+    """With one noise for both, innovations across were 0.2 of what was stated."""
+    robot = GOOD_WHEELS.entered()
+    laid = concatenated([match(in_a_corridor(seed), robot, leg=0.25) for seed in range(6)])
+    options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)
+    point = start_point(laid, robot, options)
+    wheels = np.square([robot.left_wheel_noise])
+    variances = replace(point.variances, stamp=np.array([1e-12]), left=wheels, right=wheels)
+    prediction = predict_all(point.model, laid)
+    found = innovations(robot, laid, prediction, variances, "absolute")
+    heading = laid.start[:, 2]
+    for away in (0.4, 0.4 + 0.5 * np.pi):
+        ways = np.column_stack([np.cos(away - heading), np.sin(away - heading)])
+        seen = np.einsum("ni,ni->n", ways, found.value[0, :, :2])
+        stated = np.einsum("ni,nij,nj->n", ways, found.covariance[0, :, :2, :2], ways)
+        assert np.mean(seen**2 / stated) == pytest.approx(1.0, abs=0.12)
+    white = found.whitened()
+    assert np.mean(white[found.known.all(axis=1)] ** 2) == pytest.approx(1.0, abs=0.08)
+    model = replace(point.model, robot=robot)
+    told = errors_of(model, laid, ALONG, NEAR[1])
+    off = squared_deviation(told.error, told.covariance)
+    assert np.mean(off) / 3.0 == pytest.approx(1.0, abs=0.1)
 
 
 def test_where_not_all_state_it_one_noise_counts() -> None:

@@ -50,6 +50,30 @@ def test_deskewed_echoes_are_those_of_a_lidar_that_stands() -> None:
     assert np.abs(np.abs(raw[on_walls]).max(axis=1) - 1.3).max() > 0.02
 
 
+def test_a_match_is_as_sure_as_it_says_where_neighbouring_echoes_err_alike() -> None:
+    """As a real LD08's do. By differences of neighbours the NEES was 5.4."""
+    clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0, rotates=False)
+    still = TruePath(np.arange(0.0, 1.0, PERIOD), *np.zeros((5, round(1.0 / PERIOD))))
+    given = seen(still, rooms.arena(), clean)[1][2]
+    rng = np.random.default_rng(6)
+    distance = np.hypot(*given.points.T)
+    alike = 3e-3 * np.array([0.1, 0.35, 0.75, 1.0])  # correlations of 0.6, 0.25 and 0.06
+
+    def measured() -> np.ndarray:
+        noise = np.convolve(rng.standard_normal(distance.size + 3), alike, "valid")
+        return np.asarray(given.points * (1.0 + noise / distance)[:, None])
+
+    elements = line_elements(given.points, given.spacing, np.ones(distance.size))
+    assert elements is not None
+    true = match(given.points, elements, np.zeros(3)).pose
+    nees = []
+    for _ in range(150):
+        found = match(measured(), elements, np.zeros(3))
+        off = found.pose - true
+        nees.append(off @ np.linalg.solve(found.covariance, off) / 3.0)
+    assert 0.8 < np.mean(nees) < 1.5
+
+
 def test_a_line_through_echoes_has_less_noise_than_they() -> None:
     rng = np.random.default_rng(1)
     x = rng.uniform(0.0, 2.0, 2000)

@@ -89,7 +89,10 @@ class LidarCollector:
                 words = _lost(found) if self._echoes else _blind(found, self._reach)
             raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
-        poses, sigma_xy, sigma_yaw, walked = _of_base(found, mount)
+        poses, covariances, walked = _of_base(found, mount)
+        # One number for both axes is that of the wider: the mean is too sure along a corridor.
+        sigma_xy = np.sqrt(np.linalg.eigvalsh(covariances[:, :2, :2])[:, 1])
+        sigma_yaw = np.sqrt(covariances[:, 2, 2])
         damage = f"the path by {self._name} is in pieces: {_unmatched(found)}"
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
         if self._matcher.order != "stated":
@@ -111,6 +114,7 @@ class LidarCollector:
             kind="absolute",
             own_axes=True,
             walked=walked,
+            covariance=covariances,
         )
         return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
 
@@ -132,22 +136,23 @@ def _beside(length: float, one: str, other: str) -> str:
     return f"{1e3 * abs(length):.0f} mm {one if length >= 0.0 else other}"
 
 
-def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats, Floats]:
-    """Poses of the base (n, 3) from the origin on, their sigmas (n,), and walks (n, 2)."""
+def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
+    """Poses of the base (n, 3) from the origin on, covariances (n, 3, 3), and walks (n, 2)."""
     x, y, yaw = found.poses.T
-    if mount.inverted:
-        y, yaw = -y, -yaw
+    sense = np.array([1.0, -1.0, -1.0] if mount.inverted else [1.0, 1.0, 1.0])
+    y, yaw = sense[1] * y, sense[2] * yaw
     sits = mount.x + 1j * mount.y
     lever = sits * np.exp(1j * yaw)  # both yaws start at zero: the base turns as the lidar does
     base = sits + (x + 1j * y) * np.exp(1j * mount.yaw) - lever
-    variance = np.diagonal(found.covariances, axis1=1, axis2=2)
-    sigma_yaw = np.sqrt(variance[:, 2])
-    # One number for both axes is that of the wider: the mean would be too sure along a corridor.
-    widest = np.linalg.eigvalsh(found.covariances[:, :2, :2])[:, 1]
+    cos, sin = np.cos(mount.yaw), np.sin(mount.yaw)
+    into = np.tile(np.eye(3), (yaw.size, 1, 1))
+    into[:, :2, :2] = [[cos, -sin], [sin, cos]]
+    into[:, 0, 2], into[:, 1, 2] = lever.imag, -lever.real
+    into *= sense
+    covariances = into @ found.covariances @ into.swapaxes(1, 2)
     swing = 0.5 * np.abs(sits) ** 2
-    sigma_xy = np.sqrt(widest + swing * variance[:, 2])
     walked = found.walked + swing * found.walked[:, 1:] * [1.0, 0.0]
-    return np.column_stack([base.real, base.imag, yaw]), sigma_xy, sigma_yaw, walked
+    return np.column_stack([base.real, base.imag, yaw]), covariances, walked
 
 
 def _in_words(found: ScanPath, sigma_xy: Floats, sigma_yaw: Floats) -> str:

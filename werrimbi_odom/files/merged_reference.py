@@ -102,7 +102,7 @@ def merged(
             f"; by them the robot turns {1e3 * abs(late):.0f} ms {when} it does by the other, on "
             "whose clock they are put"
         )
-    return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), words
+    return replace(poses, yaw=laid, sigma_yaw=None, covariance=None, gyro=gyro), words
 
 
 def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> list[Reference]:

@@ -97,6 +97,9 @@ class Reference:
     walked: Floats | None = field(default=None, kw_only=True)
     """Variances of a coordinate and of yaw that the map of the last metres has walked by each pose
     of scans, shape (m, 2) [m², rad²]; what matters is their growth."""
+    covariance: Floats | None = field(default=None, kw_only=True)
+    """Covariances of x, y and yaw, if they are stated by direction, shape (m, 3, 3); `sigma_xy` is
+    then that of the wider direction."""
     gyro: GyroTurn | None = field(default=None, kw_only=True)
     """Given if `yaw` is that of a gyro, aligned with another reference."""
     stamped_together: bool = field(default=False, kw_only=True)
@@ -129,6 +132,7 @@ class Reference:
             kind=self.kind,
             own_axes=self.own_axes,
             walked=None if self.walked is None else self.walked[which],
+            covariance=None if self.covariance is None else self.covariance[which],
             gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
             stamped_together=self.stamped_together,
         )

@@ -50,13 +50,17 @@ straighter. Of the simulated rooms only a corridor's heading with 681 beams come
 
 COMMON, COMMON_SURE = 1.5, 3.0
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above
-which a noise common to all echoes of a scan is assumed. Without such noise the ratio is 0.6 to 1.7
-in simulated rooms; with a real LD08, which starts its turns at any angle, 5 to 15. And standard
-deviations of that ratio, of which short drives tell little (25 s to 0.3)."""
+which more noise than theirs is assumed. Without such noise the ratio is 0.5 to 1.7 in simulated
+rooms, and with a real LD08 0.6 to 2.0. And standard deviations of that ratio, of which short drives
+tell little (25 s to 0.3)."""
+
+MOVING = 0.02
+"""Way [m] or turn [rad] of ten scans from which on the lidar moves, there and back counted: ten
+times the noise of a match, and 2 cm/s."""
 
 CALM = 0.25
-"""Share of a drive, with the smallest changes of speed, in which that scatter is measured. In short
-moves with hard starts and stops, half of the drive would not be calm enough."""
+"""Share of the motion of a drive, with the smallest changes of speed, in which that scatter is
+measured. In short moves with hard starts and stops, half of it would not be calm enough."""
 
 LONGEST_SWEEP = 1.0
 """Longest plausible turn [s]: a longer one is in another unit, and its beams count as

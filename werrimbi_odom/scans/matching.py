@@ -28,6 +28,11 @@ CAUCHY = 2.0
 
 MOST_LEVERAGE = 0.8
 """Largest leverage of an echo that its residual is freed of: one of its own tells nothing."""
+ALIKE = 4
+"""Beams over which errors of echoes may be alike. With a real LD08, whose driver truncates angles
+to a grid of 28 mrad, their correlation is 0.6, 0.3 and 0.15 over 1, 2 and 3 beams, and 0.05 over 5.
+More beams tell of it hardly more, and of independent echoes less: what the fit takes up of their
+sum is missing (NEES of steps in a simulated room: 1.10 with 3, 1.16 with 6)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,14 +121,15 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
 
 
 def _covariance(design: Floats, residual: Floats, weight: Floats) -> Floats:
-    """Sandwich covariance of a robust fit to independent, heteroscedastic echoes, shape (3, 3).
+    """Sandwich covariance of a robust fit to heteroscedastic echoes, shape (3, 3).
 
     For an M-estimator with score psi it is A^-1 B A^-1, with A the sum of psi' times the squared
     design and B that of psi^2 (Huber 1967). With equal noise of all echoes, cupboards far along a
-    corridor would seem to determine its direction as well as near walls do. Deviations of walls
-    from their lines are alike in neighbouring echoes and in the next scan, so they move no pose
-    relative to the next. Differences of neighbours remove them. Where few echoes determine a
-    direction, the fit takes up a part of their errors, their leverage, and residuals are freed of
+    corridor would seem to determine its direction as well as near walls do. B has the products of
+    neighbouring echoes too (Newey and West 1987), whose errors may be alike: walls are no lines,
+    and some drivers write each echo to a bin of a grid of angles. At rest the next scan has the
+    same errors, and they move no pose relative to it; in motion they do. Where few echoes determine
+    a direction, the fit takes up a part of their errors, their leverage, and residuals are freed of
     it (MacKinnon and White 1985). Without that a corridor's direction was too sure by a sixth.
     """
     slope = weight * (2.0 * weight - 1.0)  # derivative of Cauchy's score
@@ -133,7 +139,10 @@ def _covariance(design: Floats, residual: Floats, weight: Floats) -> Floats:
     weighted = design * weight[:, None]
     leverage = (weighted @ np.linalg.inv(weighted.T @ design) * design).sum(axis=1)
     score = weight * residual / (1.0 - np.minimum(leverage, MOST_LEVERAGE))
-    apart = score - 0.5 * (np.roll(score, 1) + np.roll(score, -1))
-    spread = (design * (apart**2 / 1.5)[:, None]).T @ design
+    pull = design * score[:, None]
+    before = 0.5 * pull
+    for apart in range(1, ALIKE + 1):
+        before += (1.0 - apart / (ALIKE + 1.0)) * np.roll(pull, apart, axis=0)
+    half = pull.T @ before
     inverse = np.linalg.inv(curvature)
-    return np.asarray(inverse @ spread @ inverse)
+    return np.asarray(inverse @ (half + half.T) @ inverse)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.limits import (
@@ -26,6 +27,7 @@ from werrimbi_odom.scans.limits import (
     FEWEST_POSES,
     LONGEST_HOLE,
     LOST_AFTER,
+    MOVING,
     ORDER_MOST,
     ORDER_TURNING,
 )
@@ -53,14 +55,15 @@ class ScanPath:
     poses: Floats
     """x, y [m] and yaw [rad], shape (n, 3)."""
     covariances: Floats
-    """Of each match, given the map; axes of the piece, shape (n, 3, 3)."""
+    """Of each pose, given the map; axes of the piece, shape (n, 3, 3)."""
     walked: Floats
     """Variances of position, an axis, and heading that the map has walked by then, from the start
     of the piece on, shape (n, 2) [m², rad²]."""
     piece: NDArray[np.intp]
     """Number of the unbroken piece, shape (n,)."""
     common: tuple[float, float]
-    """What all echoes of a scan err together, standard deviations in `covariances` [m, rad]."""
+    """What no match can see, and `covariances` have: a factor on the variances of positions, 1 if
+    there is none, and a standard deviation of the heading [rad]."""
     scans: int
     """All that were given, those with one stamp counted once."""
     flags: dict[Flag, int]
@@ -138,15 +141,17 @@ class ScanMatcher:
         table = np.array(self._found).reshape(-1, 16)
         piece = table[:, 15].astype(np.intp)
         kept = np.bincount(piece, minlength=1)[piece] >= FEWEST_POSES
-        poses, covariances = table[kept, 1:4], table[kept, 4:13].reshape(-1, 3, 3)
-        more = common_noise(poses, covariances, piece[kept])
+        poses = table[kept, 1:4]
+        covariances = usual_about(table[kept, 4:13].reshape(-1, 3, 3), piece[kept])
+        wider, turned = common_noise(poses, covariances, piece[kept])
+        scale = np.sqrt([wider, wider, 1.0])
         return ScanPath(
             table[kept, 0],
             poses,
-            covariances + np.diag([more[0], more[0], more[1]]) ** 2,
+            covariances * np.outer(scale, scale) + np.diag([0.0, 0.0, turned**2]),
             table[kept, 13:15],
             piece[kept],
-            more,
+            (wider, turned),
             self._scans,
             dict(self._flags),
         )
@@ -203,36 +208,70 @@ class ScanMatcher:
         self._found.append(self._piece)
 
 
+def usual_about(covariances: Floats, piece: NDArray[np.intp]) -> Floats:
+    """Covariances (n, 3, 3), each as the mean of those of scans about it, in axes of the piece.
+
+    The residuals of one scan tell its variance to a factor of two only, and who believes the small
+    ones weighs poses by chance. What a lidar sees hardly changes in half a second.
+    """
+    found = np.empty_like(covariances)
+    for each in np.unique(piece):
+        rows = piece == each
+        found[rows] = uniform_filter1d(covariances[rows], 2 * _BESIDE + 1, axis=0, mode="nearest")
+    return found
+
+
 def common_noise(
     poses: Floats, covariances: Floats, piece: NDArray[np.intp]
 ) -> tuple[float, float]:
-    """What all echoes of a scan err together [m, rad], beyond the covariance of its match.
+    """What poses err beyond the covariances of their matches; see `ScanPath.common`.
 
-    A lidar whose turns begin at an angle that jitters: no match can see it. It is read off the
-    fourth differences of five poses, which no smooth course has, one by one. Starts and stops have
-    them: only the calmest part counts, by the poses before and after the five.
+    A lidar whose turns begin at an angle that jitters: no match can see it. It turns the heading
+    alone. What positions err beyond their matches has the directions of those: along a corridor it
+    is not what it is across. Both are read off the fourth differences of five poses, which no
+    smooth course has, one by one, of a lidar that moves: at rest, what a driver does to the beams
+    is the same in each scan. Starts and stops have such differences too: only the calmest part
+    counts, by the poses before and after the five.
     """
     middle = np.arange(_BESIDE, len(poses) - _BESIDE)
     middle = middle[piece[middle - _BESIDE] == piece[middle + _BESIDE]]
-    if len(middle) < FEWEST_POSES:
-        return 0.0, 0.0
 
     def step(first: int, last: int) -> Floats:
         return np.asarray(poses[middle + last] - poses[middle + first])
 
-    changes = np.abs(step(3, _BESIDE) - step(-_BESIDE, -3))
-    rough = np.abs(step(1, 2) - 3.0 * step(0, 1) + 3.0 * step(-1, 0) - step(-2, -1))
-    calm = changes <= np.quantile(changes, CALM, axis=0)
-    seen = np.array([np.median(rough[calm[:, part], part]) for part in range(3)])
-    seen = (MAD * seen) ** 2 / 70.0  # 1, -4, 6, -4, 1
-    stated = np.median(np.diagonal(covariances[middle], axis1=1, axis2=2), axis=0)
+    moved = np.abs(step(-_BESIDE, 0)) + np.abs(step(0, _BESIDE))
+    moving = (np.hypot(*moved[:, :2].T) > MOVING) | (moved[:, 2] > MOVING)
+    if np.count_nonzero(moving) >= FEWEST_POSES:
+        middle = middle[moving]
+    if len(middle) < FEWEST_POSES:
+        return 1.0, 0.0
+    changes = step(3, _BESIDE) - step(-_BESIDE, -3)
+    of_both = np.column_stack([np.hypot(*changes[:, :2].T), np.abs(changes[:, 2])])
+    still, steady = (of_both <= np.quantile(of_both, CALM, axis=0)).T
+    rough = step(1, 2) - 3.0 * step(0, 1) + 3.0 * step(-1, 0) - step(-2, -1)
+    stated = 70.0 * covariances[middle]  # 1, -4, 6, -4, 1
+    place = rough[still, :2]
+    solved = np.linalg.solve(stated[still, :2, :2], place[..., None])[..., 0]
+    ratios = (
+        float(np.median((place * solved).sum(axis=1))) / _MEDIAN_OF_TWO,
+        (MAD * float(np.median(np.abs(rough[steady, 2])))) ** 2
+        / float(np.median(stated[steady, 2, 2])),
+    )
     # A standard deviation by the median of n has a relative error of 1.17 / root n.
-    chance = 1.0 + 2.0 * 1.17 * COMMON_SURE / np.sqrt(calm.sum(axis=0))
-    more = np.where(seen > np.maximum(COMMON, chance) * stated, seen - stated, 0.0)
-    return float(np.sqrt(0.5 * (more[0] + more[1]))), float(np.sqrt(more[2]))
+    least = [
+        max(COMMON, 1.0 + 2.0 * 1.17 * COMMON_SURE / np.sqrt(np.count_nonzero(rows)))
+        for rows in (still, steady)
+    ]
+    wider, more = (
+        ratio if ratio > bound else 1.0 for ratio, bound in zip(ratios, least, strict=True)
+    )
+    return wider, float(np.sqrt((more - 1.0) * np.median(covariances[middle, 2, 2])))
 
 
 _BESIDE = 5
+"""Scans before and after one that tell its covariance, and how calmly the lidar moves."""
+_MEDIAN_OF_TWO = 2.0 * np.log(2.0)
+"""Median of chi squared with two degrees of freedom."""
 
 
 def _course(seen: deque[_Seen], at: int) -> SweepMotion:

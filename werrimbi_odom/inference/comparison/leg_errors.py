@@ -15,12 +15,13 @@ from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
-from werrimbi_odom.inference.fitting.leg_loop import lever_of
+from werrimbi_odom.inference.fitting.leg_loop import lever_of, turn_into
 from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
     paces,
     quantisation_variance,
+    stated_shares,
     wheel_covariance,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
@@ -155,8 +156,9 @@ def errors_of(
         heading = found.heading
     else:
         error = errors_between(start, finish, prediction)
+        shares = stated_shares(runs, kind, view.mirrored)
         reference = _reference_part(
-            robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind
+            robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind, shares, start[:, 2]
         )
     return LegErrors(
         error,
@@ -190,10 +192,13 @@ def _reference_part(
     prediction: Prediction,
     sigmas: tuple[float | Floats, float | Floats, float],
     kind: ReferenceKind,
+    shares: Floats | None,
+    heading: Floats,
 ) -> Floats:
     """Covariance of a leg's error from the reference and from encoder quantisation.
 
-    The reference's part is that of its positions, headings and stamps.
+    The reference's part is that of its positions, headings and stamps; `shares` are as in
+    `Concatenated.shares`, and `heading` is measured at the legs' starts, shape (m,).
     """
     reading = quantisation_variance(robot)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
@@ -204,8 +209,17 @@ def _reference_part(
         walk = walked(prediction, runs.intervals, xy, yaw)
         return np.asarray(walk + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
     lever = lever_of(prediction.relative)
-    own = np.stack([xy, xy, yaw], axis=-1) + reading
-    first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
+    own = np.stack([xy, xy, yaw], axis=-1)[:, :, None] * np.eye(3)
+    both = np.stack([own, own])
+    if shares is not None:  # a run's own sigma is in them
+        unit = np.sqrt([xy.max(), xy.max(), yaw.max()])
+        turn = np.empty((runs.count, 3, 3))
+        turn_into(turn, heading)
+        both = turn.transpose(0, 2, 1) @ (shares * np.outer(unit, unit)) @ turn
+    first, last = (
+        part + (late + reading)[:, :, None] * np.eye(3)
+        for part, late in zip(both, (begun, ended), strict=True)
+    )
     of_map = map_walk(prediction, runs.map_growth, xy, yaw) if runs.own_axes else 0.0
     return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + of_map)
 

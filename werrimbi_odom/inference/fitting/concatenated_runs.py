@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
@@ -121,19 +122,21 @@ class Concatenated:
 
     @property
     def shares(self) -> Floats | None:
-        """Stated variances of position and heading at each leg's end, relative to usual, (m, 2).
+        """Stated covariances of the poses at both ends of each leg, relative to usual.
 
-        The unit is the largest typical value of a drive, which stands for all
-        (`with_stated_noise`). None if any run states none.
+        Shape (2, m, 3, 3), in the reference's axes. The unit is the largest typical value of a
+        drive, which stands for all (`with_stated_noise`). None if any run states none.
         """
-        found = []
-        for name in ("sigma_xy", "sigma_yaw"):
-            stated = [getattr(run.measured, name) for run in self.runs]
-            usual = [getattr(run, name) for run in self.runs]
-            if any(sigma is None for sigma in stated):
-                return None
-            found.append(np.concatenate([sigma[1:] for sigma in stated]) / max(usual))
-        return np.stack(found, axis=-1) ** 2
+        stated = [each for run in self.runs if (each := _stated(run.measured)) is not None]
+        usual = [(run.sigma_xy, run.sigma_yaw) for run in self.runs]
+        if len(stated) < len(self.runs) or any(None in each for each in usual):
+            return None
+        place, heading = np.array(usual).max(axis=0)
+        begin, end = (
+            np.concatenate([each[side] for each in stated]) for side in (slice(-1), slice(1, None))
+        )
+        unit = np.array([place, place, heading])
+        return np.stack([begin, end]) / np.outer(unit, unit)
 
     @property
     def map_growth(self) -> Floats:
@@ -305,6 +308,16 @@ def _counts(runs: Sequence[MatchedRun]) -> WheelTravel[Floats]:
     """Counts of both wheels in all steps."""
     counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs])
     return counts
+
+
+def _stated(measured: Reference) -> Floats | None:
+    """Stated covariances of poses (r, 3, 3) in the reference's axes; None if there are none."""
+    if measured.covariance is not None:
+        return measured.covariance
+    if measured.sigma_xy is None or measured.sigma_yaw is None:
+        return None
+    sigmas = np.stack([measured.sigma_xy, measured.sigma_xy, measured.sigma_yaw], axis=-1)
+    return np.asarray(sigmas[..., None] ** 2 * np.eye(3))
 
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:

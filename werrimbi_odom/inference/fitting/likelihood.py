@@ -194,7 +194,7 @@ def innovations(
             begun[runs.legs[index]] = given
     start = np.where(np.isfinite(begun)[:, None] & [False, False, True], np.nan, start)
     noise = wheel_covariance(prediction, runs, variances.left, variances.right)
-    reading = _reading(robot, variances, runs, prediction, kind)
+    reading = _reading(robot, variances, runs, prediction, kind, view.mirrored)
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
     if kind == "absolute" and runs.own_axes:
@@ -281,20 +281,27 @@ def _reading(
     runs: Concatenated,
     prediction: Prediction,
     kind: ReferenceKind,
+    mirrored: bool,
 ) -> Floats:
     """Covariance of a measured pose, including encoder quantisation; (g, 1 or m, 3, 3)."""
-    stamps = runs.has_stamp_noise
-    reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
-    shares = runs.cache.known("shares", lambda: runs.shares) if kind == "absolute" else None
-    place, heading = (1.0, 1.0) if shares is None else shares.T
-    reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None] * place
-    if kind != "incremental":
-        reading[..., 2, 2] = variances.yaw[:, None] * heading
-    if stamps:
+    shares = stated_shares(runs, kind, mirrored)
+    heading = np.zeros_like(variances.yaw) if kind == "incremental" else variances.yaw
+    unit = np.sqrt(np.stack([variances.xy, variances.xy, heading], axis=-1))[:, None, :]
+    reading = unit[..., :, None] * unit[..., None, :] * (np.eye(3) if shares is None else shares[1])
+    if runs.has_stamp_noise:
         pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
         late = variances.stamp[:, None, None] * pace
-        reading += late[..., None] * np.eye(3)
+        reading = reading + late[..., None] * np.eye(3)
     return np.asarray(reading + np.diag(quantisation_variance(robot)))
+
+
+def stated_shares(runs: Concatenated, kind: ReferenceKind, mirrored: bool) -> Floats | None:
+    """`Concatenated.shares` in a right-handed frame, if it is poses whose noise is stated."""
+    shares = runs.cache.known("shares", lambda: runs.shares) if kind == "absolute" else None
+    if shares is None or not mirrored:
+        return shares
+    flip = np.array([1.0, -1.0, -1.0])
+    return np.asarray(shares * np.outer(flip, flip))
 
 
 def wheel_covariance(

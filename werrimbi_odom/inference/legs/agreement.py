@@ -87,7 +87,8 @@ def agreement_of_turns(windows: Windows, base: float) -> Agreement | None:
     late = windows.later(lag)
     shown, gross = _predicted(late, law[:, None])
     near = bool(np.abs(law * base - (-1.0, 1.0)).max() < rules.AGREE_WITHIN)
-    return accepted(Agreement(late, shown[:, 0], gross[:, 0], lag, law), near, rules.AGREE_TURN)
+    least = rules.AGREE_TURN_OF_FILE if near else rules.AGREE_TURN
+    return accepted(Agreement(late, shown[:, 0], gross[:, 0], lag, law), near, least)
 
 
 def lags_to_try(step: float) -> list[float]:

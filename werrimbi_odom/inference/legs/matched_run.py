@@ -183,8 +183,12 @@ def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
     if reference.own_axes:  # stated per scan match; a localiser states its absolute error
         for sigma in (reference.sigma_xy, reference.sigma_yaw):
             columns.append(None if sigma is None else sigma[rows])
-    walked = None if reference.walked is None else reference.walked[rows]
-    return Reference(*columns, own_axes=reference.own_axes, walked=walked, gyro=gyro)
+    walked, covariance = (
+        None if each is None else each[rows] for each in (reference.walked, reference.covariance)
+    )
+    return Reference(
+        *columns, own_axes=reference.own_axes, walked=walked, covariance=covariance, gyro=gyro
+    )
 
 
 def typical_sigma(sigma: Floats | None) -> float | None:
