@@ -115,8 +115,10 @@ def followed(case: Case, folder: Path, *, as_printed: bool = False) -> list[Step
             return [*steps, Step(robot, done.stdout, answer, None)]
         effect = printed[1] if as_printed else answer["effect"] or printed[1]
         tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
-        without = _WITHOUT.search(" ".join(tried.stderr.split()))
-        if tried.returncode != 0 and without is not None:
+        while tried.returncode != 0:
+            without = _WITHOUT.search(" ".join(tried.stderr.split()))
+            if without is None:
+                break
             effect = without[1]
             tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
         if tried.returncode != 0:
