@@ -180,7 +180,9 @@ def row(case: Case) -> str:
         f"`{name}`" for step in steps if step.added for name in step.added.split(",")
     )
     figures = f"{1e3 * before:.1f} mm | {effects} | {1e3 * after:.1f} mm"
-    return f"| {case.told} | {figures} | {verdict(steps[-1].answer)} |"
+    refused = steps[-1].refused and steps[-1].answer["verdict"] == "named"
+    last = f"{verdict(steps[-1].answer)}{', but the held-out drives refuse it' if refused else ''}"
+    return f"| {case.told} | {figures} | {last} |"
 
 
 if __name__ == "__main__":
