@@ -115,8 +115,10 @@ def followed(case: Case, folder: Path, *, as_printed: bool = False) -> list[Step
             return [*steps, Step(robot, done.stdout, answer, None)]
         effect = printed[1] if as_printed else answer["effect"] or printed[1]
         tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
-        without = _WITHOUT.search(" ".join(tried.stderr.split()))
-        if tried.returncode != 0 and without is not None:
+        while tried.returncode != 0:
+            without = _WITHOUT.search(" ".join(tried.stderr.split()))
+            if without is None:
+                break
             effect = without[1]
             tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
         if tried.returncode != 0:
@@ -178,7 +180,9 @@ def row(case: Case) -> str:
         f"`{name}`" for step in steps if step.added for name in step.added.split(",")
     )
     figures = f"{1e3 * before:.1f} mm | {effects} | {1e3 * after:.1f} mm"
-    return f"| {case.told} | {figures} | {verdict(steps[-1].answer)} |"
+    refused = steps[-1].refused and steps[-1].answer["verdict"] == "named"
+    last = f"{verdict(steps[-1].answer)}{', but the held-out drives refuse it' if refused else ''}"
+    return f"| {case.told} | {figures} | {last} |"
 
 
 if __name__ == "__main__":

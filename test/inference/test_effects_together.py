@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of, runs_of
+from test.inference.driven import COMMON, run_by, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import all_effects, find
 from werrimbi_odom.files.read_run import read_run
@@ -94,3 +94,28 @@ def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_anoth
     found = diagnose(runs, PLAIN, effects)
     assert set(found.found) == {"eccentric_left_wheel", "oval_left_wheel"}
     assert found.verdict == "named"
+
+
+def test_what_two_do_together_is_not_beyond_the_library() -> None:
+    """Squares by a marker that is askew and ahead of the axle: sideways with the rate of turning.
+
+    A curve over that rate holds both, and explained far more than either: *unknown* it was.
+    """
+    ahead, askew = 3e-3, 6e-3
+    speed, turning = (
+        [*[still] * 10, *[go] * 160, *[still] * 10, *[by] * 40] * 4
+        for still, go, by in ((0.0, 0.2, 0.0), (0.0, 0.0, np.pi / 4.0))
+    )
+    runs = []
+    for seed, sense in enumerate((1.0, -1.0, 1.0, -1.0)):
+        driven = (np.convolve(part, np.ones(6) / 6.0, "same") for part in (speed, turning))
+        run = run_by(ROBOT, next(driven), sense * next(driven), seed=seed)
+        seen = run.reference
+        assert seen is not None
+        x, y = seen.x + ahead * np.cos(seen.yaw), seen.y + ahead * np.sin(seen.yaw)
+        runs.append(replace(run, reference=replace(seen, x=x, y=y, yaw=seen.yaw + askew)))
+    found = diagnose(runs, ROBOT, COMMON)
+    assert set(found.found) == {"reference_yaw_offset", "reference_lever_arm"}
+    values = {held.name: held.values for held in found.robot.effects}
+    assert values["reference_lever_arm"]["x"] == pytest.approx(ahead, abs=0.5e-3)
+    assert values["reference_yaw_offset"]["angle"] == pytest.approx(askew, abs=0.5e-3)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from test.inference.driven import runs_of
+from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
@@ -23,9 +24,16 @@ from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of, fitted
+from werrimbi_odom.inference.diagnosis.uncertainty import variances_by_sign
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, START_YAW, YAW_DRIFT, Model
+from werrimbi_odom.inference.fitting.free_parameters import (
+    MULTIPLIERS,
+    START_YAW,
+    YAW_DRIFT,
+    Model,
+    parameters_to_fit,
+)
 from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.proposal import for_twins
@@ -450,6 +458,34 @@ def test_a_flat_that_fits_as_well_as_a_bump_is_told_with_it() -> None:
     assert cheapest_of([with_bump(-8e-4, 0.4), flat]).or_else is None
     told = quantity(-9e-4, 1.7e-4, "m", (8.7e-4, 1.8e-4))
     assert told == "-0.90 ± 0.17 mm or as well 0.87 ± 0.18 mm"
+
+
+def test_what_a_flat_would_make_of_the_radius_is_in_the_uncertainty() -> None:
+    """A taped Kobuki's base, told beside the flat, was six of its own ± from that by the bump."""
+    tape = find("left_tread_bump")
+    runs = runs_of(replace(ROBOT, effects=(tape.using(height=2e-3, place=0.5),)), (1, 2), 60)
+    laid = concatenated(match_for_fit(runs, ROBOT, 1.0))
+    numbers = tuple(replace(each, per_run=False) for each in parameters_to_fit(tape))
+    point = fit_calibration(laid, ROBOT).point
+
+    def fit_from(height: float, place: float) -> Fitted:
+        robot = replace(ROBOT, effects=(tape.using(height=height, place=place),))
+        start = replace(point, model=Model(robot, point.model.own))
+        return fitted(laid, start, (tape.name,), numbers, ROBOT)
+
+    bump, flat = fit_from(2e-3, 0.5), fit_from(-2e-3, 0.5 - np.pi)
+    either = replace(flat, cost=flat.cost + bump.total - flat.total, or_else=bump)
+    wheel = "left_wheel_radius_multiplier"
+    larger = getattr(flat.point.model.robot, wheel) - 1.0
+    assert larger > 0.01
+    stds = {
+        name: np.sqrt(variance)
+        for name, variance in variances_by_sign(laid, [either], ROBOT, ()).items()
+    }
+    assert stds[wheel] == pytest.approx(larger / np.sqrt(2.0), rel=0.05), "either is as likely"
+    assert stds["right_wheel_radius_multiplier"] < 1e-3
+    assert variances_by_sign(laid, [replace(bump, or_else=flat)], ROBOT, ())[wheel] < 1e-9
+    assert not variances_by_sign(laid, [flat], ROBOT, ())
 
 
 @with_recordings

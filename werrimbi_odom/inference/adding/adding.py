@@ -42,7 +42,12 @@ from werrimbi_odom.inference.diagnosis.holdout import Begun, Judge, begin
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
+from werrimbi_odom.inference.diagnosis.uncertainty import (
+    as_written,
+    noises_of,
+    variances_by_sign,
+    with_spread,
+)
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -151,10 +156,11 @@ def add_effects(
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
     written = fit
+    by_sign = variances_by_sign(drives.laid, fits.either.values(), robot, wanted)
     if not holdout:
         show(0.9, "all runs")
         drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
-    known = with_spread(effects, drives.laid, written, robot, wanted, sizes, noises)
+    known = with_spread(effects, drives.laid, written, robot, wanted, sizes, noises, by_sign)
     final = replace(to_write(written.point.model, robot), **noise)
     show(0.95, "comparing")
     kept_back = [replace(run, happened=()) for run in judge.kept_back]

@@ -142,7 +142,7 @@ def _searched(
             beyond = None
             break
         further: list[Round] = []
-        if best is None:
+        if best is None or beyond is not None:
             best, further = _together(this, laid, effects, set_up.robot)
             beyond = beyond if best is None else None
         if best is None or beyond is not None or not holds_when_cross_validated(laid, fit, best):
@@ -223,10 +223,12 @@ def _together(
     """Effects that hold only beside one another, and the rounds that found them.
 
     Where several are missing, the parts of the drives disagree on each of them alone: what the
-    others do differs from part to part. So the best is taken on trial, and the next ones too, until
-    all of them hold, or no more are significant.
+    others do differs from part to part. And one dependence may be the sum of what several do: a
+    mount that is askew and beside the axle errs with the rate of turning as neither alone does. So
+    the best is taken on trial, and the next ones too, until all of them hold and explain together
+    what no single one did, or no more are significant.
     """
-    rounds: list[Round] = []
+    first, rounds = this, list[Round]()
     fit = _significant(this)
     while fit is not None and len(rounds) < rules.TOGETHER:
         this = search_round(runs, refit_to_rest(runs, fit, given), effects, given)
@@ -235,7 +237,9 @@ def _together(
         if fit is None or _beyond_the_library(this, fit, runs) is not None:
             continue
         trial = fit.names[-len(rounds) - 1 :]
-        if all(p_value_by_parts(runs, fit, name, this.number) < rules.SURE for name in trial):
+        if any(p_value_by_parts(runs, fit, name, this.number) >= rules.SURE for name in trial):
+            continue
+        if _beyond_the_library(first, fit, runs) is None:
             return fit, rounds
     return None, []
 

@@ -5,14 +5,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import with_sizes_in_multipliers
-from werrimbi_odom.inference.diagnosis.calibration_selection import FreeSizes
+from werrimbi_odom.inference.diagnosis.calibration_selection import (
+    FreeSizes,
+    sizes_needed,
+    with_sizes,
+)
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
 from werrimbi_odom.inference.distributions import upper_part
@@ -66,13 +70,14 @@ def with_spread(
     wanted: Collection[str],
     sizes: FreeSizes,
     noises: Mapping[str, NoiseEstimate],
+    by_sign: Mapping[str, float] = {},
 ) -> Fitted:
     """The fit with standard deviations that allow for all choices made on the same drives.
 
     These are which sizes differ from the file's, which parameters effects need
-    (`model_averaged_stds`), and the noise (`Precision.widening`). No value is more precise than
-    its law (`grain_of`). Lengths have the uncertainty of their logarithm, as scale parameters
-    do.
+    (`model_averaged_stds`), which sign an effect has (`variances_by_sign`), and the noise
+    (`Precision.widening`). No value is more precise than its law (`grain_of`). Lengths have the
+    uncertainty of their logarithm, as scale parameters do.
     """
     laws = [law for effect in effects if len(law := _optional(effect)) > 1]
     columns = fit.design.columns
@@ -98,6 +103,7 @@ def with_spread(
     wide = _precision(runs, as_written(runs, fit, given)).widening(noises, names)
     variances = (wide * [spread[name] for name in names]) ** 2
     variances += grain_of(fit.design, fit.point.model.robot)[told]
+    variances += [by_sign.get(name, 0.0) for name in names]
     scales = {
         f"{effect.name}.{name}"
         for effect in effects
@@ -112,6 +118,38 @@ def with_spread(
     size = np.ones(len(columns))
     size[told] = np.sqrt(variances / np.diag(fit.covariance)[told])
     return replace(fit, covariance=fit.covariance * np.outer(size, size))
+
+
+def variances_by_sign(
+    runs: Concatenated, either: Iterable[Fitted], given: Robot, wanted: Collection[str]
+) -> dict[str, float]:
+    """Variances of shared parameters, by name, for the signs that effects may have (`or_else`).
+
+    A flat instead of a bump goes with another base and another radius. Each sign has a probability
+    by its cost and penalty, as all choices do (`model_averaged_stds`). The effect's own size has
+    none here: that of the other sign is told beside it.
+
+    Parameters
+    ----------
+    either : iterable of Fitted
+        Fits with an effect as their newest, to these runs.
+    """
+    found: dict[str, float] = {}
+    for fit in either:
+        other = fit.or_else
+        if other is None:
+            continue
+        share = 1.0 / (1.0 + math.exp(0.5 * (other.total - fit.total) / fit.scatter))
+        robots = []
+        for each in (fit, other):
+            sizes = sizes_needed(each, given, wanted)
+            robots.append(with_sizes(runs, each, given, sizes).point.model.robot)
+        own = f"{fit.newest.name}."
+        for name in (*MULTIPLIERS, *(number.name for number in shared_of(fit.numbers))):
+            if not name.startswith(own):
+                here, there = (value_of(robot, name) for robot in robots)
+                found[name] = found.get(name, 0.0) + share * (there - here) ** 2
+    return found
 
 
 def _optional(effect: Effect) -> Law:

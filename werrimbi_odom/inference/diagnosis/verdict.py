@@ -38,7 +38,12 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     rivals_of_others,
     torn_by_halves,
 )
-from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
+from werrimbi_odom.inference.diagnosis.uncertainty import (
+    as_written,
+    noises_of,
+    variances_by_sign,
+    with_spread,
+)
 from werrimbi_odom.inference.diagnosis.what_is_left import what_is_left
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -120,7 +125,7 @@ def diagnosis_of(
         given=given,
         rounds=rounds,
         final=final,
-        told=_with_spread(told, sizes, mended, answer.found, laid),
+        told=_with_spread(told, sizes, mended, answer.found, laid, rounds),
         runs=laid,
         train=Sides(before.train, after.train, before.unit),
         holdout=before.to(after),
@@ -232,11 +237,20 @@ def sizes_among(found: Collection[str], fit: Fitted) -> set[str]:
 
 
 def _with_spread(
-    told: Fitted, sizes: FreeSizes, given: Robot, found: Collection[str], laid: Concatenated
+    told: Fitted,
+    sizes: FreeSizes,
+    given: Robot,
+    found: Collection[str],
+    laid: Concatenated,
+    rounds: tuple[Round, ...],
 ) -> Fitted:
     """The reported fit with the standard deviations that are stated of what was found."""
     if not (found and (told.calibrated or told.names)):
         return told
     effects = [applied_of(told.point.model.robot.effects, name).effect for name in told.names]
     noises = noises_of(laid, as_written(laid, told, given))
-    return with_spread(effects, laid, told, given, sizes_among(found, told), sizes, noises)
+    wanted = sizes_among(found, told)
+    tried = {fit.names[-1]: fit for this in rounds for fit in this.tried}
+    either = (tried[name] for name in told.names if name in tried)
+    by_sign = variances_by_sign(laid, either, given, wanted)
+    return with_spread(effects, laid, told, given, wanted, sizes, noises, by_sign)
