@@ -189,16 +189,10 @@ def search_round(
 def fitted_beside(
     runs: Concatenated, before: Fitted, start: Point, score: Score, given: Robot
 ) -> Fitted:
-    """Fit of a model and one more effect, from a start that holds both.
-
-    Where the first round leaves it far from worth its penalty, it is not fitted to the last digit.
-    """
+    """Fit of a model and one more effect, from a start that holds both."""
     numbers = parameters_with(before.numbers, score.candidate)
-    least = score.degrees * min(before.penalty_of_one, before.penalty_of_own)
-    hopeless = before.cost + (rules.RIVAL - least) * before.scatter
     names = names_with(before.names, score.candidate)
-    fit = fitted(runs, start, names, numbers, given, hopeless=hopeless)
-    return refined(runs, fit, given)
+    return refined(runs, fitted(runs, start, names, numbers, given), given)
 
 
 def as_given(point: Point, given: Robot) -> Point:

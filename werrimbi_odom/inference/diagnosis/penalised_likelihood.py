@@ -245,17 +245,11 @@ def fitted(
     given: Robot,
     *,
     rounds: int = 2,
-    hopeless: float = math.inf,
 ) -> Fitted:
-    """Fit a model with its calibration, and select the calibration effects that it needs.
-
-    `hopeless` is a cost above which rounds after the first are not worth their time.
-    """
+    """Fit a model with its calibration, and select the calibration effects that it needs."""
     every = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
     nothing = _without_sizes(point.model, given)
-    result = fit_model(
-        runs, point, every, given=nothing, find_jumps=False, rounds=rounds, hopeless=hopeless
-    )
+    result = fit_model(runs, point, every, given=nothing, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
     ways = determined(design, result.robot, result.held)
     penalty, of_own = penalty_of_one(runs), penalty_of_one(runs, own=True)

@@ -10,7 +10,6 @@ values.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
@@ -109,7 +108,6 @@ def fit_model(
     given: Model | None = None,
     find_jumps: bool = True,
     rounds: int = 3,
-    hopeless: float = math.inf,
 ) -> ModelFit:
     """Fit parameters and noise to all runs at once.
 
@@ -128,8 +126,6 @@ def fit_model(
         compared must exclude the same legs.
     rounds : int
         Largest number of alternations between noise and model parameters.
-    hopeless : float
-        Cost above which the first of them is the last.
     """
     given = given or point.model
     if find_jumps:
@@ -148,7 +144,7 @@ def fit_model(
         directions = determined(design, point.model.robot, directions.held if directions else ())
         model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
         point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
-        if not moved or _cost(runs, point) > hopeless:
+        if not moved:
             break
     if directions is None:
         design = stacked(runs, point, numbers)
@@ -163,6 +159,7 @@ def fit_model(
     moves = directions.matrix[:, directions.shared].any(axis=1)
     where = np.flatnonzero(moves)
     free = [design.columns[index][0] for index in where]
+    costs = Costs(runs, point)
     return ModelFit(
         point,
         tuple(free),
@@ -170,14 +167,8 @@ def fit_model(
         tuple(number for number in shared_of(numbers) if number not in free),
         directions,
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
-        _cost(runs, point),
+        float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
-
-
-def _cost(runs: Concatenated, point: Point) -> float:
-    """Minus two log posterior of a point."""
-    costs = Costs(runs, point)
-    return float((costs(point.variances) + prior_cost(costs, point.variances))[0])
 
 
 def _with_fitted_noise(runs: Concatenated, point: Point) -> Point:

@@ -25,7 +25,6 @@ from scipy.ndimage import (
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -69,7 +68,7 @@ def with_even_stamps(
     if not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
-    if MEDIAN_TO_SIGMA * float(np.median(np.abs(stamps - even))) > rules.EVEN_SPREAD * period:
+    if float(np.std(stamps - even)) > rules.EVEN_SPREAD * period:
         return time
     queued = _queued(even - period * number, period)
     if _read_before(stamps, left[first], right[first], queued > 0.0, period):

@@ -171,10 +171,11 @@ EVEN_SHARE, EVEN_SURE = 0.5, 3.0
 stamps: half way between an uneven timer with true stamps (1) and an even one (0). And standard
 deviations within that range that the slope must have: coarse counts show neither."""
 
-EVEN_SPREAD = 0.5
-"""Scatter of the stamps about the timer (by their median), in periods, from which on there is none.
-Messages that wait anywhere up to a period have 0.37. A program that asks, waits for the answer and
-asks again over a poor radio wanders: it has no timer that knows better than its stamps."""
+EVEN_SPREAD = 1.0
+"""Standard deviation of the stamps about the timer, in periods, from which on there is none: two of
+three messages that wait for the third have half a period, those that a busy recorder let queue up
+for seconds 0.6 (a skid steer's). A program that asks, waits for the answer and asks again over a
+poor radio wanders, by 1.5 (a Neato's): it has no timer that knows better than its stamps."""
 
 EVEN_HALF_BASE = 0.1
 """Half the base [m] of the two virtual wheels of a path by scans: as large as a small robot's, so
