@@ -30,6 +30,7 @@ BENT = 0.02
 """How much a lidar bends what is straight [rad]: its ranges err by some millimetres, at each angle
 by its own, and the dents that a bare wall so gets go with the robot. Of a real Neato's 3 to 4 mm
 (scatter 0.7 mm) the lines had directions of 0.017 rad, and beside a wall it seemed to stand."""
+
 MOST_LEVERAGE = 0.8
 """Largest leverage of an echo that its residual is freed of: one of its own tells nothing."""
 ALIKE = 4
