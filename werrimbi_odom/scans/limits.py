@@ -17,11 +17,12 @@ rejected up to nine tenths of the good matches of a poor lidar (15 mm); one of 0
 Matches while a robot was carried stayed below it."""
 
 FEIGNED = 10.0
-"""Least information on the position in its weakest direction, in units of what the noise of the
-lines' directions feigns there: a bare wall's lines point a little this way and that. Along bare
-corridors and beside a single wall it is 1 to 5 of these (also with a poor lidar of 15 mm, and 4 m
-wide), in corridors with cupboards and doors 10 to 180, in rooms hundreds. A least ratio to the
-strongest direction (0.03) rejected an eighth of the matches in corridors with cupboards."""
+"""Least information on the position in its weakest direction, in units of what the lines'
+directions feign there: those of a bare wall point a little this way and that, by the noise of the
+echoes and by the lidar's own dents (`matching.BENT`). Along bare corridors and beside a single
+wall it is 0.5 to 4 of these (also with a poor lidar of 15 mm, and 4 m wide), in corridors with
+cupboards and doors 10 to 160, in rooms hundreds. A least ratio to the strongest direction (0.03)
+rejected an eighth of the matches in corridors with cupboards."""
 
 LARGEST_SIGMA = 0.01
 """Largest standard deviation of a match [m, rad]. Matches in rooms have 1 to 4 mm, and a match with

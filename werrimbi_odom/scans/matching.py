@@ -26,6 +26,11 @@ MAD = 1.4826
 CAUCHY = 2.0
 """Residual at which an echo has half weight, in standard deviations (Cauchy weights)."""
 
+BENT = 0.02
+"""How much a lidar bends what is straight [rad]: its ranges err by some millimetres, at each angle
+by its own, and the dents that a bare wall so gets go with the robot. Of a real Neato's 3 to 4 mm
+(scatter 0.7 mm) the lines had directions of 0.017 rad, and beside a wall it seemed to stand."""
+
 MOST_LEVERAGE = 0.8
 """Largest leverage of an echo that its residual is freed of: one of its own tells nothing."""
 ALIKE = 4
@@ -44,7 +49,7 @@ class Match:
     information: Floats
     """Information matrix of the pose for unit noise of echoes on usual lines, shape (3, 3)."""
     feigned: Floats
-    """What of that of the position the noise of the lines' directions feigns, shape (2, 2)."""
+    """What of that of the position lines feign that are askew by noise, or bent, shape (2, 2)."""
     aged: Floats
     """That information with each echo counted as many times as its line is key scans old on the
     average, shape (3, 3)."""
@@ -113,7 +118,8 @@ def match(points: Floats, elements: Elements, guess: Floats) -> Match:
     if used >= 3:
         scatter = float(np.sqrt((weight * residual**2).sum() / max(weight.sum() - 3.0, 1.0)))
         covariance = _covariance(design, residual, weight)
-        aside = design[:, [1, 0]] * [-1.0, 1.0] * elements.tilt[nearest[kept], None]
+        askew = np.hypot(elements.tilt[nearest[kept]], BENT)
+        aside = design[:, [1, 0]] * [-1.0, 1.0] * askew[:, None]
         feigned = (aside * weight[:, None]).T @ aside
         aged = (weighted * elements.age[nearest[kept], None]).T @ design
     pose = np.array([x, y, yaw])
