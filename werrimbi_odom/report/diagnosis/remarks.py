@@ -17,6 +17,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
+from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
@@ -240,15 +241,26 @@ def coarse_counters(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
-    """Size of both wheels that is equivalent to a wheel base found from headings alone."""
-    if not diagnosis.runs.headings_alone or "track_width" not in diagnosis.found:
+def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
+    """What looks the same as a size that was found, as the reference's own scale is not known."""
+    runs, found = diagnosis.runs, diagnosis.found
+    by_headings = runs.headings_alone and "track_width" in found
+    if not by_headings and not (runs.own_axes and "wheel_radius_scale" in found):
         return []
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
-    larger = f"{100.0 * abs(size - 1.0):.2g} % {'larger' if size > 1.0 else 'smaller'}"
+    share = f"{100.0 * abs(size - 1.0):.2g} %"
+    if by_headings:
+        larger = "larger" if size > 1.0 else "smaller"
+        return [
+            f"Headings know the wheels' size over the base alone: wheels that are both {share} "
+            f"{larger} than entered look the same to them as that base. A straight line of 10 m "
+            "beside a tape tells."
+        ]
+    if not is_ordinary(size):
+        return []
     return [
-        f"Headings know the wheels' size over the base alone: wheels that are both {larger} than "
-        "entered look the same to them as that base. A straight line of 10 m beside a tape tells."
+        f"A lidar whose ranges are {share} too {'long' if size > 1.0 else 'short'} shows the same: "
+        "a wall at a taped distance, or a straight line of 10 m beside a tape, tells."
     ]
 
 

@@ -169,7 +169,7 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         *_remainder(advised),
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
-        *remarks.by_headings_alone(diagnosis),
+        *remarks.or_the_reference_s_scale(diagnosis),
         *remarks.not_shown(advised),
     ]
 
@@ -201,7 +201,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         if effect is not None:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
-    lines += remarks.by_headings_alone(diagnosis)
+    lines += remarks.or_the_reference_s_scale(diagnosis)
     lines += phrases.cost(advised, rivals[0])
     if (move := advised.manoeuvre) is not None:
         lines.append(f"Why: {move.why}.")
