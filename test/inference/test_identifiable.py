@@ -255,7 +255,7 @@ def test_scans_state_how_well_they_are_matched_and_nothing_of_their_stamps(stamp
     assert figures_of(prepared, NOMINAL).nees == pytest.approx(1.0, abs=0.25)
 
 
-@pytest.mark.parametrize("scans", [True, False])
+@pytest.mark.parametrize("scans", [True, pytest.param(False, marks=pytest.mark.evidence)])
 def test_wheels_that_are_smaller_by_scans_may_be_ranges_that_are_short(scans: bool) -> None:
     """Beyond 3.5 m those of a real Neato grow by 4 % too little."""
     runs = []
