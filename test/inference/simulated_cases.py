@@ -21,7 +21,12 @@ from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
-from werrimbi_odom.inference.diagnosis.uncertainty import as_written, noises_of, with_spread
+from werrimbi_odom.inference.diagnosis.uncertainty import (
+    as_written,
+    noises_of,
+    variances_by_sign,
+    with_spread,
+)
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
 from werrimbi_odom.inference.legs.cutting import match_for_fit
@@ -124,11 +129,13 @@ def stated(case: Case) -> dict[str, tuple[float, float]]:
     runs = concatenated(match_for_fit(case.runs, GIVEN, leg=1.0))
     nothing = tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs)
     drives = FitDrives(runs, nothing, EvaluationOptions())
-    fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all
+    fits = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None)
+    fit = fits.all
     sizes = sizes_needed(fit, GIVEN, ())
     fit = with_sizes(runs, fit, GIVEN, sizes)
     noises = noises_of(runs, as_written(runs, fit, GIVEN))
-    known = with_spread([case.effect], runs, fit, GIVEN, (), sizes, noises)
+    by_sign = variances_by_sign(runs, fits.either.values(), GIVEN, ())
+    known = with_spread([case.effect], runs, fit, GIVEN, (), sizes, noises, by_sign)
     robot = fit.point.model.robot
     found = {name: (float(getattr(robot, name)), std_of(known, name)) for name in MULTIPLIERS}
     found |= {

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +14,13 @@ from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.leg_errors import errors_of, squared_deviation
-from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.likelihood import innovations
+from werrimbi_odom.inference.fitting.likelihood import Innovations, innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match, with_stated_noise
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot()
 NEAR, FAR = (1e-3, 1e-3), (6e-3, 4e-3)
@@ -67,26 +70,33 @@ def on_a_walking_map(seed: int) -> Run:
     return replace(run, name=f"run_{seed}", reference=reference)
 
 
-def test_the_map_that_scans_are_matched_with_walks() -> None:
-    """With independent errors innovations were a tenth larger than stated, and correlated."""
-    robot = GOOD_WHEELS.entered()
-    laid = concatenated([match(on_a_walking_map(seed), robot, leg=0.25) for seed in range(12)])
+def innovations_of(
+    runs: Iterable[Run], robot: Robot, **known: Floats
+) -> tuple[Concatenated, Innovations]:
+    """Short legs of runs with the noise that their poses state, and some that is known."""
+    laid = concatenated([match(run, robot, leg=0.25) for run in runs])
     options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)
     point = start_point(laid, robot, options)
+    variances = replace(point.variances, stamp=np.array([1e-12]), **known)
+    return laid, innovations(robot, laid, predict_all(point.model, laid), variances, "absolute")
+
+
+def of_good_wheels(runs: Iterable[Run]) -> tuple[Concatenated, Innovations]:
+    """The same of wheels that hardly err, and are known to."""
+    robot = GOOD_WHEELS.entered()
     wheels = np.square([robot.left_wheel_noise])
-    variances = replace(point.variances, stamp=np.array([1e-12]), left=wheels, right=wheels)
-    found = innovations(robot, laid, predict_all(point.model, laid), variances, "absolute")
+    return innovations_of(runs, robot, left=wheels, right=wheels)
+
+
+def test_the_map_that_scans_are_matched_with_walks() -> None:
+    """With independent errors innovations were a tenth larger than stated, and correlated."""
+    _, found = of_good_wheels(on_a_walking_map(seed) for seed in range(12))
     assert np.mean(found.whitened()[found.known.all(axis=1)] ** 2) == pytest.approx(1.0, abs=0.09)
 
 
 def test_innovations_are_white_in_every_part_of_a_drive() -> None:
     """With one noise for all poses those of the small room were a fifth of what they should be."""
-    robot = TRUE.entered()
-    laid = concatenated([match(scanned(seed), robot, leg=0.25) for seed in range(4)])
-    options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)
-    point = start_point(laid, robot, options)
-    variances = replace(point.variances, stamp=np.array([1e-12]))
-    found = innovations(robot, laid, predict_all(point.model, laid), variances, "absolute")
+    laid, found = innovations_of((scanned(seed) for seed in range(4)), TRUE.entered())
     white, shares = found.whitened(), laid.shares
     assert shares is not None
     share = shares[1, :, 0, 0]
@@ -127,14 +137,7 @@ def in_a_corridor(seed: int) -> Run:
 
 def test_along_and_across_a_corridor_a_pose_has_its_own_noise() -> None:
     """With one noise for both, innovations across were 0.2 of what was stated."""
-    robot = GOOD_WHEELS.entered()
-    laid = concatenated([match(in_a_corridor(seed), robot, leg=0.25) for seed in range(6)])
-    options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)
-    point = start_point(laid, robot, options)
-    wheels = np.square([robot.left_wheel_noise])
-    variances = replace(point.variances, stamp=np.array([1e-12]), left=wheels, right=wheels)
-    prediction = predict_all(point.model, laid)
-    found = innovations(robot, laid, prediction, variances, "absolute")
+    laid, found = of_good_wheels(in_a_corridor(seed) for seed in range(6))
     heading = laid.start[:, 2]
     for away in (0.4, 0.4 + 0.5 * np.pi):
         ways = np.column_stack([np.cos(away - heading), np.sin(away - heading)])
@@ -143,7 +146,7 @@ def test_along_and_across_a_corridor_a_pose_has_its_own_noise() -> None:
         assert np.mean(seen**2 / stated) == pytest.approx(1.0, abs=0.12)
     white = found.whitened()
     assert np.mean(white[found.known.all(axis=1)] ** 2) == pytest.approx(1.0, abs=0.08)
-    model = replace(point.model, robot=robot)
+    model = start_point(laid, GOOD_WHEELS.entered()).model
     told = errors_of(model, laid, ALONG, NEAR[1])
     off = squared_deviation(told.error, told.covariance)
     assert np.mean(off) / 3.0 == pytest.approx(1.0, abs=0.1)

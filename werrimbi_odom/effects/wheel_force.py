@@ -21,5 +21,5 @@ TURNING = Parameter(
     tries=(1.0,),
     refines=True,
 )
-"""1 where the masses stand over the wheels, 0.3 to 0.8
-where they stand between them, more on a body that is longer than the base: 3.3 at three times."""
+"""1 where the masses stand over the wheels, 0.3 to 0.8 where they stand between them, more on a
+body that is longer than the base: 3.3 at three times."""

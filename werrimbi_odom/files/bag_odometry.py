@@ -37,9 +37,10 @@ _ASIDE = 0.3
 """Sideways part of a step that goes sideways: 17 degrees. Made of two wheels it is zero."""
 _OFTEN = 0.1
 """Share of such steps; where the poses are set back to an origin there is one."""
-_OTHER_HEADING = 1.5
-"""Most that a driver's heading of a step is off from its middle, in turns of that step: half where
-it takes that of the step's begin or end; the Neato's adds the turn to the wrong side as well."""
+_OTHER_HEADING = 1.65
+"""Most that a driver's heading of a step is off from its middle, in turns of that step, and a tenth
+more: half where it takes that of the step's begin or end; 1.5 with the Neato's, which adds the turn
+to the wrong side as well."""
 _ORIGIN = 1e-6
 """Place [m] and heading [rad] up to which a pose is the origin."""
 _LEAPS = 10.0
@@ -173,12 +174,15 @@ def _along_own_heading(steps: NDArray[np.complex128], turns: Floats) -> NDArray[
 
     Where messages are lost the turn of a step is large, and so is how far it seems to go sideways.
     """
+    if not steps.size:
+        return steps
     ahead = np.angle(np.where(steps.real < 0.0, -steps, steps))
-    large = np.ones(steps.size, dtype=bool)
-    for size in (np.abs(steps), np.abs(turns)):
-        large &= size > _SLOW * np.quantile(size, 0.9) if size.size else False
+    goes, turning = (
+        size > _SLOW * np.quantile(size, 0.9) for size in (np.abs(steps), np.abs(turns))
+    )
+    large = goes & turning
     off = float(np.median(ahead[large] / turns[large])) if large.any() else 0.0
-    return steps * np.exp(-1j * off * turns) if abs(off) < 1.1 * _OTHER_HEADING else steps
+    return steps * np.exp(-1j * off * turns) if abs(off) < _OTHER_HEADING else steps
 
 
 def _set_back(x: Floats, y: Floats, yaw: Floats) -> NDArray[np.bool_]:

@@ -236,11 +236,7 @@ def _with_effects(block: dict[str, Any], effects: Sequence[AppliedEffect]) -> di
 
 def _stated(known: Mapping[str, float], declared: Mapping[str, Parameter]) -> dict[str, float]:
     """Values of a new block: all but what refines a law, where that is not refined."""
-    return {
-        name: value
-        for name, value in known.items()
-        if not (declared[name].refines and value == declared[name].null)
-    }
+    return {name: value for name, value in known.items() if not declared[name].is_unrefined(value)}
 
 
 def _needed(

@@ -67,6 +67,10 @@ class Parameter:
         """Largest distance from null that is physically possible."""
         return max(abs(bound - self.null) for bound in self.bounds)
 
+    def is_unrefined(self, value: float) -> bool:
+        """Whether it would refine its law, and has the value of the law without it."""
+        return self.refines and value == self.null
+
     def combined(self, one: float, more: float) -> float:
         """Combine two successive values of the parameter: factors multiply, others add.
 

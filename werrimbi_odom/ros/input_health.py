@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -23,6 +23,7 @@ _OTHERS = 8
 OF_POSE, NOT_LEARNT = "refused set_pose", "not learnt from"
 _REFUSED = {"refused": "input refused", OF_POSE: "set_pose refused", NOT_LEARNT: NOT_LEARNT}
 """What is rejected, as it is counted and as it is logged."""
+_BY_CAUSE = tuple(f"{what}: " for what in _REFUSED)
 _WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock jumps", "out of order", "gaps")
 _UNUSABLE = {
     "duplicates": "their stamps stand still",
@@ -141,15 +142,16 @@ class Health:
                 for event, count in tally.as_dict().items()
                 if event not in ("messages", "accepted")
             },
-            **{
-                key: number
-                for what, tally in self._refused.items()
-                for key, number in (
-                    *([(what, tally.total())] if what != NOT_LEARNT else []),
-                    *((f"{what}: {cause}", n) for cause, n in tally.items()),
-                )
-            },
+            **dict(self._rejections()),
         }
+
+    def _rejections(self) -> Iterator[tuple[str, int]]:
+        """Names and counts: of each kind in all, and by cause."""
+        for what, tally in self._refused.items():
+            if what != NOT_LEARNT:
+                yield what, tally.total()
+            for cause, count in tally.items():
+                yield f"{what}: {cause}", count
 
     def _verdict(
         self, now: float, new: Mapping[str, int], wrong: Sequence[str]
@@ -176,7 +178,7 @@ class Health:
         refusals = [
             f"{key.removeprefix('refused: ')} ({n})"
             for key, n in new.items()
-            if n > 0 and ": " in key
+            if n > 0 and key.startswith(_BY_CAUSE)
         ]
         # One message more than answered is normal: the first one only starts an interval.
         unanswered = (a - b for a, b in zip(self._heard, self._answered, strict=True))

@@ -14,6 +14,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import base_told, sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.forward_selection import tried_with
 from werrimbi_odom.inference.diagnosis.p_values import chance
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
@@ -100,7 +101,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
 
 def _other_sign(diagnosis: Diagnosis, name: str, parameter: str) -> tuple[float, float] | None:
     """Value and standard deviation of a parameter in the fit of the other sign, if there is one."""
-    tried = _tried_with(diagnosis, name)
+    tried = tried_with(diagnosis.rounds, name)
     return of_other_sign(tried[-1] if tried else None, name, parameter)
 
 
@@ -152,16 +153,11 @@ def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
     return next(
         (
             fit
-            for fit in (diagnosis.told, *_tried_with(diagnosis, name))
+            for fit in (diagnosis.told, *tried_with(diagnosis.rounds, name))
             if any(item.name == name for item in fit.point.model.robot.effects)
         ),
         None,
     )
-
-
-def _tried_with(diagnosis: Diagnosis, name: str) -> list[Fitted]:
-    """The fits in which an effect was the newest, round by round."""
-    return [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
 
 
 def of_other_sign(fit: Fitted | None, name: str, parameter: str) -> tuple[float, float] | None:

@@ -61,6 +61,11 @@ class Round:
     """Number of candidates scored."""
 
 
+def tried_with(rounds: Sequence[Round], name: str) -> list[Fitted]:
+    """The fits in which an effect was the newest, round by round."""
+    return [fit for this in rounds for fit in this.tried if fit.names[-1] == name]
+
+
 def fit_calibration(
     runs: Concatenated, robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Fitted:

@@ -324,21 +324,19 @@ def refined(runs: Concatenated, fit: Fitted, given: Robot) -> Fitted:
     """
     there = {number.name for number in fit.numbers}
     held = [applied.effect for applied in fit.point.model.robot.effects]
-    more = [
-        number
+    freed = [
+        (effect, [number for number in parameters_to_fit(effect) if number.refines])
         for effect in ([fit.newest] if fit.names else held)
-        for number in parameters_to_fit(effect)
-        if number.refines and number.name not in there
     ]
+    more = [number for _, own in freed for number in own if number.name not in there]
     if not more:
         return fit
     wider = fitted(runs, fit.point, fit.names, (*fit.numbers, *more), given)
-    own = [number.name for number in more]
-    rises = []
-    for applied in wider.point.model.robot.effects:
-        asked = [key for key in applied.values if f"{applied.name}.{key}" in own]
-        rises.append(_wald(applied.effect, asked, wider.design, wider.covariance, wider.point)[0])
-    pays = sum(rises) > wider.penalty_of_one * len(more) and wider.total < fit.total
+    rise = 0.0
+    for effect, own in freed:
+        asked = [number.name.rpartition(".")[2] for number in own if number in more]
+        rise += _wald(effect, asked, wider.design, wider.covariance, wider.point)[0]
+    pays = rise > wider.penalty_of_one * len(more) and wider.total < fit.total
     return wider if pays else fit
 
 

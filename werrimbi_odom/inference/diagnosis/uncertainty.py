@@ -70,7 +70,7 @@ def with_spread(
     wanted: Collection[str],
     sizes: FreeSizes,
     noises: Mapping[str, NoiseEstimate],
-    by_sign: Mapping[str, float] = {},
+    by_sign: Mapping[str, float],
 ) -> Fitted:
     """The fit with standard deviations that allow for all choices made on the same drives.
 

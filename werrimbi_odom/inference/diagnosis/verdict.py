@@ -24,7 +24,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
     with_sizes,
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
+from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round, tried_with
 from werrimbi_odom.inference.diagnosis.holdout import Begun
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
@@ -250,7 +250,6 @@ def _with_spread(
     effects = [applied_of(told.point.model.robot.effects, name).effect for name in told.names]
     noises = noises_of(laid, as_written(laid, told, given))
     wanted = sizes_among(found, told)
-    tried = {fit.names[-1]: fit for this in rounds for fit in this.tried}
-    either = (tried[name] for name in told.names if name in tried)
+    either = [fit for name in told.names for fit in tried_with(rounds, name)[-1:]]
     by_sign = variances_by_sign(laid, either, given, wanted)
     return with_spread(effects, laid, told, given, wanted, sizes, noises, by_sign)

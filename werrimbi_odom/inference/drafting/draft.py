@@ -179,8 +179,7 @@ def _forms(
         yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell)
         return
     seen = seen_as(variable)
-    if seen is None:
-        return
+    assert seen is not None  # by `_has_a_form`
     coefficients = np.abs(cell.coefficients)
     size = float(np.median(coefficients[coefficients > 0.0])) if coefficients.any() else 1e-3
     for form in forms_of(seen, cell.amount, rounded(max(size, 1e-7))):

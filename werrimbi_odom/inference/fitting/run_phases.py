@@ -87,7 +87,7 @@ def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Free
         as_usual = {
             f"{applied.name}.{name}"
             for name, item in applied.effect.parameters.items()
-            if item.refines and applied.values[name] == item.null
+            if item.is_unrefined(applied.values[name])
         }
         own = parameters_to_fit(applied.effect, shared)
         numbers += (number for number in own if number.name not in as_usual)
