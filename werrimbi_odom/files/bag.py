@@ -62,10 +62,7 @@ class Bag:
     def messages(self, topics: Sequence[str]) -> Iterator[BagMessage]:
         """Yield the messages of some topics, in order of recording.
 
-        Raises
-        ------
-        InputError
-            If a message cannot be read.
+        InputError if a message cannot be read.
         """
         try:
             for raw in self._raw(topics):
@@ -98,12 +95,8 @@ class Bag:
 def opened_bag(path: Path) -> Iterator[Bag]:
     """Open a bag; it is closed at the end.
 
-    A truncated bag is read up to the cut, and its `damage` says so.
-
-    Raises
-    ------
-    InputError
-        If rosbags is not installed, or the bag cannot be opened.
+    A truncated bag is read up to the cut, and its `damage` says so. InputError if rosbags is not
+    installed, or the bag cannot be opened.
     """
     echoed = [] if path.is_dir() and _files(path) else echoed_files(path)
     if echoed:

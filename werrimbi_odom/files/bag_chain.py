@@ -69,10 +69,7 @@ class ChainCollector:
     def reference(self) -> Collected:
         """The reference, and its frames in words.
 
-        Raises
-        ------
-        InputError
-            If the transforms were never available at the same time.
+        InputError if the transforms were never available at the same time.
         """
         moved = [self._moved(edge) for edge in self._chain.steps]
         time = self._stamps(moved)
@@ -194,10 +191,7 @@ class MountingCollector:
     def mount(self, place: str) -> Mount:
         """Pose of the sensor on the base.
 
-        Raises
-        ------
-        InputError
-            If it is not level, or a transform is invalid.
+        InputError if it is not level, or a transform is invalid.
         """
         from scipy.spatial.transform import Rotation
 

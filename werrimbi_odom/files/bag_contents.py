@@ -113,13 +113,9 @@ class Contents:
 def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     """Analyse an open bag.
 
-    Parameters
-    ----------
-    base
-        The robot's frame, as `base_frame_id` of its file; "" to detect it by name.
-    choosing
-        Whether a reference still has to be chosen. References that contain odometry are then placed
-        last; detecting them takes another pass over their messages.
+    `base`: the robot's frame, as `base_frame_id` of its file; "" to detect it by name. `choosing`:
+    whether a reference still has to be chosen. References that contain odometry are then placed
+    last; detecting them takes another pass over their messages.
     """
     edges = EdgeCollector()
     names = [each.name for each in bag.topics if each.kind in TRANSFORMS]

@@ -187,20 +187,10 @@ def wheel_names(robot_file: RobotFile, side: str) -> tuple[str, ...]:
 def side_counts(counts: Floats, per_revolution: float, bits: int) -> Floats:
     """Mean counter of a side's wheels, with wraps and resets handled per wheel.
 
-    Parameters
-    ----------
-    counts : ndarray, shape (n, wheels)
-    per_revolution : float
-        Counts per turn.
-    bits : int
-        Width at which the counters wrap; 0: they do not wrap.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        NaN where any wheel's count is not finite. If a single wheel falls to near zero (its driver
-        restarted), it is assumed to have rolled like the others. If all of them fall, the mean
-        falls too, and the encoder model detects the reset.
+    `counts` (n, wheels). `per_revolution`: counts per turn. `bits`: width at which the counters
+    wrap; 0: they do not wrap. Result (n,): NaN where any wheel's count is not finite. If a single
+    wheel falls to near zero (its driver restarted), it is assumed to have rolled like the others.
+    If all of them fall, the mean falls too, and the encoder model detects the reset.
     """
     if counts.shape[1] == 1:
         return counts[:, 0]

@@ -76,10 +76,7 @@ class LidarCollector:
     def reference(self) -> Collected:
         """The reference, its description in words, and where it is cut.
 
-        Raises
-        ------
-        InputError
-            If the scans do not determine the robot's path.
+        InputError if the scans do not determine the robot's path.
         """
         found = self._matcher.path()
         if found.time.size == 0:

@@ -70,10 +70,7 @@ class ReferenceCollector:
     def reference(self) -> Collected:
         """The reference, and its frames in words.
 
-        Raises
-        ------
-        InputError
-            If nothing was measured, or there are several frames and none is named.
+        InputError if nothing was measured, or there are several frames and none is named.
         """
         parent, child = self._frames()
         table, mounted = np.array(self._found[parent, child]).reshape(-1, 6), ""
@@ -226,18 +223,9 @@ def east_and_north(
 ) -> tuple[Floats, Floats]:
     """Project to metres east and north of the first fix, in the tangent plane of the ellipsoid.
 
-    Parameters
-    ----------
-    place
-        Location of the data, for error messages.
-    latitude, longitude, altitude : ndarray, shape (n,)
-        WGS 84 [degrees, degrees, m]; NaN without a fix. If only the altitude is NaN, the first
-        known altitude is used.
-
-    Raises
-    ------
-    InputError
-        If pyproj is not installed.
+    `place`: location of the data, for error messages. `latitude`, `longitude`, `altitude` (n,): WGS
+    84 [degrees, degrees, m]; NaN without a fix. If only the altitude is NaN, the first known
+    altitude is used. InputError if pyproj is not installed.
     """
     fixed = np.isfinite(latitude) & np.isfinite(longitude)
     x, y = np.full(latitude.size, np.nan), np.full(latitude.size, np.nan)

@@ -47,15 +47,8 @@ KINDS = {
 def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Wheels:
     """Choose the requested source, or the only one; the firmware's odometry as a last resort.
 
-    Parameters
-    ----------
-    wish : str, optional
-        A topic, or LEFT,RIGHT for two.
-
-    Raises
-    ------
-    InputError
-        If there is none, or several; the message lists them.
+    `wish`: a topic, or LEFT,RIGHT for two. InputError if there is none, or several; the message
+    lists them.
     """
     if wish is not None:
         return wished_ticks(held, wish)
@@ -82,10 +75,7 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
 def wished_ticks(held: Contents, wish: str) -> Wheels:
     """Find the requested source: a topic, or LEFT,RIGHT for two.
 
-    Raises
-    ------
-    InputError
-        If it contains no ticks; the message lists the sources.
+    InputError if it contains no ticks; the message lists the sources.
     """
     wished = tuple("/" + name.strip().strip("/") for name in wish.split(","))
     found = [topic for name in wished for topic in held.topics if topic.name == name]

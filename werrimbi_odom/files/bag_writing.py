@@ -15,10 +15,7 @@ from werrimbi_odom.errors import InputError
 def known_types() -> Any:
     """Type store of rosbags; the first call takes a second.
 
-    Raises
-    ------
-    InputError
-        If rosbags is not installed.
+    InputError if rosbags is not installed.
     """
     try:
         from rosbags.typesys import Stores, get_typestore
@@ -30,15 +27,8 @@ def known_types() -> Any:
 class BagWriter:
     """A bag being written.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the bag; must not exist.
-
-    Raises
-    ------
-    InputError
-        If rosbags is not installed, or the folder cannot be written.
+    `folder`: folder of the bag; must not exist. InputError if rosbags is not installed, or the
+    folder cannot be written.
     """
 
     def __init__(self, folder: Path) -> None:

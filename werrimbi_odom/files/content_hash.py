@@ -29,13 +29,7 @@ def files_of(path: Path) -> Iterator[Path]:
 
 
 def mark_of(paths: Iterable[Path], *words: str) -> str:
-    """Hash the files of some paths, and some words.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be read.
-    """
+    """Hash the files of some paths, and some words; OSError if a file cannot be read."""
     digest = hashlib.sha256("\0".join(words).encode())
     for path in paths:
         for file in files_of(path):

@@ -23,10 +23,7 @@ _MULTIPLIERS = (
 def of_controller(path: Path) -> FirstRobot:
     """Wheels of a diff_drive_controller, from a parameter file that may contain other nodes too.
 
-    Raises
-    ------
-    InputError
-        If the file is unreadable, or no node has a wheel separation and a radius.
+    InputError if the file is unreadable, or no node has a wheel separation and a radius.
     """
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError

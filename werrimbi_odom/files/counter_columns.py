@@ -46,10 +46,7 @@ goes half its base a radian: 40 mm for the smallest."""
 def what_counters_hold(ticks: Ticks, reference: Reference, bits: int) -> str:
     """What is wrong with a run's counters and how to convert them; "" if nothing is.
 
-    Parameters
-    ----------
-    bits : int
-        Width at which the robot file says that they wrap; 0 if they do not.
+    `bits`: width at which the robot file says that they wrap; 0 if they do not.
     """
     windows = _windows(ticks, reference)
     words = "" if windows is None else _no_totals(windows) or _no_signs(ticks, windows)
@@ -126,10 +123,7 @@ def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
 def _related(one: Floats, other: Floats, without: int = 0) -> float:
     """Correlation where both are known; 0 if there are too few values, or none varies.
 
-    Parameters
-    ----------
-    without : int
-        Number of the most influential values that are left out.
+    `without`: number of the most influential values that are left out.
     """
     known = np.isfinite(one) & np.isfinite(other)
     if without and np.count_nonzero(known) > without:

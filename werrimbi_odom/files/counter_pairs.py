@@ -13,12 +13,8 @@ class Pairing:
 
     A count is paired with the other wheel's waiting one; a later count that is closer in time
     replaces it. So pairing that is off by one message, after a lost one, corrects itself. A count
-    without a partner is dropped; the next one contains its motion.
-
-    Parameters
-    ----------
-    window : int
-        Largest time between the two counts of one reading [ns].
+    without a partner is dropped; the next one contains its motion. `window`: largest time between
+    the two counts of one reading [ns].
     """
 
     def __init__(self, window: int) -> None:
@@ -37,12 +33,7 @@ class Pairing:
     def take(self, side: int, value: int, arrival: int) -> tuple[int, int] | None:
         """Add a count; return the left and the right count if it has a partner.
 
-        Parameters
-        ----------
-        side : int
-            0 for left, 1 for right.
-        arrival : int
-            [ns]
+        `side`: 0 for left, 1 for right. `arrival`: [ns].
         """
         self.unpaired += self._newest[side].waits
         count = self._newest[side] = _Count(value, arrival)

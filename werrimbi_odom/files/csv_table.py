@@ -69,15 +69,8 @@ class CsvTable:
     def refuse_where(self, name: str, wrong: Callable[[str], str]) -> None:
         """Raise on the first invalid cell of a column.
 
-        Parameters
-        ----------
-        wrong : callable
-            Takes a cell's text and returns what is wrong with it; "" if nothing is.
-
-        Raises
-        ------
-        InputError
-            At the first invalid cell, with its line and column.
+        `wrong`: takes a cell's text and returns what is wrong with it; "" if nothing is. InputError
+        at the first invalid cell, with its line and column.
         """
         place = self.names.index(name)
         for line, cells in _rows(self.path, self.cut):
@@ -89,17 +82,9 @@ class CsvTable:
 def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> CsvTable:
     """Read a CSV file of numbers whose first line names the columns, in any order.
 
-    An incomplete last line without a line end (from a power failure) is skipped.
-
-    Parameters
-    ----------
-    filled
-        Columns without empty cells.
-
-    Raises
-    ------
-    InputError
-        If the file is not valid; the message names line, column and content.
+    An incomplete last line without a line end (from a power failure) is skipped. `filled`: columns
+    without empty cells. InputError if the file is not valid; the message names line, column and
+    content.
     """
     try:
         _refuse_too_large(path)

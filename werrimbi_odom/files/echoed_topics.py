@@ -106,10 +106,7 @@ def echoed_topic(file: Path) -> EchoedTopic:
 def echoed_messages(topics: Sequence[EchoedTopic]) -> Iterator[Raw]:
     """Yield the messages of some topics, in order of receipt; `data` is the message itself.
 
-    Raises
-    ------
-    InputError
-        At a time that is none.
+    InputError at a time that is none.
     """
     return merge(*map(_messages, topics), key=attrgetter("received"))
 

@@ -39,10 +39,7 @@ class Named:
     def take(self, key: str, value: object) -> None:
         """Add the value of ``effect.parameter``.
 
-        Raises
-        ------
-        InputError
-            If there is no such parameter, or the value is invalid for it.
+        InputError if there is no such parameter, or the value is invalid for it.
         """
         name, _, parameter = key.partition(".")
         effect = self.listed(name)
@@ -56,10 +53,7 @@ class Named:
     def listed(self, name: str) -> Effect:
         """The effect of a block.
 
-        Raises
-        ------
-        InputError
-            If the list of effects does not contain it; the message says what to do.
+        InputError if the list of effects does not contain it; the message says what to do.
         """
         for effect in self.effects:
             if effect.name == name:
@@ -92,17 +86,8 @@ class Named:
 def named_effects(names: object, find: Find | None = None) -> Named:
     """Read a list of effect names.
 
-    Parameters
-    ----------
-    names : object
-        Value of ``effects:``; None if it is empty.
-    find : callable, optional
-        Default: the library and installed packages.
-
-    Raises
-    ------
-    InputError
-        If it is not a list of names, or a name is unknown or repeated.
+    `names`: value of ``effects:``; None if it is empty. `find`: default: the library and installed
+    packages. InputError if it is not a list of names, or a name is unknown or repeated.
     """
     if names is None:
         return Named(())

@@ -96,10 +96,7 @@ def with_driver(first: FirstRobot, kind: str) -> FirstRobot:
 def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:
     """Add the steps of the wheels' angles per turn, if they are visible.
 
-    Parameters
-    ----------
-    angles
-        Angles of the left and the right wheel, shape (n,) each [rad].
+    `angles`: angles of the left and the right wheel, shape (n,) each [rad].
     """
     moved = [np.diff(each) for each in angles]
     steps = _steps_of_a_turn(np.abs(np.concatenate(moved)))

@@ -158,17 +158,10 @@ def chain(edges: Sequence[Edge], parent: str, child: str) -> Chain | None:
 def chains_to_base(edges: Sequence[Edge], base: str) -> list[Chain]:
     """Chains from a fixed frame to the robot's base, the longest first.
 
-    Parameters
-    ----------
-    base
-        Frame of the robot; "" for the usual names (base_link, base_footprint).
-
-    Returns
-    -------
-    list of Chain
-        One from every frame above the base, with at least one transform that is not static. If no
-        frame has the name of a base: each moving transform alone, except the robot's own joints
-        from robot_state_publisher, which hang from its base or only rotate.
+    `base`: frame of the robot; "" for the usual names (base_link, base_footprint). Result: one from
+    every frame above the base, with at least one transform that is not static. If no frame has the
+    name of a base: each moving transform alone, except the robot's own joints from
+    robot_state_publisher, which hang from its base or only rotate.
     """
     children = {edge.child for edge in edges}
     bases = [base] if base in children else sorted(filter(is_base, children))

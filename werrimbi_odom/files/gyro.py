@@ -25,18 +25,9 @@ _SIDES = ("x", "y", "z")
 def yaw_rate(rates: Floats, forces: NDArray[np.float64]) -> tuple[Floats, str]:
     """Rotation rate about the vertical, as given by the accelerometer.
 
-    Parameters
-    ----------
-    rates : ndarray, shape (n, 3)
-        Rates of the gyro [rad/s].
-    forces : ndarray, shape (m, 3)
-        Specific forces of the accelerometer [m/s^2]; m may be 0.
-
-    Returns
-    -------
-    (yaw rate (n,), words)
-        Rate about the z axis if that is vertical or the vertical is unknown. The words are the end
-        of a sentence; "" if there is nothing to say.
+    `rates` (n, 3): rates of the gyro [rad/s]. `forces` (m, 3): specific forces of the accelerometer
+    [m/s^2]; m may be 0. Result: rate about the z axis if that is vertical or the vertical is
+    unknown. The words are the end of a sentence; "" if there is nothing to say.
     """
     known = forces[np.isfinite(forces).all(axis=1)]
     if len(known) < _FEWEST:

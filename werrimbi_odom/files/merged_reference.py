@@ -39,25 +39,11 @@ def merged(
 ) -> tuple[Reference, str]:
     """Combine positions of one reference with the headings of the other.
 
-    Parameters
-    ----------
-    place
-        Location of the data, for error messages.
-    cuts
-        From the last pose of a segment to the first of the next [s], if the positions are in
-        segments. The heading is aligned with each segment separately, with a common drift.
-
-    Returns
-    -------
-    reference
-        At the stamps of the positions; headings only within the gyro's time span.
-    told : str
-        Description of the alignment.
-
-    Raises
-    ------
-    InputError
-        Unless one reference has positions and headings and the other only headings.
+    `place`: location of the data, for error messages. `cuts`: from the last pose of a segment to
+    the first of the next [s], if the positions are in segments. The heading is aligned with each
+    segment separately, with a common drift. Result: at the stamps of the positions; headings only
+    within the gyro's time span. Then a description of the alignment. InputError unless one
+    reference has positions and headings and the other only headings.
     """
     alone = [each for each in (first, second) if not each.has_position.any()]
     whole = [each for each in (first, second) if each.has_position.any()]
@@ -109,12 +95,7 @@ def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> 
     """Apply a common scale to the gyros' headings, if some drives together determine it.
 
     The gyro is the same in all drives. From a single drive, its scale is only as good as the other
-    reference's drift allows.
-
-    Parameters
-    ----------
-    of
-        Drives that determine the scale; the others are not used for it.
+    reference's drift allows. `of`: drives that determine the scale; the others are not used for it.
     """
     told = [each.gyro for each in of if each.gyro is not None]
     weights = np.array([each.std**-2 for each in told])

@@ -51,11 +51,8 @@ FAR, FAR_STEPS = 0.05, 20.0
 def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     """Check the meaning of a run's columns by its data.
 
-    Raises
-    ------
-    InputError
-        If the times are not in seconds or are rounded, the counters are no running, signed totals,
-        the yaw is no heading, or it turns the other way round than the path.
+    InputError if the times are not in seconds or are rounded, the counters are no running, signed
+    totals, the yaw is no heading, or it turns the other way round than the path.
     """
     assert run.reference is not None
     words = (

@@ -46,10 +46,7 @@ class NodeParameter:
     def checked(self, value: object) -> Value:
         """Convert a value to this parameter's type.
 
-        Raises
-        ------
-        InputError
-            If type or range is wrong; the message names the parameter and the remedy.
+        InputError if type or range is wrong; the message names the parameter and the remedy.
         """
         if self.kind in ("float", "integer"):
             return self._checked_number(value)

@@ -58,10 +58,7 @@ def remark_on(names: Iterable[str], whose: str = DIFF_DRIVE) -> tuple[str, ...]:
 def translated(block: Mapping[Any, Any]) -> dict[str, Any]:
     """Geometry from TurtleBot3's `wheels`, under our names; empty for other files.
 
-    Parameters
-    ----------
-    block
-        All parameters of a node.
+    `block`: all parameters of a node.
     """
     wheels = block.get(TURTLEBOT)
     if not isinstance(wheels, Mapping):

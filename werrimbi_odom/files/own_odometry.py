@@ -39,12 +39,8 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     """Reason why poses are probably computed from the wheels; "" if names do not suggest it.
 
-    Parameters
-    ----------
-    topic, kind
-        Topic and message type; "" for a transform.
-    parent, child
-        Their frames, as far as known.
+    `topic`, `kind`: topic and message type; "" for a transform. `parent`, `child`: their frames, as
+    far as known.
     """
     if _words(topic, parent, child) & SENSORS:
         return ""

@@ -193,10 +193,7 @@ def defaults() -> dict[str, Value]:
 def find(name: str) -> NodeParameter:
     """The parameter with this name.
 
-    Raises
-    ------
-    InputError
-        For an unknown name; the message suggests the closest known one.
+    InputError for an unknown name; the message suggests the closest known one.
     """
     for item in PARAMETERS:
         if item.name == name:
@@ -245,19 +242,9 @@ def limits_of(values: Mapping[str, Value]) -> EncoderLimits:
 def virtual_ticks(values: Mapping[str, Value], given: Container[str]) -> dict[str, Value]:
     """Counts of a turn where none are given and none are needed, else nothing.
 
-    Where wheel positions are in radians, counts of a turn are only their resolution.
-
-    Parameters
-    ----------
-    values : mapping of str to Value
-        All parameters known so far, defaults included.
-    given : container of str
-        Names of the parameters that are given, well or badly.
-
-    Raises
-    ------
-    InputError
-        If positions are to be wrapped at a number of counts.
+    Where wheel positions are in radians, counts of a turn are only their resolution. `values`: all
+    parameters known so far, defaults included. `given`: names of the parameters that are given,
+    well or badly. InputError if positions are to be wrapped at a number of counts.
     """
     radians = values["input_type"] == "joint_state" and values["position_unit"] == "radians"
     if not radians or any(name in given for name in TICKS):

@@ -52,16 +52,9 @@ def read_run(
 ) -> Run:
     """Read a run; see `read_run_folder` and `read_run_bag`. Topics apply to bags only.
 
-    Parameters
-    ----------
-    reference : path, optional
-        Separate recording of the reference of this drive: another bag, or a folder with
-        reference.csv.
-
-    Raises
-    ------
-    InputError
-        If there is no run at `path`, or it is not usable; the message gives place and cause.
+    `reference`: separate recording of the reference of this drive: another bag, or a folder with
+    reference.csv. InputError if there is no run at `path`, or it is not usable; the message gives
+    place and cause.
     """
     own = reference_topic if reference is None else NONE
 
@@ -105,10 +98,7 @@ def read_run(
 def bag_at(path: Path) -> Path | None:
     """The bag of a run; None for a folder with ticks.csv.
 
-    Raises
-    ------
-    InputError
-        If there is no run at `path`.
+    InputError if there is no run at `path`.
     """
     found: Path | None = _of_kind(path, lambda folder: None, lambda bag: bag, TICKS)
     return found

@@ -110,15 +110,7 @@ class Recordings:
 def read(asked: Asked, collection: Collection, show: Show = silent) -> Recordings:
     """Read robot file and runs.
 
-    Parameters
-    ----------
-    collection
-        Effects that the robot file may name.
-
-    Raises
-    ------
-    InputError
-        If an input is not usable.
+    `collection`: effects that the robot file may name. InputError if an input is not usable.
     """
     source = read_robot_file(asked.robot, effects=collection)
     return gathered(source, collection, asked.runs, asked.holdout, asked.how, show)
@@ -134,10 +126,7 @@ def gathered(
 ) -> Recordings:
     """Collect the drives of a robot; paths are read.
 
-    Raises
-    ------
-    InputError
-        If an input is not usable, or a drive is given twice.
+    InputError if an input is not usable, or a drive is given twice.
     """
     drives = [*runs, *holdout]
     references: Sequence[Path | None] = how.references or [None] * len(drives)
@@ -207,10 +196,7 @@ def _read(path: Path, source: RobotFile, how: DriveOptions, reference: Path | No
 def refuse_twice(paths: Iterable[Path]) -> None:
     """Raise on a repeated drive, which would make every result too precise.
 
-    Raises
-    ------
-    InputError
-        If two paths lead to the same drive.
+    InputError if two paths lead to the same drive.
     """
     seen: set[str] = set()
     for path in paths:

@@ -40,21 +40,10 @@ def choose_reference(
     """Choose the requested reference, or the only independent one; None if there is none.
 
     A reference computed from the wheels is used if requested, or if there is no other. Whether it
-    is acceptable is also tested on its values; see `Measured.independent`.
-
-    Parameters
-    ----------
-    wheels
-        Source of wheel data, which is not a reference.
-    wish : str, optional
-        TOPIC, TOPIC:CHILD_FRAME, /tf:PARENT:CHILD, or `none`.
-    force : bool
-        Accept a localiser's correction as poses of the robot.
-
-    Raises
-    ------
-    InputError
-        If the requested topic does not exist, or there are several; the message lists them.
+    is acceptable is also tested on its values; see `Measured.independent`. `wheels`: source of
+    wheel data, which is not a reference. `wish`: TOPIC, TOPIC:CHILD_FRAME, /tf:PARENT:CHILD, or
+    `none`. `force`: accept a localiser's correction as poses of the robot. InputError if the
+    requested topic does not exist, or there are several; the message lists them.
     """
     if wish == NONE:
         return None

@@ -35,19 +35,9 @@ def read_results(
 ) -> ResultsTable:
     """Read the named columns of a comma-separated table with a header line.
 
-    Other columns, empty lines, and lines that begin with `#` are ignored.
-
-    Parameters
-    ----------
-    numbers : sequence of str
-        Columns of finite numbers.
-    word, choices
-        A column with one of these words, in any case.
-
-    Raises
-    ------
-    InputError
-        Names file, line, column, and the remedy.
+    Other columns, empty lines, and lines that begin with `#` are ignored. `numbers`: columns of
+    finite numbers. `word`, `choices`: a column with one of these words, in any case. InputError
+    names file, line, column, and the remedy.
     """
     path = Path(path)
     wanted = [*([word] if word else []), *numbers]

@@ -84,10 +84,8 @@ class RobotFile:
     def refuse_counts(self, what: str | Path) -> None:
         """Check that the counts per turn are known.
 
-        Raises
-        ------
-        InputError
-            If only positions in radians can be used with this file, and `what` contains counts.
+        InputError if only positions in radians can be used with this file, and `what` contains
+        counts.
         """
         if self.values[TICKS[0]] == VIRTUAL_TICKS_PER_REVOLUTION:
             raise InputError(
@@ -109,18 +107,9 @@ class RobotFile:
 def read_robot_file(path: str | Path, effects: Collection | None = None) -> RobotFile:
     """Read a robot file.
 
-    Parameters
-    ----------
-    path : path
-        Path of a YAML file in UTF-8, at most one megabyte.
-    effects : Collection, optional
-        Collection in which effects are looked up; default: the library and installed packages. A
-        robot file never names code.
-
-    Raises
-    ------
-    InputError
-        If it is not usable; the message names file, line, parameter, and the remedy.
+    `path`: path of a YAML file in UTF-8, at most one megabyte. `effects`: collection in which
+    effects are looked up; default: the library and installed packages. A robot file never names
+    code. InputError if it is not usable; the message names file, line, parameter, and the remedy.
     """
     path = Path(path)
     text = read_small_text(

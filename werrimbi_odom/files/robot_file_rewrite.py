@@ -28,29 +28,12 @@ def write_robot_file(
 ) -> RobotFile:
     """Write a robot file with some values changed; comments and order are kept.
 
-    Parameters
-    ----------
-    source : RobotFile
-        Need not exist on disk any more: its text is stored.
-    changes : mapping
-        New values by parameter name; parameters missing in the source are added.
-    out : path
-        May be the source's own path, with `force`.
-    force : bool
-        Whether an existing `out` may be overwritten.
-    effects : sequence of AppliedEffect, optional
-        All effects of the new file, in order of application; default: those of the source. Unknown
-        parameters (per run) are omitted.
-
-    Returns
-    -------
-    RobotFile
-        The robot file as written.
-
-    Raises
-    ------
-    InputError
-        If a new value is invalid, or `out` exists or is not writable; nothing is written then.
+    `source`: need not exist on disk any more: its text is stored. `changes`: new values by
+    parameter name; parameters missing in the source are added. `out`: may be the source's own path,
+    with `force`. `force`: whether an existing `out` may be overwritten. `effects`: all effects of
+    the new file, in order of application; default: those of the source. Unknown parameters (per
+    run) are omitted. Result: the robot file as written. InputError if a new value is invalid, or
+    `out` exists or is not writable; nothing is written then.
     """
     out = Path(out)
     if out.is_dir():
@@ -82,10 +65,7 @@ def new_text(
 ) -> str:
     """Text that `write_robot_file` would write, for a preview.
 
-    Raises
-    ------
-    InputError
-        If a new value of a parameter or effect is invalid.
+    InputError if a new value of a parameter or effect is invalid.
     """
     wanted = {name: find(name).checked(value) for name, value in changes.items()}
     for name in source.given:

@@ -41,29 +41,13 @@ def read_run_bag(
 ) -> Run:
     """Read a run from a bag.
 
-    Parameters
-    ----------
-    path : path
-        A rosbag2 folder (sqlite3 or MCAP), a .mcap or .db3 file, or a ROS 1 .bag.
-    robot_file : RobotFile
-        Gives the joint names, the unit of positions, and how two topics are paired.
-    ticks_topic : str, optional
-        Topic of the ticks, LEFT,RIGHT for two; required if there are several candidates.
-    reference_topic : str or several, optional
-        Topic of the reference, /tf:PARENT:CHILD for transforms, `none` for no reference; required
-        if there are several candidates. Two are merged, see `merged`.
-    force : bool
-        Accept an unsuitable reference.
-
-    Returns
-    -------
-    Run
-        Stamps are those of the headers if present, otherwise times of recording.
-
-    Raises
-    ------
-    InputError
-        If the bag is unreadable, or the choice of topics is ambiguous.
+    `path`: a rosbag2 folder (sqlite3 or MCAP), a .mcap or .db3 file, or a ROS 1 .bag. `robot_file`:
+    gives the joint names, the unit of positions, and how two topics are paired. `ticks_topic`:
+    topic of the ticks, LEFT,RIGHT for two; required if there are several candidates.
+    `reference_topic`: topic of the reference, /tf:PARENT:CHILD for transforms, `none` for no
+    reference; required if there are several candidates. Two are merged, see `merged`. `force`:
+    accept an unsuitable reference. Result: stamps are those of the headers if present, otherwise
+    times of recording. InputError if the bag is unreadable, or the choice of topics is ambiguous.
     """
     path = Path(path)
     with opened_bag(path) as bag:

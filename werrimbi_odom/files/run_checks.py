@@ -30,11 +30,8 @@ APART = 5.0
 def refuse_unjudgeable(run: Run, robot: Robot) -> None:
     """Check that there is a reference to compare with, overlapping in time, and what columns hold.
 
-    Raises
-    ------
-    InputError
-        If there is no reference, it lies entirely before or after the ticks, either goes back in
-        time, or a column holds something else than its name says.
+    InputError if there is no reference, it lies entirely before or after the ticks, either goes
+    back in time, or a column holds something else than its name says.
     """
     if run.reference is None:
         raise InputError(f"{run.path}: there is no reference to compare with {run.no_reference}")

@@ -31,10 +31,7 @@ SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
 def read_run_folder(path: str | Path) -> Run:
     """Read a run folder.
 
-    Raises
-    ------
-    InputError
-        If a file is not usable; the message names file, line and column.
+    InputError if a file is not usable; the message names file, line and column.
     """
     path = Path(path)
     ticks, damage = _ticks(path / TICKS)
@@ -56,10 +53,7 @@ def read_run_folder(path: str | Path) -> Run:
 def write_run_folder(path: Path, ticks: Ticks, reference: Reference | None) -> Path:
     """Write a run folder, to be read again without loss; stated sigmas are left out.
 
-    Raises
-    ------
-    InputError
-        If it exists, or cannot be written.
+    InputError if it exists, or cannot be written.
     """
     try:
         path.mkdir(parents=True)
@@ -132,10 +126,7 @@ def _not_a_count(text: str) -> str:
 def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
     """A reference, and in words the damage of its file and the rows that are left out.
 
-    Raises
-    ------
-    InputError
-        If it is not usable; the message names file, line and column.
+    InputError if it is not usable; the message names file, line and column.
     """
     table = read_table(path, REFERENCE_COLUMNS, REFERENCE_COLUMNS[:1])
     for name in table.names:

@@ -230,17 +230,8 @@ def on_one_clock(
 ) -> tuple[Ticks, list[Collected], tuple[str, ...]]:
     """Ticks and references by the recorder's clock, if they are further apart than a search covers.
 
-    Parameters
-    ----------
-    late
-        `Lateness.usual` of the ticks, then of each reference.
-
-    Returns
-    -------
-    ticks, found
-        As given, or moved.
-    told : tuple of str
-        What was done, in words for the user; empty if nothing was.
+    `late`: `Lateness.usual` of the ticks, then of each reference. Result: ticks and references
+    as given, or moved; then what was done, in words for the user, empty if nothing was.
     """
     apart = np.abs(np.subtract(late[1:], late[0]))
     if not (apart > APART).any():  # also if one is unknown

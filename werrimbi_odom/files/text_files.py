@@ -19,12 +19,8 @@ from werrimbi_odom.errors import InputError
 def replacing(path: Path) -> Iterator[TextIO]:
     """Open a text file (UTF-8, LF) that replaces `path` if the block succeeds.
 
-    Otherwise `path` is unchanged. A pipe or device is written directly.
-
-    Raises
-    ------
-    InputError
-        If the file is not writable: no such folder, no permission, no space.
+    Otherwise `path` is unchanged. A pipe or device is written directly. InputError if the file is
+    not writable: no such folder, no permission, no space.
     """
     try:
         if path.exists() and not path.is_file():
@@ -54,10 +50,7 @@ def replacing(path: Path) -> Iterator[TextIO]:
 def refuse_unwritable(path: Path, option: str) -> None:
     """Check that `path` is writable, by creating a file: the only reliable test.
 
-    Raises
-    ------
-    InputError
-        If there is no such folder, or no file can be created; `option` begins the message.
+    InputError if there is no such folder, or no file can be created; `option` begins the message.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe, a device
         if not os.access(path, os.W_OK):
@@ -87,17 +80,9 @@ MAX_BYTES = 1_000_000
 def read_small_text(path: Path, *, wanted: str, too_large: str) -> str:
     """Read a small UTF-8 file; line ends become LF.
 
-    Parameters
-    ----------
-    wanted : str
-        What to give instead of a folder, as in "give the YAML file in it".
-    too_large : str
-        Remark on a file larger than `MAX_BYTES`, as in "it is not a robot file".
-
-    Raises
-    ------
-    InputError
-        If it cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
+    `wanted`: what to give instead of a folder, as in "give the YAML file in it". `too_large`:
+    remark on a file larger than `MAX_BYTES`, as in "it is not a robot file". InputError if it
+    cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
     """
     try:
         with path.open("rb") as file:

@@ -26,10 +26,7 @@ _AXLE = 0.9
 def of_urdf(text: str, joints: Sequence[str] = ()) -> FirstRobot:
     """Radius, separation and joints of the driven wheels in a URDF.
 
-    Parameters
-    ----------
-    joints
-        Names of the recorded joints; other wheels are ignored.
+    `joints`: names of the recorded joints; other wheels are ignored.
     """
     if len(text) > _LONGEST or "<!ENTITY" in text:
         return FirstRobot()

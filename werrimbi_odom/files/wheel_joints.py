@@ -73,14 +73,8 @@ def joints_told_apart(
 ) -> WheelJoints:
     """Classify joints as left wheels, right wheels, and others.
 
-    Parameters
-    ----------
-    joints
-        Names of all joints.
-    turned
-        Range of each joint's angle [rad].
-    known
-        Wheels of both sides named in a URDF or a robot file; these take precedence.
+    `joints`: names of all joints. `turned`: range of each joint's angle [rad]. `known`: wheels of
+    both sides named in a URDF or a robot file; these take precedence.
     """
     if all(known) and {*known[0], *known[1]} <= set(joints):
         left, right = tuple(known[0]), tuple(known[1])
@@ -191,10 +185,7 @@ def chosen_wheels(
 ) -> tuple[Wheels | None, WheelJoints]:
     """Choose the source of wheel data, and classify its joints; the firmware's odometry is last.
 
-    Raises
-    ------
-    InputError
-        If the requested topic contains no ticks.
+    InputError if the requested topic contains no ticks.
     """
     known = ((), ()) if source is None else tuple(wheel_names(source, side) for side in SIDES)
     able = sorted(contents.wheels, key=lambda each: each.gives == "odometry")

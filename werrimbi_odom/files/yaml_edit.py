@@ -39,16 +39,9 @@ def with_values(
 ) -> str:
     """Set `values`, and exactly these effects, in the block at `place`.
 
-    Parameters
-    ----------
-    place : (str, str)
-        Key of the node, and below it that of its parameters.
-    values : mapping
-        Equal values are left untouched.
-    order : sequence of names
-        A new name is inserted after its nearest predecessor in this order.
-    effects : sequence of AppliedEffect, optional
-        Default: the existing ones are kept.
+    `place`: key of the node, and below it that of its parameters. `values`: equal values are left
+    untouched. `order`: a new name is inserted after its nearest predecessor in this order.
+    `effects`: default: the existing ones are kept.
     """
     text = text if text.endswith("\n") else f"{text}\n"
     yaml = round_trip()
@@ -83,10 +76,7 @@ def known_values(applied: AppliedEffect) -> dict[str, float]:
 class _Block:
     """A mapping in block style, one key per line, and the edits to apply.
 
-    Parameters
-    ----------
-    edits
-        Start and end (in characters), and the new text.
+    `edits`: start and end (in characters), and the new text.
     """
 
     def __init__(
@@ -118,10 +108,7 @@ class _Block:
     def change(self, name: str, value: Any, *, named: bool = False) -> None:
         """Replace a value, unless it is equal; a comment beside it keeps its column.
 
-        Parameters
-        ----------
-        named
-            Whether a comment beside a list item refers to that item.
+        `named`: whether a comment beside a list item refers to that item.
         """
         key, node = self.nodes[name]
         old = _tree(self.given[name])

@@ -48,11 +48,8 @@ def round_trip() -> YAML:
 def load(text: str, path: Path) -> CommentedMap:
     """Parse a text with one mapping; its keys have line numbers (see `line_of`).
 
-    Raises
-    ------
-    InputError
-        If the text is empty, not YAML, not a mapping, or uses features that parameter files do not
-        need and attackers do: aliases, tags, deep nesting, several documents.
+    InputError if the text is empty, not YAML, not a mapping, or uses features that parameter files
+    do not need and attackers do: aliases, tags, deep nesting, several documents.
     """
     yaml = round_trip()
     try:

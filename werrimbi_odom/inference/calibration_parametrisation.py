@@ -83,12 +83,7 @@ def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
 def robot_for_cutting(robot: Robot, given: Robot) -> Robot:
     """Choose the robot whose travel cuts the legs: the given file's, unless its sizes are far off.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot after the search for set-up mistakes.
-    given : Robot
-        The robot as its file has it.
+    `robot`: the robot after the search for set-up mistakes. `given`: the robot as its file has it.
     """
     found = with_sizes_in_multipliers(robot, given)
     off = max(abs(math.log(one)) for one in sizes_of(found).over(sizes_of(given)))
@@ -114,14 +109,8 @@ def skids_in_turns(robot: Robot) -> bool:
 def base_told(applied: AppliedEffect, robot: Robot, given: Robot) -> float:
     """Value of an effect's own base parameter that accounts for the whole deviation of the base.
 
-    Parameters
-    ----------
-    applied : AppliedEffect
-        An effect with a parameter that stands for the base.
-    robot : Robot
-        The robot that holds `applied`.
-    given : Robot
-        The robot as its file has it; its multiplier stays as it is.
+    `applied`: an effect with a parameter that stands for the base. `robot`: the robot that holds
+    `applied`. `given`: the robot as its file has it; its multiplier stays as it is.
     """
     name = base_name(applied.effect)
     assert name is not None
@@ -141,14 +130,8 @@ def calibration_deviation(robot: Robot, given: Robot) -> Floats:
 def std_as_effect(name: str, robot: Robot, covariance: Floats) -> float:
     """Standard deviation of a calibration effect's logarithm, by the multipliers' covariance.
 
-    Parameters
-    ----------
-    name : str
-        Name of the calibration effect.
-    robot : Robot
-        Robot with the fitted multipliers.
-    covariance : ndarray, shape (3, 3)
-        Their covariance, in the order of `MULTIPLIERS`.
+    `name`: name of the calibration effect. `robot`: Robot with the fitted multipliers. `covariance`
+    (3, 3): their covariance, in the order of `MULTIPLIERS`.
     """
     row = np.array(LOGARITHMS[name]) / [getattr(robot, multiplier) for multiplier in MULTIPLIERS]
     return float(np.sqrt(max(row @ covariance @ row, 0.0)))

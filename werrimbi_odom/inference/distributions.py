@@ -66,13 +66,9 @@ def student_survival(value: float, degrees: float) -> float:
 def fisher_survival(value: float, above: float, below: float) -> float:
     """Survival function of the F distribution.
 
-    Parameters
-    ----------
-    value : float
-        Value of the statistic.
-    above, below : float
-        Degrees of freedom of the numerator and the denominator. They are infinite for a known
-        variance; with an infinite denominator the statistic is chi-squared.
+    `value`: value of the statistic. `above`, `below`: degrees of freedom of the numerator and the
+    denominator. They are infinite for a known variance; with an infinite denominator the statistic
+    is chi-squared.
     """
     from scipy.special import fdtrc
 
@@ -84,14 +80,8 @@ def fisher_survival(value: float, above: float, below: float) -> float:
 def noncentrality(degrees: float, significance: float, power: float) -> float:
     """Noncentrality at which a chi-squared test of given significance has the given power.
 
-    Parameters
-    ----------
-    degrees : float
-        Degrees of freedom.
-    significance : float
-        Probability that the central variable exceeds the threshold.
-    power : float
-        Probability that the noncentral variable exceeds the threshold.
+    `degrees`: degrees of freedom. `significance`: probability that the central variable exceeds the
+    threshold. `power`: probability that the noncentral variable exceeds the threshold.
     """
     from scipy.special import chdtri, chndtrinc
 

@@ -70,14 +70,8 @@ def nuisance(columns: Floats) -> Nuisance:
 def score_test(columns: Floats, free: Floats, residual: Floats) -> ScoreTest | None:
     """Score test of whether columns explain a residual; None if no direction is determined.
 
-    Parameters
-    ----------
-    columns : ndarray, shape (n, k)
-        Jacobian of the innovations in the tested parameters.
-    free : ndarray, shape (n, k)
-        The same with the nuisances projected out.
-    residual : ndarray, shape (n,)
-        Innovations with the nuisances projected out.
+    `columns` (n, k): Jacobian of the innovations in the tested parameters. `free` (n, k): the same
+    with the nuisances projected out. `residual` (n,): innovations with the nuisances projected out.
     """
     _, size = _unit(columns)
     cross = free.T @ residual
@@ -87,14 +81,8 @@ def score_test(columns: Floats, free: Floats, residual: Floats) -> ScoreTest | N
 def score_test_of_products(square: Floats, cross: Floats, size: Floats) -> ScoreTest | None:
     """Score test from the normal equations: `free.T @ free` and `free.T @ residual`.
 
-    Parameters
-    ----------
-    square : ndarray, shape (k, k)
-        Gram matrix of the free columns.
-    cross : ndarray, shape (k,)
-        Products of the free columns with the residual.
-    size : ndarray, shape (k,)
-        Norms of the columns before the nuisances were projected out.
+    `square` (k, k): Gram matrix of the free columns. `cross` (k,): products of the free columns
+    with the residual. `size` (k,): norms of the columns before the nuisances were projected out.
     """
     heard = size > SILENT
     if not heard.any():
@@ -115,14 +103,8 @@ def within_reach(free: Floats, residual: Floats, reach: Floats) -> Floats:
     """Coefficients (k,) of columns that explain a residual, with standard deviations known before.
 
     Where columns do nearly the same, their difference takes any value for a little of noise. The
-    prior keeps it, and hardly moves what the columns determine.
-
-    Parameters
-    ----------
-    free : ndarray, shape (n, k)
-    residual : ndarray, shape (n,)
-    reach : ndarray, shape (k,)
-        Prior standard deviations about zero.
+    prior keeps it, and hardly moves what the columns determine. `free` (n, k). `residual` (n,).
+    `reach` (k,): prior standard deviations about zero.
     """
     square = free.T @ free + np.diag(reach**-2.0)
     return np.asarray(np.linalg.solve(square, -(free.T @ residual)))

@@ -67,11 +67,8 @@ def compiled_for(steps: int, function: Function) -> Function | None:
 def compiled(function: Function) -> Function | None:
     """Compile a function of the model, and those that it calls, for floats.
 
-    Returns
-    -------
-    callable or None
-        Compiled at its first call, or loaded from the cache. None without numba, or without a
-        writable cache folder.
+    Result: compiled at its first call, or loaded from the cache. None without numba, or without a
+    writable cache folder.
     """
     try:
         import numba

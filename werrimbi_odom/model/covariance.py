@@ -116,16 +116,10 @@ def twist_noise(
     """Covariance of the mean twist of a step.
 
     The error of a counter reading is uniform over one count, so the difference of two readings has
-    a variance of 1/6 count², in addition to the wheel's noise (equation 4).
-
-    Parameters
-    ----------
-    left_tick, right_tick : float
-        Travel per count [m].
-    duration, left, right : float
-        Duration of the step [s], and travel of the wheels [m].
-    left_lost, right_lost : float
-        Variance of travel that no counter saw [m²].
+    a variance of 1/6 count², in addition to the wheel's noise (equation 4). `left_tick`,
+    `right_tick`: travel per count [m]. `duration`, `left`, `right`: duration of the step [s], and
+    travel of the wheels [m]. `left_lost`, `right_lost`: variance of travel that no counter saw
+    [m²].
     """
     left = wheels.left * abs(left) + left_tick * left_tick / 6.0
     right = wheels.right * abs(right) + right_tick * right_tick / 6.0
@@ -139,20 +133,10 @@ def piece_covariance(
 ) -> PoseCovariance[Number]:
     """Covariance that one piece adds to the pose at its end (paper, equation 17).
 
-    Parameters
-    ----------
-    motion : BodyMotion
-        The whole piece as one constant twist. The paper has no `sideways`; lateral creep only
-        rotates the lever arm of the heading noise, by the creep angle.
-    noise : PathNoise
-        Noise of the whole piece, distributed evenly along it.
-    yaw : float or ndarray
-        Heading at the start of the piece [rad].
-
-    Returns
-    -------
-    PoseCovariance
-        In the frame in which `yaw` is measured.
+    `motion`: the whole piece as one constant twist. The paper has no `sideways`; lateral creep only
+    rotates the lever arm of the heading noise, by the creep angle. `noise`: noise of the whole
+    piece, distributed evenly along it. `yaw`: heading at the start of the piece [rad]. Result: in
+    the frame in which `yaw` is measured.
     """
     return covariance_over(motion, noise, chord_of(motion.turn, yaw))
 
@@ -237,12 +221,8 @@ def after_stretch(
 ) -> PoseCovariance[Number]:
     """Covariance of the pose at the end of a piece, in the frame of the one at its start.
 
-    Parameters
-    ----------
-    motion, noise, chord
-        Of the piece; `chord` as from `chord_of`.
-    dx, dy : float or ndarray
-        Displacement, integrated message by message [m].
+    `motion`, `noise`, `chord`: of the piece; `chord` as from `chord_of`. `dx`, `dy`: displacement,
+    integrated message by message [m].
     """
     return plus(carried(start, dx, dy), covariance_over(motion, noise, chord))
 

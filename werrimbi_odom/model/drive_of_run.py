@@ -148,12 +148,8 @@ def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> Dri
     A message may be split into steps at a reference stamp. The mean speed over one part contains
     the error of that stamp: a stamp that is off would make the robot both faster and farther ahead,
     which looks like wheel slip. So both parts get the speed of the message. The speeds of the body
-    stay those of the steps: they sum exactly to the robot's path and turn.
-
-    Parameters
-    ----------
-    message : ndarray, shape (n,)
-        Index of the message in which each step ends, from 0 on, without gaps.
+    stay those of the steps: they sum exactly to the robot's path and turn. `message` (n,): index of
+    the message in which each step ends, from 0 on, without gaps.
     """
 
     @cache

@@ -52,10 +52,7 @@ class Driving:
     def retune(self, robot: Robot, left: float, right: float) -> None:
         """Change the parameter values; the state of the effects is kept.
 
-        Parameters
-        ----------
-        left, right : float
-            Counters of the last message, needed where no effect acted before.
+        `left`, `right`: counters of the last message, needed where no effect acted before.
         """
         self.robot = robot
         if self._memory is None and acts(robot):
@@ -100,10 +97,7 @@ def _measured(channels: Channels) -> dict[str, float]:
 def check_channels(robot: Robot, channels: Mapping[str, object]) -> None:
     """Check that every channel that the robot's effects read is measured.
 
-    Raises
-    ------
-    InputError
-        If one is not; the message names it and the effect.
+    InputError if one is not; the message names it and the effect.
     """
     for applied in robot.effects:
         missing = applied.effect.lacks(channels)
@@ -125,17 +119,8 @@ def features(
 ) -> DriveOfRun:
     """Compute what effects may read in a run.
 
-    Parameters
-    ----------
-    first_counts : (left, right)
-        Counters at the first message.
-    channels : mapping, optional
-        Extra measured channels at the start and end of each step.
-
-    Raises
-    ------
-    InputError
-        If an effect reads a channel that was not measured.
+    `first_counts`: counters at the first message. `channels`: extra measured channels at the start
+    and end of each step. InputError if an effect reads a channel that was not measured.
     """
     check_channels(robot, channels or {})
     motion = wheels_to_body(raw, robot.track)

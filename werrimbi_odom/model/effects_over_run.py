@@ -104,14 +104,8 @@ def driven(
 ) -> AfterEffects:
     """Compute a whole run after the effects; the same as `driven_motion.Driving` step by step.
 
-    Parameters
-    ----------
-    raw : WheelTravel
-        Travel before the effects, shape (n,).
-    drive : Drive
-        Drive of the run (`driven_motion.features`).
-    start : Pose
-        Pose of the robot before the first step.
+    `raw`: travel before the effects, shape (n,). `drive`: drive of the run
+    (`driven_motion.features`). `start`: pose of the robot before the first step.
     """
     seen = watched(drive)
     first = AfterEffects(*after_effects(robot, raw, seen))
@@ -200,11 +194,8 @@ def driven_from_measured(
 ) -> AfterEffects:
     """As `driven`, where the pose is measured at times, so that errors do not accumulate.
 
-    Parameters
-    ----------
-    headings, places
-        Give the poses for the next pass from the motion of the last one and the measurements;
-        called only where an effect reads them.
+    `headings`, `places`: give the poses for the next pass from the motion of the last one and the
+    measurements; called only where an effect reads them.
     """
     seen = watched(drive)
     found = AfterEffects(*after_effects(robot, raw, seen))

@@ -117,17 +117,9 @@ class Encoder:
     def step(self, time: float, left: float, right: float) -> WheelStep | None:
         """Return the travel since the last accepted message.
 
-        Parameters
-        ----------
-        time : float
-            Stamp of the message [s].
-        left, right : float or int
-            Cumulative signed counts (fractional or integer; integers of any size stay exact).
-
-        Returns
-        -------
-        WheelStep or None
-            None for the first message and for one that is rejected; `tally` counts the reason.
+        `time`: stamp of the message [s]. `left`, `right`: cumulative signed counts (fractional or
+        integer; integers of any size stay exact). None for the first message and for one that is
+        rejected; `tally` counts the reason.
         """
         self.tally.messages += 1
         if not (isfinite(time) and isfinite(left) and isfinite(right)):
@@ -210,14 +202,8 @@ class Encoder:
     ) -> None:
         """Update the state after steps that were processed elsewhere; `pace` has them already.
 
-        Parameters
-        ----------
-        durations : ndarray, shape (n,)
-            Durations of the steps [s].
-        left, right, lasted : float
-            Travel in the last of them [m], and the interval to check it over [s].
-        last : Reading
-            The last reading.
+        `durations` (n,): durations of the steps [s]. `left`, `right`, `lasted`: travel in the last
+        of them [m], and the interval to check it over [s]. `last`: the last reading.
         """
         self._left_speed, self._right_speed, self.lasted = left / lasted, right / lasted, lasted
         self.tally.messages += durations.size

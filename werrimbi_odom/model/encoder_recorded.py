@@ -59,13 +59,8 @@ def wheel_steps(
     """Compute all steps of a record at once; the same as passing its rows to an `Encoder`.
 
     Rows that pass all checks are processed together in array operations. From a doubtful row on,
-    the `Encoder` processes a number of rows one by one.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,), [s]
-    left, right : ndarray, shape (n,)
-        Cumulative signed counts, integer or float.
+    the `Encoder` processes a number of rows one by one. `time` (n,) [s]. `left`, `right` (n,):
+    cumulative signed counts, integer or float.
     """
     encoder = Encoder(robot, limits or EncoderLimits())
     record = _Record(np.asarray(time, dtype=np.float64), _as_counts(left), _as_counts(right))

@@ -36,22 +36,13 @@ def take(
 ) -> int:
     """Process the counters of one message, if they pass all checks.
 
-    Parameters
-    ----------
-    rules : ndarray, shape (17,)
-        `CountRule`, `PieceRule` and `WheelNoise`, then the longest interval that is no gap [s].
-    heard : ndarray, shape (9,)
-        `Reading` of the last message, `Heard`, the number of stamps in the ring, and the index of
-        the next one; updated, as are the two arrays after it.
-    stamps : ndarray, shape (REMEMBERED + 1,)
-        Ring buffer of stamps [s].
-    at : ndarray, shape (34,)
-        `Marching`, flattened.
-    said : ndarray, shape (22,)
-        Output: stamp, duration, travel of the wheels, and motion of the step; then the pose, its
-        covariance, that of the twist, and the twist.
-    ended : ndarray, shape (15,)
-        Output where a piece ends: its last stamp, pose and covariance at its start, `sums_of`.
+    `rules` (17,): `CountRule`, `PieceRule` and `WheelNoise`, then the longest interval that is no
+    gap [s]. `heard` (9,): `Reading` of the last message, `Heard`, the number of stamps in the ring,
+    and the index of the next one; updated, as are the two arrays after it. `stamps` (REMEMBERED +
+    1,): ring buffer of stamps [s]. `at` (34,): `Marching`, flattened. `said` (22,): output: stamp,
+    duration, travel of the wheels, and motion of the step; then the pose, its covariance, that of
+    the twist, and the twist. `ended` (15,): output where a piece ends: its last stamp, pose and
+    covariance at its start, `sums_of`.
     """
     counts, piece_rule, wheels = rules_of(rules)
     last, now = Reading(heard[0], heard[1], heard[2]), Reading(time, left, right)

@@ -26,12 +26,7 @@ class PhaseLearner:
     """Estimates the phases of a robot's effects during a drive.
 
     Steps of the odometer and readings of the reference may arrive in any order, stamped by one
-    clock. The memory is bounded.
-
-    Parameters
-    ----------
-    robot : Robot
-        With at least one `learnable` effect.
+    clock. The memory is bounded. `robot`: with at least one `learnable` effect.
     """
 
     MEMORY = 1000

@@ -76,10 +76,7 @@ def learnable(robot: Robot) -> tuple[AppliedEffect, ...]:
 class Turning:
     """Turn of steps without the effects to be estimated, and its derivatives in their coordinates.
 
-    Parameters
-    ----------
-    effects : sequence of AppliedEffect
-        `learnable` effects of the robot.
+    `effects`: `learnable` effects of the robot.
     """
 
     def __init__(self, robot: Robot, effects: tuple[AppliedEffect, ...]) -> None:
@@ -216,12 +213,8 @@ def phases_of_run(
 ) -> tuple[Phase, ...]:
     """Estimate the phases of a recorded run.
 
-    Parameters
-    ----------
-    time, left, right
-        As for `trajectory`.
-    reference_time, reference_yaw : ndarray, shape (m,)
-        Measured heading [rad], NaN where it was not measured.
+    `time`, `left`, `right`: as for `trajectory`. `reference_time`, `reference_yaw` (m,): measured
+    heading [rad], NaN where it was not measured.
     """
     effects = learnable(robot)
     left, right = wiring_of(robot.effects).wheels(left, right)

@@ -135,14 +135,8 @@ def extended(
 ) -> tuple[bool, PieceSums]:
     """Whether a stretch continues with a step that ends at `pose`; and the stretch afterwards.
 
-    Parameters
-    ----------
-    start : Pose
-        Pose at the start of the stretch. An empty stretch accepts any step.
-    earlier : float
-        Travel u of the earlier pieces since the pose was last set [m].
-    travel, motion
-        Of the step.
+    `start`: pose at the start of the stretch. An empty stretch accepts any step. `earlier`: travel
+    u of the earlier pieces since the pose was last set [m]. `travel`, `motion`: of the step.
     """
     left, right, whole, _, left_low, left_high, right_low, right_high, low, high, empty = stretch
     left, right = left + travel.left, right + travel.right

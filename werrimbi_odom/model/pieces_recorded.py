@@ -54,14 +54,8 @@ def cut(
 ) -> Cut:
     """Cut a run where `OpenPiece` does.
 
-    Parameters
-    ----------
-    travel, motion : arrays of shape (n,)
-        The steps.
-    x, y, yaw : ndarray, shape (n + 1,)
-        Pose before the first step and after each step.
-    broken : ndarray of bool, shape (n,)
-        Steps that must start a piece (travel was lost before them).
+    `travel`, `motion` (n,): the steps. `x`, `y`, `yaw` (n + 1,): pose before the first step and
+    after each step. `broken` (n,): steps that must start a piece (travel was lost before them).
     """
     cutter = _Cutter(rule, travel, motion, x, y, yaw)
     begin = 0

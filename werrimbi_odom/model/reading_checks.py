@@ -83,14 +83,9 @@ def was_reset(
 ) -> bool:
     """Whether a counter was reset between two readings; see `Encoder`.
 
-    Parameters
-    ----------
-    left, right : float
-        Differences of the readings, unwrapped.
-    lasted : float
-        Interval to check them over [s].
-    usual, fastest : float
-        The usual interval [s], and the fastest recent turn rate of a wheel [turns/s].
+    `left`, `right`: differences of the readings, unwrapped. `lasted`: interval to check them over
+    [s]. `usual`, `fastest`: the usual interval [s], and the fastest recent turn rate of a wheel
+    [turns/s].
     """
     rate = reach_rate(rule, fastest)
     reach = lasted * rate

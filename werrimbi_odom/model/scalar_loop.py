@@ -66,22 +66,11 @@ def read_on(
 ) -> tuple[int, Heard, float]:
     """Process rows of a record from `row` on that pass all checks, as an `Encoder` does.
 
-    Parameters
-    ----------
-    time, left, right : ndarray, shape (rows,)
-    row : int
-        The previous row is the last accepted one.
-    stamps : ndarray, shape (k,)
-        Remembered stamps, up to the last accepted one.
-    heard, lasted : Heard and float
-        State up to there, and the interval over which the last step was checked [s].
-    steps : ndarray, shape (3, rows)
-        Output for each of these rows: duration, and travel of the wheels.
-
-    Returns
-    -------
-    int, Heard, float
-        The first doubtful row, or the number of rows; then `heard` and `lasted` up to there.
+    `time`, `left`, `right` (rows,). `row`: the previous row is the last accepted one. `stamps`
+    (k,): remembered stamps, up to the last accepted one. `heard`, `lasted`: state up to there, and
+    the interval over which the last step was checked [s]. `steps` (3, rows): output for each of
+    these rows: duration, and travel of the wheels. Result: the first doubtful row, or the number of
+    rows; then `heard` and `lasted` up to there.
     """
     usual, fastest, newer, room = heard
     at = row
@@ -140,23 +129,12 @@ def march(
 ) -> tuple[Marching, int]:
     """Process n steps from the state `at`, and end pieces where they must.
 
-    Parameters
-    ----------
-    travels, motions : arrays of shape (n,)
-        The steps.
-    poses, covariances : ndarray, shape (3, n) and (6, n)
-        Output: x, y, yaw and the covariance after each step.
-    starts, sums : ndarray, shape (m,) and (5, m)
-        Output from index `pieces` on: the first step of each piece that starts here, counted from
-        the beginning of the run; and the sums over each piece that ends here: travel of the wheels,
-        and motion along, sideways and in yaw.
-    pieces, done : int
-        Number of pieces started, and of steps done so far.
-
-    Returns
-    -------
-    Marching, int
-        State afterwards, and the number of pieces started by then.
+    `travels`, `motions` (n,): the steps. `poses`, `covariances` (3, n): output: x, y, yaw and the
+    covariance after each step. `starts`, `sums` (m,): output from index `pieces` on: the first step
+    of each piece that starts here, counted from the beginning of the run; and the sums over each
+    piece that ends here: travel of the wheels, and motion along, sideways and in yaw. `pieces`,
+    `done`: number of pieces started, and of steps done so far. Result: state afterwards, and the
+    number of pieces started by then.
     """
     for step in range(motions.turn.size):
         travel = WheelTravel(travels.left[step], travels.right[step])
@@ -181,12 +159,8 @@ def follow(motion: BodyMotion[Floats], position: Floats, yaw: Floats) -> None:
     """Integrate the steps of a run; see `recorded_propagation.followed`.
 
     The direction is turned by each step: less than half the cost of the cosine and the sine of each
-    heading. These are taken now and then, before rounding errors grow.
-
-    Parameters
-    ----------
-    position : ndarray, shape (n + 1, 2)
-        The first row is input; the others are output, as are those of `yaw`, shape (n + 1,).
+    heading. These are taken now and then, before rounding errors grow. `position` (n + 1, 2): the
+    first row is input; the others are output, as are those of `yaw`, shape (n + 1,).
     """
     along, sideways, turn = motion
     cos, sin = 1.0, 0.0

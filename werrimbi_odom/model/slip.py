@@ -26,10 +26,7 @@ KEPT = 1.0
 class Turns:
     """Headings of the wheels and of a gyro; both may arrive late.
 
-    Parameters
-    ----------
-    window : float
-        Duration over which they are compared [s].
+    `window`: duration over which they are compared [s].
     """
 
     def __init__(self, window: float) -> None:
@@ -124,12 +121,7 @@ NOTHING = Missed(0.0, 0.0)
 class SlipGuard:
     """Detects slip from wheels and gyro.
 
-    Parameters
-    ----------
-    track : float
-        Distance between the wheels [m].
-    tick : float
-        Travel per count of the coarser wheel [m].
+    `track`: distance between the wheels [m]. `tick`: travel per count of the coarser wheel [m].
     """
 
     def __init__(self, track: float, tick: float) -> None:

@@ -52,16 +52,8 @@ def after_piece(
 ) -> Uncertainty[Number]:
     """Errors at the end of a piece.
 
-    Parameters
-    ----------
-    start
-        Errors at the start.
-    motion, noise
-        Of the whole piece.
-    yaw : float or ndarray
-        Nominal heading at its start [rad].
-    dx, dy : float or ndarray
-        Displacement, integrated message by message, odometry frame [m].
+    `start`: errors at the start. `motion`, `noise`: of the whole piece. `yaw`: nominal heading at
+    its start [rad]. `dx`, `dy`: displacement, integrated message by message, odometry frame [m].
     """
     if start.moments is not None:
         # The lever arm of the earlier heading error is the driven displacement, not that of the

@@ -87,29 +87,12 @@ def add_effects(
 ) -> Added:
     """Fit effects together with all calibration, and judge each of them.
 
-    Parameters
-    ----------
-    effects : sequence of Effect
-        Distinct effects; calibration effects and set-up mistakes may be among them.
-    runs : sequence of Run
-        Recorded drives with a reference.
-    robot : Robot
-        The model that the fit begins with.
-    options : EvaluationOptions
-        How drives are cut into legs and judged.
-    given : Robot, optional
-        Robot by whose travel legs are cut, and with whose errors the fit is compared; by default
-        `robot`.
-    holdout : sequence of Run
-        Runs for judging only. If empty, parts of `runs` are held out.
-    show : Show
-        Callback for progress.
-
-    Raises
-    ------
-    InputError
-        When a run cannot be used, or is in other units; when a channel that an effect reads was not
-        measured, or the drives do not determine an effect at all.
+    `effects`: distinct effects; calibration effects and set-up mistakes may be among them. `runs`:
+    recorded drives with a reference. `robot`: the model that the fit begins with. `options`: how
+    drives are cut into legs and judged. `given`: Robot by whose travel legs are cut, and with whose
+    errors the fit is compared; by default `robot`. `holdout`: runs for judging only. If empty,
+    parts of `runs` are held out. InputError when a run cannot be used, or is in other units; when a
+    channel that an effect reads was not measured, or the drives do not determine an effect at all.
     """
     held = {item.name for item in robot.effects}
     for effect in effects:

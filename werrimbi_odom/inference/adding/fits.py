@@ -84,19 +84,8 @@ def fits_of(
 
     Set-up mistakes start together, at the result of the set-up search. Then effects are added one
     after the other, the one with the highest score first, and all earlier ones are fitted again
-    with it.
-
-    Parameters
-    ----------
-    begun : Robot
-        Robot at which fits start.
-    also : tuple of str
-        Those of its effects that are set-up mistakes just found.
-
-    Raises
-    ------
-    InputError
-        When the drives do not determine an effect at all.
+    with it. `begun`: Robot at which fits start. `also`: those of its effects that are set-up
+    mistakes just found. InputError when the drives do not determine an effect at all.
     """
     sought = [effect for effect in effects if effect.name not in CALIBRATED]
     if not sought:

@@ -116,12 +116,9 @@ def with_set_up(
 ) -> tuple[Robot, tuple[str, ...]]:
     """The robot with the findings of the set-up search, if some of `effects` are among them.
 
-    Returns
-    -------
-    robot, names
-        If one of the effects is a finding, all findings are put in, because one mistake corrected
-        alone may leave the robot worse than before (both counters reversed). Otherwise only factors
-        of the sizes, which belong to the calibration.
+    Result: if one of the effects is a finding, all findings are put in, because one
+    mistake corrected alone may leave the robot worse than before (both counters reversed).
+    Otherwise only factors of the sizes, which belong to the calibration.
     """
     found = {item.effect for item in set_up.findings} - {IN_DEGREES}
     mended = set_up.robot

@@ -85,14 +85,7 @@ def calibrate(
 ) -> Calibration:
     """Fit base, radii and noise to all runs at once, and test the result.
 
-    Parameters
-    ----------
-    runs : sequence of MatchedRun
-        Runs cut into legs.
-    robot : Robot
-        The robot to calibrate.
-    options : EvaluationOptions
-        What is known of the reference.
+    `runs`: runs cut into legs. `options`: what is known of the reference.
     """
     laid = concatenated(runs)
     begin, _ = with_own_values(laid, start_point(laid, robot, options))

@@ -58,15 +58,9 @@ def design(
 ) -> EndErrorDesign:
     """Covariance model of a drive: closed form of each piece (equation 17), chained (equation 16).
 
-    Parameters
-    ----------
-    pieces : sequence of WheelTravel
-        Wheel travel of each piece [m]; the drive starts along the x axis.
-    track : float
-        B [m].
-    sigma_xy, sigma_yaw : float
-        Standard deviation of one measured pose [m, rad]. The error of a run is the difference of
-        two measured poses, so their variances count twice.
+    `pieces`: wheel travel of each piece [m]; the drive starts along the x axis. `track`: B [m].
+    `sigma_xy`, `sigma_yaw`: standard deviation of one measured pose [m, rad]. The error of a run is
+    the difference of two measured poses, so their variances count twice.
     """
     return EndErrorDesign(
         _chained(pieces, track, 1.0, 0.0),
@@ -114,10 +108,7 @@ class Likelihood:
     def same(self) -> float:
         """Maximum-likelihood k² if both wheels are equal.
 
-        Raises
-        ------
-        InputError
-            If the reference's noise alone explains the dispersion.
+        InputError if the reference's noise alone explains the dispersion.
         """
         value = self._likeliest(lambda square: self.cost(square, square))
         if value < 10.0 * _LEAST * self.scale():

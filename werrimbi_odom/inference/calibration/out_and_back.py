@@ -38,12 +38,8 @@ def out_and_back(
 ) -> list[WheelTravel[float]]:
     """Pieces of a drive forwards by `distance` and back to the mark [m].
 
-    Parameters
-    ----------
-    distance, track : float
-        Length of the way out, and wheel base [m].
-    turn_round : bool
-        False: return backwards. True: half a turn at the far end, return forwards, and turn back.
+    `distance`, `track`: length of the way out, and wheel base [m]. `turn_round`: false: return
+    backwards. True: half a turn at the far end, return forwards, and turn back.
     """
     out = WheelTravel(distance, distance)
     if not turn_round:
@@ -100,18 +96,10 @@ class NoiseFit:
 def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     """Maximum-likelihood estimate of k_L and k_R.
 
-    Parameters
-    ----------
-    errors : ndarray, shape (n, 3)
-        Measured minus odometry at the end of each run: x, y [m], yaw [rad]; x along the way out.
-    design : Design
-        Covariance model of the drive.
-
-    Raises
-    ------
-    InputError
-        If there are too few runs, their dispersion is no more than the reference's noise, or more
-        than that of any wheels; if the headings are in degrees.
+    `errors` (n, 3): measured minus odometry at the end of each run: x, y [m], yaw [rad]; x along
+    the way out. `design`: covariance model of the drive. InputError if there are too few runs,
+    their dispersion is no more than the reference's noise, or more than that of any wheels; if the
+    headings are in degrees.
     """
     runs = len(errors)
     if runs < rules.LEAST_RUNS:

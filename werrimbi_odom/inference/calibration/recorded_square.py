@@ -62,10 +62,7 @@ class _Path:
 def squares_of(recorded: Sequence[RecordedSquare], side: float) -> Squares:
     """Combine recorded squares of both senses.
 
-    Raises
-    ------
-    InputError
-        If a sense is missing or has too few runs.
+    InputError if a sense is missing or has too few runs.
     """
     cw = [run for run in recorded if run.sense < 0]
     ccw = [run for run in recorded if run.sense > 0]
@@ -84,12 +81,8 @@ def recorded_square(
     """End position of a recorded square, measured minus odometry.
 
     Both paths start at the first measured position with the first measured heading. A small heading
-    error rotates both ends about the start alike, so it hardly changes their difference.
-
-    Raises
-    ------
-    InputError
-        If the drive is not one closed square of that side, or the robot has effects.
+    error rotates both ends about the start alike, so it hardly changes their difference. InputError
+    if the drive is not one closed square of that side, or the robot has effects.
     """
     if robot.effects:
         raise InputError(

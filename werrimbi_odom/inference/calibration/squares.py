@@ -45,10 +45,7 @@ class CountedSquare:
 class Squares:
     """Offsets of n clockwise and m anticlockwise squares.
 
-    Raises
-    ------
-    InputError
-        If squares are missing, or offsets are too large for squares of that side.
+    InputError if squares are missing, or offsets are too large for squares of that side.
     """
 
     side: float

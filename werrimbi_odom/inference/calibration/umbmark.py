@@ -96,17 +96,8 @@ class Umbmark:
 def umbmark(squares: Squares, robot: Robot) -> Umbmark:
     """Corrections of base and radii from squares of both senses, with standard deviations.
 
-    Parameters
-    ----------
-    squares : Squares
-        Offsets of the squares.
-    robot : Robot
-        The robot that the odometry of these squares assumed.
-
-    Raises
-    ------
-    InputError
-        If base and radii cannot cause these offsets.
+    `robot`: the robot that the odometry of these squares assumed. InputError if base and radii
+    cannot cause these offsets.
     """
     angles = first_order_angles(squares)
     paper = paper_factors(angles, squares.side, robot.track)
@@ -156,14 +147,7 @@ def corrected(robot: Robot, factors: Factors) -> Robot:
 def recomputed(squares: Squares, robot: Robot, factors: Factors) -> Squares:
     """Offsets of the same drives with corrected odometry.
 
-    Parameters
-    ----------
-    squares : Squares
-        Offsets of the squares.
-    robot : Robot
-        The robot that the odometry of `squares` assumed.
-    factors : Factors
-        Corrections.
+    `robot`: the robot that the odometry of `squares` assumed.
     """
     moved = []
     for sense, offsets in ((-1, squares.cw), (1, squares.ccw)):

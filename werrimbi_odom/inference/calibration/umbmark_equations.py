@@ -73,14 +73,7 @@ def angles_of(centres: Floats, side: float) -> Angles:
 def paper_factors(angles: Angles, side: float, track: float) -> Factors:
     """Equations 8 and 9 of the paper, the latter as corrected by the errata.
 
-    Parameters
-    ----------
-    angles : Angles
-        α and β.
-    side : float
-        D [m].
-    track : float
-        B as assumed by the odometry [m].
+    `angles`: α and β. `side`: D [m]. `track`: B as assumed by the odometry [m].
     """
     bend = track * math.sin(0.5 * angles.beta)
     base = QUARTER / (QUARTER - min(angles.alpha, 0.5 * QUARTER))

@@ -80,10 +80,7 @@ def _beside(
 ) -> tuple[ParameterChange, ...]:
     """Changes beside a model, unless one more effect or a dependence explains them.
 
-    Parameters
-    ----------
-    dependences : sequence of Dependence
-        Evidence map of the model.
+    `dependences`: evidence map of the model.
     """
     runs = diagnosis.runs
     evidence = evidence_of(runs, fit.point, fit.design, fit.scatter)
@@ -230,10 +227,7 @@ def parameter_changes_of(
 ) -> tuple[ParameterChange, ...]:
     """List each parameter of each change, once for a drive.
 
-    Parameters
-    ----------
-    runs : sequence of str
-        Names of the drives, in order.
+    `runs`: names of the drives, in order.
     """
     units = {number.name: number.unit for number in numbers}
     told: dict[tuple[str, int], ParameterChange] = {}

@@ -59,12 +59,8 @@ class Evidence:
 def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float) -> Evidence:
     """Innovations at a point, and their derivatives in all parameters.
 
-    Parameters
-    ----------
-    design : Design
-        Design of all fitted parameters at the point.
-    scatter : float
-        Dispersion: factor by which squared innovations are too large.
+    `design`: design of all fitted parameters at the point. `scatter`: dispersion: factor by which
+    squared innovations are too large.
     """
     robot = point.model.robot
     held = {name for item in robot.effects for name in (item.name, *item.effect.twins)}

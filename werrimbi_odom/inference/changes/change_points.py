@@ -63,18 +63,9 @@ def find_changes(
 ) -> ChangePoints:
     """Find the changes.
 
-    Parameters
-    ----------
-    drives : DriveNumbers
-        In the order in which they were driven.
-    groups : sequence of NumberGroup
-        Groups of parameters that may change.
-    penalty : float
-        Penalty of each free parameter; the drive of the change counts as one.
-    kinds : sequence of Kind
-        Shapes of changes to try.
-    most : int
-        Largest number of changes.
+    `drives`: in the order in which they were driven. `groups`: groups of parameters that may
+    change. `penalty`: penalty of each free parameter; the drive of the change counts as one.
+    `kinds`: shapes of changes to try. `most`: largest number of changes.
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)

@@ -104,13 +104,7 @@ class Course:
 
 
 def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> DriveEstimate:
-    """Fit one drive by itself.
-
-    Raises
-    ------
-    InputError
-        When it has no usable reference or no ticks.
-    """
+    """Fit one drive by itself; InputError when it has no usable reference or no ticks."""
     laid = concatenated(
         match_for_fit(
             [with_no_driving(run, robot, options.limits)], robot, options.leg, options.limits
@@ -129,14 +123,7 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
 def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
     """Combine the drives into the course of the parameters.
 
-    Parameters
-    ----------
-    estimates : sequence of DriveEstimate
-        Information of each drive, in order.
-    robot : Robot
-        The robot file.
-    time : ndarray, shape (R,)
-        Times of the drives, rising [s].
+    `estimates`: information of each drive, in order. `time` (R,): times of the drives, rising [s].
     """
     numbers = _numbers(estimates, robot)
     names = tuple(number.name for number in numbers)

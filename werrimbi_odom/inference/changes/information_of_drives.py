@@ -48,10 +48,7 @@ class DriveNumbers:
     def with_scatter(self, scatter: Floats) -> DriveNumbers:
         """Add a random effect: scatter of each parameter from drive to drive.
 
-        Parameters
-        ----------
-        scatter : ndarray, shape (s,)
-            Its standard deviation.
+        `scatter` (s,): its standard deviation.
         """
         spread = np.diag(scatter**2)
         shrunk = np.linalg.inv(np.eye(scatter.size) + self.information @ spread)
@@ -75,20 +72,10 @@ def information_of_drives(
 ) -> DriveNumbers:
     """Summarise the whitened innovations of each drive.
 
-    Parameters
-    ----------
-    values : ndarray, shape (s,)
-        Values of the parameters.
-    white : ndarray, shape (n,)
-        Innovations at these values.
-    shared : ndarray, shape (n, s)
-        Their derivatives in the parameters.
-    own : ndarray, shape (n, k)
-        Their derivatives in all per-run parameters, which are projected out.
-    run : ndarray, shape (n,)
-        Drive of each innovation.
-    time : ndarray, shape (R,)
-        Time of each drive.
+    `values` (s,): values of the parameters. `white` (n,): innovations at these values. `shared` (n,
+    s): their derivatives in the parameters. `own` (n, k): their derivatives in all per-run
+    parameters, which are projected out. `run` (n,): drive of each innovation. `time` (R,): time of
+    each drive.
     """
     size = len(names)
     information = np.zeros((time.size, size, size))

@@ -44,10 +44,7 @@ class NumberGroup:
 def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[FreeParameter, ...]:
     """All parameters of a robot that may change: calibration, mount, sizes of the effects it holds.
 
-    Parameters
-    ----------
-    mounts : sequence of Effect
-        Effects of the reference that it can show and the robot does not hold.
+    `mounts`: effects of the reference that it can show and the robot does not hold.
     """
     held = [applied.effect for applied in robot.effects if not applied.effect.is_mistake]
     return (*CALIBRATION, *(number for effect in (*held, *mounts) for number in sizes_of(effect)))
@@ -75,14 +72,8 @@ def value_at(robot: Robot, name: str, nulls: Mapping[str, float]) -> float:
 def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[NumberGroup, ...]:
     """Groups of parameters that may change by one cause, the simplest first.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the parameters that may change, the first of all.
-    values : ndarray, shape (s,)
-        Their values: both wheels change by the same share.
-    size : int
-        Number of all parameters, s.
+    `names`: names of the parameters that may change, the first of all. `values` (s,): their values:
+    both wheels change by the same share. `size`: number of all parameters, s.
     """
     found = []
     columns = np.eye(size)

@@ -100,14 +100,8 @@ class Gains(NamedTuple):
 def gains(rows: Rows, beside: Nuisance, rest: Floats, directions: Floats, kind: Kind) -> Gains:
     """Fall of the squares by each shape of a kind, with all others refitted.
 
-    Parameters
-    ----------
-    beside : Nuisance
-        Span of the parameters in the model.
-    rest : ndarray, shape (R s,)
-        Response with that span projected out.
-    directions : ndarray, shape (s, d)
-        Directions of the change.
+    `beside`: span of the parameters in the model. `rest` (R s,): response with that span projected
+    out. `directions` (s, d): directions of the change.
     """
     count = rows.time.size
     columns = rows.root @ directions

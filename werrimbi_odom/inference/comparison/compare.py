@@ -141,22 +141,10 @@ def compare(
 ) -> Comparison:
     """Compare a model with recorded runs.
 
-    Parameters
-    ----------
-    runs : sequence of Run
-        Recorded runs.
-    robot : Robot or Model
-        A `Model` has its own per-run values (phases, start headings). Those missing from a robot
-        file are estimated in each run.
-    options : EvaluationOptions
-        Leg length and what is known of the reference.
-    show : callable
-        Progress callback.
-
-    Raises
-    ------
-    InputError
-        If a run has no usable reference or no ticks.
+    `runs`: recorded runs. `robot`: a `Model` has its own per-run values (phases, start headings).
+    Those missing from a robot file are estimated in each run. `options`: leg length and what is
+    known of the reference. `show`: progress callback. InputError if a run has no usable reference
+    or no ticks.
     """
     own = robot.robot if isinstance(robot, Model) else robot
     prepared = prepare(runs, own, options, show=lambda share, words: show(0.5 * share, words))

@@ -65,14 +65,8 @@ def by_variables(
 ) -> tuple[ByVariable, ...]:
     """Bins and tests of every variable that varies.
 
-    Parameters
-    ----------
-    legs : LegErrors
-        Errors of m legs.
-    left : ndarray, shape (m, 3)
-        Errors without the systematic part.
-    variables : mapping
-        Value of each leg by name with unit; angles (`heading`) are binned in sectors.
+    `legs`: errors of m legs. `left` (m, 3): errors without the systematic part. `variables`: value
+    of each leg by name with unit; angles (`heading`) are binned in sectors.
     """
     members = {name: _bins(name, values) for name, values in variables.items()}
     members = {name: found for name, found in members.items() if len(found) > 1}
@@ -153,16 +147,9 @@ def _means(errors: Floats) -> tuple[float, float, float]:
 def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) -> tuple[Cell, ...]:
     """Cells of the floor with the legs driven there, lowest p-value first.
 
-    Parameters
-    ----------
-    legs : LegErrors
-        Errors of m legs.
-    left : ndarray, shape (m, 3)
-        Errors without the systematic part.
-    x, y : ndarray, shape (m,)
-        Midpoint of each leg [m]; NaN where not measured.
-    leg : float
-        Length of a leg, the least size of a cell [m].
+    `legs`: errors of m legs. `left` (m, 3): errors without the systematic part. `x`, `y` (m,):
+    midpoint of each leg [m]; NaN where not measured. `leg`: length of a leg, the least size of a
+    cell [m].
     """
     known = np.isfinite(x) & np.isfinite(y)
     if known.sum() < 2 * rules.LEGS_IN_A_BIN:

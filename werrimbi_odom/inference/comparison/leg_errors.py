@@ -110,24 +110,12 @@ def errors_of(
 ) -> LegErrors:
     """Errors of all legs of several runs.
 
-    Parameters
-    ----------
-    model : Model
-        The model.
-    runs : Concatenated
-        Runs with m legs.
-    sigma_xy, sigma_yaw : float, or ndarray of shape (m,)
-        Noise of the reference: of each pose (absolute) or each interval (incremental) [m, rad].
-    kind : ReferenceKind
-        Error model of the reference.
-    by_position : bool
-        The reference gives positions only; headings are then estimated from those before the leg.
-    sigma_stamp : float
-        Noise of the stamps of a gyro, or of scans [s].
-    wandering : Variances, optional
-        Noise of a reference on a local map, in place of the sigmas.
-    jumped : ndarray of bool, shape (m,), optional
-        Legs on which the latter jumped.
+    `model`: the model. `runs`: runs with m legs. `sigma_xy`, `sigma_yaw` (m,): noise of the
+    reference: of each pose (absolute) or each interval (incremental) [m, rad]. `kind`: error model
+    of the reference. `by_position`: the reference gives positions only; headings are then estimated
+    from those before the leg. `sigma_stamp`: noise of the stamps of a gyro, or of scans [s].
+    `wandering`: noise of a reference on a local map, in place of the sigmas. `jumped` (m,): legs on
+    which the latter jumped.
     """
     robot = model.robot
     prediction = predict_joined(model, runs)

@@ -44,16 +44,9 @@ class Closeness(NamedTuple):
 def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
     """Check that a run's reference is an independent measurement.
 
-    Returns
-    -------
-    str
-        A note if its name says that it is odometry while its numbers say that it is independent, or
-        if it differs from the wheels by less than any wheels' own noise; else empty.
-
-    Raises
-    ------
-    InputError
-        If it is computed from the wheels.
+    Result: a note if its name says that it is odometry while its numbers say that it is
+    independent, or if it differs from the wheels by less than any wheels' own noise; else empty.
+    InputError if it is computed from the wheels.
     """
     found = None if run.reference is None else closeness(run, robot, limits)
     if found is not None and found.apart < rules.CIRCLE_EXACT * found.rounding:

@@ -27,12 +27,8 @@ def binned(
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp]]:
     """Centre, mean, standard error and number of rows of bins with equal numbers of rows.
 
-    Parameters
-    ----------
-    values, error : ndarray
-        Variable, and error of each row.
-    periodic : bool
-        Use bins of equal width over a whole turn in degrees instead.
+    `values`, `error`: variable, and error of each row. `periodic`: use bins of equal width over a
+    whole turn in degrees instead.
     """
     parts = max(2, min(_BINS, values.size // (2 * _FEWEST)))
     edges = (
@@ -71,14 +67,8 @@ FINE = np.linspace(0.0, 360.0, 91)
 def wheel_errors(comparison: Comparison, index: int, side: int) -> tuple[Floats, Floats, Floats]:
     """Wheel angle [rad], error [m] and travel [m] in each reference interval of a run.
 
-    Parameters
-    ----------
-    comparison : Comparison
-        The comparison.
-    index : int
-        Index of the run.
-    side : int
-        -1 for the left wheel, +1 for the right one.
+    `comparison`: the comparison. `index`: index of the run. `side`: -1 for the left wheel, +1 for
+    the right one.
     """
     group = next(item for item in comparison.prepared.groups if index in item.index)
     own = group.index.index(index)

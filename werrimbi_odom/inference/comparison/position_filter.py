@@ -49,23 +49,13 @@ def position_errors(
 ) -> PositionErrors:
     """Filter the legs of all runs.
 
-    Parameters
-    ----------
-    relative, wheels : ndarray, shapes (m, 3) and (m, 3, 3)
-        Predicted relative pose of each leg, and its covariance from the wheel noise.
-    alike : ndarray, shape (m, 3, 3)
-        The same covariance for equal noise of both wheels. Inflated noise has this shape: model
-        errors are not those of a single wheel, and an error along the path is none of the heading.
-    start, finish : ndarray, shape (m, 2)
-        Measured positions [m].
-    variance : float, or ndarray of shape (m,)
-        Variance of each measured coordinate [m²].
-    first : ndarray, shape (runs + 1,)
-        First leg of each run, and the number of legs.
-    headings : ndarray, shape (runs,)
-        Approximate heading at the first pose of each run [rad].
-    gap : ndarray of bool, shape (m,)
-        Gaps: the heading is propagated, the position restarts.
+    `relative`, `wheels`: predicted relative pose of each leg, and its covariance from the wheel
+    noise. `alike` (m, 3, 3): the same covariance for equal noise of both wheels. Inflated noise has
+    this shape: model errors are not those of a single wheel, and an error along the path is none of
+    the heading. `start`, `finish` (m, 2): measured positions [m]. `variance` (m,): variance of each
+    measured coordinate [m²]. `first` (runs + 1,): first leg of each run, and the number of legs.
+    `headings` (runs,): approximate heading at the first pose of each run [rad]. `gap` (m,): gaps:
+    the heading is propagated, the position restarts.
     """
     variances = np.zeros(relative.shape[0]) + variance
     doubt = 1.0

@@ -111,10 +111,7 @@ def prepare(
 ) -> PreparedRuns:
     """Match runs, estimate the reference's noise, find its jumps, and cut legs of several lengths.
 
-    Raises
-    ------
-    InputError
-        If a run has no usable reference or no ticks.
+    InputError if a run has no usable reference or no ticks.
     """
     runs = [with_no_driving(run, robot, options.limits) for run in runs]
     members: dict[Measure, list[tuple[int, AlignedRun, bool]]] = {}

@@ -59,10 +59,7 @@ def group_of(
 ) -> ReferenceGroup:
     """Estimate the noise and find the jumps of runs whose references measure the same.
 
-    Parameters
-    ----------
-    members
-        Index, record, and whether the record has all rows of the run's reference.
+    `members`: index, record, and whether the record has all rows of the run's reference.
     """
     every = concatenated([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))

@@ -78,16 +78,9 @@ def _intervals_within(time: Floats, span: float) -> int:
 def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) -> NDArray[np.bool_]:
     """Legs that a jump invalidates, shape (m,).
 
-    Where poses are absolute, a spike that is over at the leg's end does no harm.
-
-    Parameters
-    ----------
-    jumps : ndarray, shape (n - 1, 3)
-        Jumps of the reference.
-    chosen : ndarray, shape (m + 1,)
-        Reference pose at which each leg begins and ends.
-    kind : ReferenceKind
-        Error model of the reference.
+    Where poses are absolute, a spike that is over at the leg's end does no harm. `jumps` (n - 1,
+    3): jumps of the reference. `chosen` (m + 1,): reference pose at which each leg begins and ends.
+    `kind`: error model of the reference.
     """
     happened = np.any(jumps != 0.0, axis=1).astype(np.float64)
     sums = np.concatenate([np.zeros((1, 3)), np.cumsum(jumps, axis=0)])

@@ -73,18 +73,9 @@ def noise_of(
 ) -> OwnNoise:
     """Noise of references that measure the same quantities.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    every : Concatenated
-        Runs with a leg from each reference pose to the next.
-    residuals : sequence of Residual
-        Measured and predicted paths of these.
-    measure : Measure
-        What the references measure.
-    options : EvaluationOptions
-        What is known of the reference.
+    `every`: runs with a leg from each reference pose to the next. `residuals`: measured and
+    predicted paths of these. `measure`: what the references measure. `options`: what is known of
+    the reference.
     """
     estimated: tuple[float | None, float | None]
     stated = [[getattr(run, name) for run in every.runs] for name in ("sigma_xy", "sigma_yaw")]

@@ -68,22 +68,10 @@ def residuals_of(
 ) -> tuple[tuple[Residual, ...], Model]:
     """Dead reckoning along every reference pose and its difference to the measurement, run by run.
 
-    Parameters
-    ----------
-    model : Model
-        The model.
-    every : Concatenated
-        Runs from `legs.cutting.every_pose`.
-    measure : Measure
-        Quantity that the reference measures.
-
-    Returns
-    -------
-    residuals : tuple of Residual
-        One for each run.
-    model : Model
-        The model with the start heading of each run. Where only positions are measured and the
-        model has none, it is the one that best aligns the whole path with them.
+    `model`: the model. `every`: runs from `legs.cutting.every_pose`. `measure`: quantity that the
+    reference measures. Result: residuals of each run, and the model with the start heading of
+    each run. Where only positions are measured and the model has none, it is the one that best
+    aligns the whole path with them.
     """
     view = view_of(model.robot.effects)
     relative = predicted_legs(model, every)

@@ -168,14 +168,9 @@ def noise_factors(
 ) -> list[NoiseFactor]:
     """Maximum-likelihood factors on the wheel part of the covariance.
 
-    Parameters
-    ----------
-    errors : ndarray, shape (m, 3)
-        Errors of legs without the systematic part; NaN where not measured.
-    covariance, wheels : ndarray, shape (m, 3, 3)
-        Predicted covariance, and its part from the wheel noise.
-    groups : ndarray, shape (g, m)
-        For each factor, a mask of its legs.
+    `errors` (m, 3): errors of legs without the systematic part; NaN where not measured.
+    `covariance`, `wheels` (m, 3, 3): predicted covariance, and its part from the wheel noise.
+    `groups` (g, m): for each factor, a mask of its legs.
     """
     known = np.isfinite(errors)
     told = known.any(axis=1) & groups.any(axis=0)

@@ -68,12 +68,8 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> FreeSize
     """The cheapest set of sizes that may differ from the given file's.
 
     To first order, with everything else fitted again. The penalty of a parameter is that of all
-    model selection (`Fitted.penalty_of_one`).
-
-    Parameters
-    ----------
-    wanted : collection of str
-        Calibration effects that are free regardless of their gain.
+    model selection (`Fitted.penalty_of_one`). `wanted`: calibration effects that are free
+    regardless of their gain.
     """
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
     weighed = []

@@ -70,26 +70,11 @@ def diagnose(
 ) -> Diagnosis:
     """Diagnose what a model is missing.
 
-    Parameters
-    ----------
-    runs : sequence of Run
-        Recorded drives with a reference.
-    robot : Robot
-        The model to be diagnosed.
-    effects : sequence of Effect
-        Candidate effects: the library and the user's own.
-    options : EvaluationOptions
-        How drives are cut into legs and judged.
-    holdout : sequence of Run
-        Runs for judging only. If empty, a part of `runs` is held out.
-    show : Show
-        Callback for progress.
-
-    Raises
-    ------
-    InputError
-        When a run has no usable reference or no ticks, or is in degrees or millimetres; when there
-        are too few legs for any verdict.
+    `runs`: recorded drives with a reference. `robot`: the model to be diagnosed. `effects`:
+    candidate effects: the library and the user's own. `options`: how drives are cut into legs and
+    judged. `holdout`: runs for judging only. If empty, a part of `runs` is held out. InputError
+    when a run has no usable reference or no ticks, or is in degrees or millimetres; when there are
+    too few legs for any verdict.
     """
 
     def search(

@@ -160,15 +160,10 @@ def dependences(
 def fall_of_cost(gain: float, data: int, whole: float = 0.0) -> float:
     """Cost reduction for a fall of the squared innovations, with the noise re-estimated.
 
-    Parameters
-    ----------
-    gain
-        Fall of the squared innovations.
-    data
-        Number of innovations: the sum of their squares, where the noise was fitted to them.
-    whole
-        That sum, where it may be larger. By few data the noise stays above it for its prior, and a
-        pattern that explains nine tenths of the squares would be taken to explain all of them.
+    `gain`: fall of the squared innovations. `data`: number of innovations: the sum of their
+    squares, where the noise was fitted to them. `whole`: that sum, where it may be larger. By few
+    data the noise stays above it for its prior, and a pattern that explains nine tenths of the
+    squares would be taken to explain all of them.
     """
     return -data * math.log1p(-min(max(gain / max(whole, data), 0.0), 0.999))
 
@@ -176,14 +171,9 @@ def fall_of_cost(gain: float, data: int, whole: float = 0.0) -> float:
 def p_value_of_score(gain: float, degrees: int, whole: float, spare: float) -> float:
     """P-value of a score test: by Fisher's F where few data determine the noise, else chi-squared.
 
-    Parameters
-    ----------
-    gain, degrees
-        Fall of the squared innovations, and the parameters that cause it.
-    whole : float
-        Sum of the squared innovations before.
-    spare : float
-        Its degrees of freedom; infinite where the noise was fitted.
+    `gain`, `degrees`: fall of the squared innovations, and the parameters that cause it. `whole`:
+    sum of the squared innovations before. `spare`: its degrees of freedom; infinite where the noise
+    was fitted.
     """
     below = max(spare - degrees, 1.0)
     scatter = max((whole - gain) / below, 1.0)
@@ -194,13 +184,9 @@ def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:
     """Score test of patterns (k, n) with separate coefficients for each part of the data.
 
     It works with products, without a copy of the many patterns with the nuisances projected out.
-
-    Parameters
-    ----------
-    patterns : sequence of ndarray, shape (k, n)
-        The patterns in each part; zero in the others.
-    products : ndarray, shape (parts, k, nuisances + 1)
-        Their products with the nuisance basis and, last, with the projected innovations.
+    `patterns` (k, n): the patterns in each part; zero in the others. `products` (parts, k,
+    nuisances + 1): their products with the nuisance basis and, last, with the projected
+    innovations.
     """
     width = products.shape[1]
     square = np.zeros((len(patterns) * width,) * 2)

@@ -126,24 +126,11 @@ def begin(
 ) -> Begun:
     """Split the drives, find the set-up of the fitted ones, and leave out drives of another set-up.
 
-    Parameters
-    ----------
-    runs : sequence of Run
-        Runs to fit; a part of them is held out if `holdout` is empty.
-    holdout : sequence of Run
-        Runs for judging only.
-    robot : Robot
-        The model as given.
-    options : EvaluationOptions
-        How drives are cut into legs and judged.
-    given : Robot, optional
-        Robot by whose travel legs are cut, where that is not `robot`.
-
-    Raises
-    ------
-    InputError
-        When a run has no usable reference or no ticks, or is in degrees or millimetres; when the
-        wheels stood still in all of them.
+    `runs`: runs to fit; a part of them is held out if `holdout` is empty. `holdout`: runs for
+    judging only. `robot`: the model as given. `options`: how drives are cut into legs and judged.
+    `given`: Robot by whose travel legs are cut, where that is not `robot`. InputError when a run
+    has no usable reference or no ticks, or is in degrees or millimetres; when the wheels stood
+    still in all of them.
     """
 
     def divided(cutter: Robot) -> tuple[tuple[Run, ...], tuple[Run, ...]]:

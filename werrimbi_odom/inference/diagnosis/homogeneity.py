@@ -137,12 +137,8 @@ def lasting_columns(
 ) -> float:
     """P-value of what some columns explain, by the disagreement between the parts.
 
-    Parameters
-    ----------
-    free : ndarray, shape (3 m, d)
-        Columns with all other fitted parameters projected out.
-    rest : ndarray, shape (3 m,)
-        Innovations with them projected out.
+    `free` (3 m, d): columns with all other fitted parameters projected out. `rest` (3 m,):
+    innovations with them projected out.
     """
     parts = parts_of_innovations(runs, rest)
     if parts is None:
@@ -169,18 +165,9 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp], seen: Floats
     """Index of the drive without which a pattern vanishes, though the others could show it.
 
     A law belongs to the robot, so it must remain when any one drive is left out (a jackknife over
-    drives).
-
-    Parameters
-    ----------
-    free : ndarray, shape (n, k)
-        The pattern's columns with the nuisances projected out.
-    rest : ndarray, shape (n,)
-        Whitened innovations with the nuisances projected out.
-    run : ndarray, shape (n,)
-        Drive of each innovation.
-    seen : ndarray, shape (n, p)
-        The pattern's functions, of all drives alike.
+    drives). `free` (n, k): the pattern's columns with the nuisances projected out. `rest` (n,):
+    whitened innovations with the nuisances projected out. `run` (n,): drive of each innovation.
+    `seen` (n, p): the pattern's functions, of all drives alike.
     """
     if np.unique(run).size < rules.DRIVES_TO_LEAVE_ONE:
         return None
@@ -226,18 +213,11 @@ def _chance(
     stated noise, q = 1 - 1 / s^2. Where all parts know as much, that is the F test of an analysis
     of variance. That test itself, with one variance for all parts, takes the silence of those that
     know little for agreement: with the shares of the Kobuki's nine parts a chance of one in a
-    thousand was one in sixty, and of three parts among nine one in forty.
-
-    Parameters
-    ----------
-    free : ndarray, shape (n, k)
-        The pattern's columns. Of what each drive has of its own (a phase) there is one a drive, and
-        the mean has as many.
-    anew : ndarray, shape (n, j)
-        The columns of which each part draws its own: those of the drives added up, since no drive
-        knows the others' phases, and all know each phase as well as the size.
-    known : int
-        Parts that are added, which know as much as others and show the noise alone.
+    thousand was one in sixty, and of three parts among nine one in forty. `free` (n, k): the
+    pattern's columns. Of what each drive has of its own (a phase) there is one a drive, and the
+    mean has as many. `anew` (n, j): the columns of which each part draws its own: those of the
+    drives added up, since no drive knows the others' phases, and all know each phase as well as the
+    size. `known`: parts that are added, which know as much as others and show the noise alone.
     """
     basis, drawn = _orthonormal(free), _orthonormal(anew)
     shares, seen, means = [], [], []

@@ -64,12 +64,8 @@ def misfit_of_held_law(
 ) -> Misfit | None:
     """The misfit that explains a round's finding better than a new effect; None if there is none.
 
-    Parameters
-    ----------
-    best : Fitted, optional
-        Model with the effect that the round would accept.
-    beyond : Dependence, optional
-        Dependence that no effect explains, which would end the search.
+    `best`: model with the effect that the round would accept. `beyond`: dependence that no effect
+    explains, which would end the search.
     """
     before = this.before
     rest: Misfit | None = None
@@ -104,10 +100,7 @@ def misfit_of_found(
 ) -> Misfit | None:
     """The lasting dependence, if any, that remains beside everything found.
 
-    Parameters
-    ----------
-    certain : sequence of Dependence
-        Significant cells of the final model's map.
+    `certain`: significant cells of the final model's map.
     """
     worth = sorted(certain, key=lambda cell: cell.degrees * fit.penalty_of_one - cell.gain)
     numbers = (*CALIBRATION, *fit.numbers)

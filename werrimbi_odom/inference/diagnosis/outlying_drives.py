@@ -46,10 +46,7 @@ def recorded_otherwise(
 ) -> tuple[RecordedOtherwise, ...]:
     """Fitted and held-out drives that were recorded with another set-up than most fitted ones.
 
-    Parameters
-    ----------
-    mended : Robot
-        Robot with the set-up mistakes common to the fitted drives corrected.
+    `mended`: Robot with the set-up mistakes common to the fitted drives corrected.
     """
     own = typical_errors(fitted, mended)
     usual = float(np.median(own))

@@ -58,11 +58,7 @@ def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
     """Root mean square errors of two models over the same legs, and the p-value of a rise.
 
     The p-value is of legs without an abrupt event: after an event the end pose may be anything.
-
-    Parameters
-    ----------
-    unit : {"m", "rad"}
-        "m" for errors of position, "rad" for those of heading.
+    `unit`: "m" for errors of position, "rad" for those of heading.
     """
     errors = error_of(before, unit), error_of(after, unit)
     length = float(np.median(before.errors.length)) if before.errors.length.size else 0.0

@@ -186,10 +186,7 @@ def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
 def penalty_of_one(runs: Concatenated, *, own: bool = False) -> float:
     """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor.
 
-    Parameters
-    ----------
-    own : bool
-        Each run has its own value (a phase, a rate): of the data, only those of one run tell it.
+    `own`: each run has its own value (a phase, a rate): of the data, only those of one run tell it.
     """
     data = runs.data / len(runs.runs) if own else runs.data
     return max(rules.PENALTY_FLOOR, math.log(max(data, 2)))

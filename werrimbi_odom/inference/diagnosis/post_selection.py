@@ -42,21 +42,10 @@ def model_averaged_stds(
     Each choice of free parameters has its own estimates with their covariance, and a probability by
     its cost and penalty. The mean square deviation from the reported values, over all choices, is
     the variance (Bayesian model averaging: Hoeting and others, Statistical Science 14, 1999).
-
-    Parameters
-    ----------
-    fit : Fitted
-        The fit whose values are reported.
-    given : Robot
-        Robot with the sizes of the file.
-    wanted : collection of str
-        Calibration effects whose sizes are free in every choice.
-    told : FreeSizes
-        The chosen sizes, about which deviations are taken; of `laws`, the parameters in `fit`.
-    laws : sequence of Law
-        Optional parameters of effects.
-    design : Design, optional
-        Design with all parameters of `laws`; by default that of the fit.
+    `fit`: the fit whose values are reported. `given`: Robot with the sizes of the file. `wanted`:
+    calibration effects whose sizes are free in every choice. `told`: the chosen sizes, about which
+    deviations are taken; of `laws`, the parameters in `fit`. `laws`: optional parameters of
+    effects. `design`: design with all parameters of `laws`; by default that of the fit.
     """
     robot = fit.point.model.robot
     names, marks, rest = _shared(design or fit.design)

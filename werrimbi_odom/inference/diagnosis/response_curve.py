@@ -65,16 +65,9 @@ def response(
 ) -> Response:
     """Estimate the remaining error over a variable.
 
-    Parameters
-    ----------
-    numbers : sequence of FreeParameter
-        Nuisance parameters, which are projected out.
-    amount : Amount
-        Error channel, and what the error is proportional to.
-    values : (ndarray, ndarray), shape (n,) each
-        The variable at every step, for left and right wheel.
-    edges : ndarray, shape (parts + 1,)
-        Edges of the bins.
+    `numbers`: nuisance parameters, which are projected out. `amount`: error channel, and what the
+    error is proportional to. `values` (n,): the variable at every step, for left and right wheel.
+    `edges` (parts + 1,): edges of the bins.
     """
     prediction = predict_all(point.model, runs)
     frame, rest = residual_innovations(runs, point, numbers, prediction)

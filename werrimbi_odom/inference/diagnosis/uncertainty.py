@@ -127,12 +127,8 @@ def variances_by_sign(
 
     A flat instead of a bump goes with another base and another radius. Each sign has a probability
     by its cost and penalty, as all choices do (`model_averaged_stds`). The effect's own size has
-    none here: that of the other sign is told beside it.
-
-    Parameters
-    ----------
-    either : iterable of Fitted
-        Fits with an effect as their newest, to these runs.
+    none here: that of the other sign is told beside it. `either`: fits with an effect as their
+    newest, to these runs.
     """
     found: dict[str, float] = {}
     for fit in either:

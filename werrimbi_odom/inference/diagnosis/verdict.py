@@ -74,16 +74,9 @@ def diagnosis_of(
 ) -> Diagnosis:
     """Combine all results into the diagnosis.
 
-    Parameters
-    ----------
-    final : Fitted
-        The last accepted fit.
-    beyond : Dependence, optional
-        The dependence that no effect of the library explains.
-    remaining : tuple of Dependence
-        Evidence map of `final`.
-    instead : tuple of Instead
-        Effects in place of the calibration, where no effect was found.
+    `final`: the last accepted fit. `beyond`: the dependence that no effect of the library explains.
+    `remaining`: evidence map of `final`. `instead`: effects in place of the calibration, where no
+    effect was found.
     """
     judge, mended = begun.judge, begun.set_up.robot
     mistakes = tuple(finding.effect for finding in begun.set_up.findings)

@@ -55,14 +55,8 @@ def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependenc
 
     What a dependence on a variable explains of it is not the reference's: an effect that the
     library does not hold. Scans are left alone, as the noise of each is known from its match, and
-    headings alone, whose walk is a gyro's.
-
-    Parameters
-    ----------
-    fit : Fitted
-        The final model, with independent errors of the poses.
-    remaining : sequence of Dependence
-        Its evidence map.
+    headings alone, whose walk is a gyro's. `fit`: the final model, with independent errors of the
+    poses. `remaining`: its evidence map.
     """
     point = fit.point
     independent = point.options.reference_kind == "absolute"

@@ -80,12 +80,8 @@ def what_is_left(
 ) -> WhatIsLeft | None:
     """Compare what is left with the reference's noise; None where that or the legs are too few.
 
-    Parameters
-    ----------
-    train, holdout
-        Drives and their legs, judged with everything found.
-    runs, point
-        The fitted drives in the legs of the fit, and the fit.
+    `train`, `holdout`: drives and their legs, judged with everything found. `runs`, `point`: the
+    fitted drives in the legs of the fit, and the fit.
     """
     if not all(_noise_is_known(prepared) for prepared, _ in (train, holdout)):
         return None

@@ -57,18 +57,9 @@ def refit_without_events(
 ) -> tuple[Found, Events]:
     """Fit drives, and fit again without the events that are found beside the model.
 
-    Parameters
-    ----------
-    fit : callable
-        From runs, held-out runs and whether it is the first time, to the result and the events
-        beside it.
-    runs, holdout : sequence of Run
-        Fitted and held-out drives.
-
-    Returns
-    -------
-    (Found, Events)
-        The last result, and the events beside it.
+    `fit`: from runs, held-out runs and whether it is the first time, to the result and the events
+    beside it. `runs`, `holdout`: fitted and held-out drives. Result: the last result, and the
+    events beside it.
     """
     found, happened = fit(runs, holdout, True)
     for _ in range(rules.EVENT_ROUNDS):

@@ -76,10 +76,7 @@ class OfTwo:
 def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
     """Draft the effect that explains the strongest dependence.
 
-    Raises
-    ------
-    InputError
-        When there is no significant dependence, or no draft of it can be fitted.
+    InputError when there is no significant dependence, or no draft of it can be fitted.
     """
     cells = worth_drafting(diagnosis)
     if not cells:

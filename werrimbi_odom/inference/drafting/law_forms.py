@@ -119,14 +119,8 @@ def unit_of(amount: Amount) -> str:
 def forms_of(seen: Seen, amount: Amount, size: float) -> tuple[Form, ...]:
     """Forms of law in a variable, the simplest first.
 
-    Parameters
-    ----------
-    seen : Seen
-        The variable.
-    amount : Amount
-        Error channel, and what the error is proportional to.
-    size : float
-        Size of the share, by the evidence.
+    `seen`: the variable. `amount`: error channel, and what the error is proportional to. `size`:
+    size of the share, by the evidence.
     """
     if seen.waves:
         return (_wave(seen, amount, size),)

@@ -48,10 +48,7 @@ def sums_of(
 ) -> Sums:
     """Sum the errors of all terms along the path, and whiten them.
 
-    Parameters
-    ----------
-    numbers : sequence of FreeParameter
-        Nuisance parameters: what they can explain is no evidence.
+    `numbers`: nuisance parameters: what they can explain is no evidence.
     """
     prediction = predict_all(point.model, runs)
     frame, rest = residual_innovations(runs, point, numbers, prediction)

@@ -43,17 +43,9 @@ def selections(
 ) -> list[Selected]:
     """The best small sets of terms, one for each starting term; the best first.
 
-    Parameters
-    ----------
-    square : ndarray, shape (k, k)
-        Gram matrix of the terms' columns, which had unit length before nuisances were projected
-        out.
-    cross : ndarray, shape (k,)
-        Products of the columns with the response.
-    penalty : float
-        Penalty of a term.
-    may_join : callable
-        Whether a term may join a set of selected terms.
+    `square` (k, k): Gram matrix of the terms' columns, which had unit length before nuisances were
+    projected out. `cross` (k,): products of the columns with the response. `penalty`: penalty of a
+    term. `may_join`: whether a term may join a set of selected terms.
     """
     alone = cross**2 / np.diag(square)
     found: dict[tuple[int, ...], Selected] = {}

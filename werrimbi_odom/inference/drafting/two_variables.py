@@ -54,15 +54,8 @@ def best_draft(
 ) -> tuple[Draft, Added]:
     """The best draft of one variable, or of two where the held-out drives support it.
 
-    Parameters
-    ----------
-    tried_out : callable
-        Adds a draft to the model and returns the change of the errors.
-
-    Raises
-    ------
-    InputError
-        When there is no significant dependence, or no draft of it can be fitted.
+    `tried_out`: adds a draft to the model and returns the change of the errors. InputError when
+    there is no significant dependence, or no draft of it can be fitted.
     """
     one, refused = None, None
     try:
@@ -85,10 +78,7 @@ def best_draft(
 def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -> Draft | None:
     """The best law of two variables, if it explains the fitted drives better than a law of one.
 
-    Parameters
-    ----------
-    one : Draft, optional
-        The draft of one variable; without one, the law must be better than calibration alone.
+    `one`: the draft of one variable; without one, the law must be better than calibration alone.
     """
     base = diagnosis.final
     drives = FitDrives(diagnosis.runs, base.point.excluded, base.point.options)
@@ -127,12 +117,8 @@ def better_held_out(two: Draft, with_two: Added, with_one: Added | None) -> Draf
     """The law of two, if significantly better than the law of one on held-out drives; else None.
 
     It is a single test, fixed before the held-out drives are looked at: whether their errors rise
-    when the law of one takes its place. So it needs no correction.
-
-    Parameters
-    ----------
-    with_one : Added, optional
-        Errors on the same drives with the law of one; without it, those with calibration are used.
+    when the law of one takes its place. So it needs no correction. `with_one`: errors on the same
+    drives with the law of one; without it, those with calibration are used.
     """
     assert two.of_two is not None
     side = with_two.holdout

@@ -68,17 +68,10 @@ def alike(
 ) -> Alike | None:
     """The most significant common cause of the events, if any.
 
-    Parameters
-    ----------
-    legs : sequence of ndarray
-        Intervals of the events, for each side.
-    sides : sequence of (Concatenated, Prediction)
-        Sets of drives divided into intervals, each with a model's prediction.
-    jumped : sequence of ndarray
-        Which of the events are jumps of the reference, for each side.
-    places : bool
-        Whether measured positions are places on the floor; those of an incremental reference are
-        not, after a jump.
+    `legs`: intervals of the events, for each side. `sides`: sets of drives divided into intervals,
+    each with a model's prediction. `jumped`: which of the events are jumps of the reference, for
+    each side. `places`: whether measured positions are places on the floor; those of an incremental
+    reference are not, after a jump.
     """
     of = sum(own.size for own in legs)
     if of < rules.EVENTS_ALIKE:

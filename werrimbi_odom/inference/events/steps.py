@@ -110,12 +110,7 @@ class Steps:
 def steps_of(runs: Concatenated, point: Point) -> Steps:
     """Find the steps that a model, with its noise, does not explain.
 
-    Parameters
-    ----------
-    runs : Concatenated
-        Runs with a leg from each pose to the next.
-    point : Point
-        The model with its noise.
+    `runs`: runs with a leg from each pose to the next. `point`: the model with its noise.
     """
     model = point.model
     prediction = predict_all(model, runs)

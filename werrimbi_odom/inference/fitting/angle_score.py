@@ -39,16 +39,10 @@ class LocalScore(NamedTuple):
 def best_angles(tries: Floats, free: Floats, rest: Floats, blocks: int) -> list[LocalScore]:
     """Best angles and size for a positive and for a negative size; those without gain left out.
 
-    Parameters
-    ----------
-    tries : ndarray, shape (k,)
-        Angles of the derivatives, evenly spaced round the wheel [rad].
-    free : ndarray, shape (n, blocks * k)
-        Derivatives of the innovations in the size at each angle, nuisances projected out.
-    rest : ndarray, shape (n,)
-        Innovations, nuisances projected out.
-    blocks : int
-        Number of runs with an angle of their own; 1 for one common angle.
+    `tries` (k,): angles of the derivatives, evenly spaced round the wheel [rad]. `free` (n, blocks
+    * k): derivatives of the innovations in the size at each angle, nuisances projected out. `rest`
+    (n,): innovations, nuisances projected out. `blocks`: number of runs with an angle of their own;
+    1 for one common angle.
     """
     count = tries.size
     at = tries[0] + 2.0 * np.pi * np.arange(FINE) / FINE

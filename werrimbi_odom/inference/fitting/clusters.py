@@ -24,12 +24,7 @@ from werrimbi_odom.model.pose import Floats
 def parts_of(run: NDArray[np.intp], most: int = rules.LASTING_MOST) -> NDArray[np.intp]:
     """Index of the part (cluster) of each leg, numbered over all runs, (m,).
 
-    Parameters
-    ----------
-    run : ndarray, shape (m,)
-        Index of each leg's run, in order.
-    most : int
-        Most parts of one run.
+    `run` (m,): index of each leg's run, in order. `most`: most parts of one run.
     """
     each = min(
         max(math.ceil(rules.LASTING_PARTS / np.unique(run).size), rules.LASTING_FEWEST), most
@@ -44,14 +39,8 @@ def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] 
     """Index of the part of each innovation, (3 m,); -1 where nothing was measured.
 
     None where legs with data are so long that each is independent, or where all runs together have
-    too few of them for parts that could be compared.
-
-    Parameters
-    ----------
-    runs : Concatenated
-        The runs of the legs.
-    white : ndarray, shape (3 m,)
-        Innovations; all three of an excluded leg are zero.
+    too few of them for parts that could be compared. `runs`: the runs of the legs. `white` (3 m,):
+    innovations; all three of an excluded leg are zero.
     """
     known = np.abs(white.reshape(-1, 3)).max(axis=1) > SILENT
     run = runs.run_of_leg[known]
@@ -82,12 +71,8 @@ def effective_freedom(runs: Concatenated, white: Floats, own: Floats) -> float:
 
     With the shares `w` of what they know of it, 1 / sum(w^2) - 1: that of the parts, less one,
     where all know as much, and fewer where few drives or turns show it (Bell and McCaffrey, Surv.
-    Methodol. 28, 2002). Infinite where there are no parts.
-
-    Parameters
-    ----------
-    own : ndarray, shape (3 m,)
-        Derivative of the innovations in the number, with all others projected out.
+    Methodol. 28, 2002). Infinite where there are no parts. `own` (3 m,): derivative of the
+    innovations in the number, with all others projected out.
     """
     parts = parts_of_innovations(runs, white)
     if parts is None or not own.any():
@@ -101,18 +86,9 @@ def widening(white: Floats, flat: Floats, moves: Floats, runs: Concatenated) -> 
 
     This is the ratio of the sandwich estimator (Huber 1967; clustered: Liang and Zeger, Biometrika
     73, 1986) to the inverse information, where parts disagree significantly. It is 1 where they
-    agree, since 28 parts determine a deviation only to 13 %.
-
-    Parameters
-    ----------
-    white : ndarray, shape (n,)
-        Whitened innovations at the fit.
-    flat : ndarray, shape (n, p)
-        Their Jacobian.
-    moves : ndarray, shape (p, q)
-        Directions of the columns that were free.
-    runs : Concatenated
-        The runs of the legs.
+    agree, since 28 parts determine a deviation only to 13 %. `white` (n,): whitened innovations at
+    the fit. `flat` (n, p): their Jacobian. `moves` (p, q): directions of the columns that were
+    free. `runs`: the runs of the legs.
     """
     wide = np.ones(moves.shape[0])
     parts = parts_of_innovations(runs, white)

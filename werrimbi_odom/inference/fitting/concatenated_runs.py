@@ -242,12 +242,7 @@ class Concatenated:
 def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) -> Concatenated:
     """Lay runs end to end.
 
-    Parameters
-    ----------
-    runs : sequence of MatchedRun
-        Runs in order.
-    finer : Concatenated, optional
-        The same runs in shorter legs, from which these are `joined`.
+    `runs`: runs in order. `finer`: the same runs in shorter legs, from which these are `joined`.
     """
     keep_freed_memory()
     steps = _starts([run.time.size - 1 for run in runs])

@@ -109,13 +109,8 @@ class Ways(NamedTuple):
 
         This is the adjoint of the filter loop (de Jong and Penzer, "Diagnosing shocks in time
         series", J. Am. Stat. Assoc. 93, 1998), so all legs are tested in one backward pass.
-
-        Parameters
-        ----------
-        weighed : ndarray, shape (m, 3)
-            `precision` times the innovations.
-        precision : ndarray, shape (m, 3, 3)
-            Inverse of their covariance; zero for coordinates that were not measured.
+        `weighed` (m, 3): `precision` times the innovations. `precision` (m, 3, 3): inverse of their
+        covariance; zero for coordinates that were not measured.
         """
         seen = self.leave.swapaxes(-1, -2)
         score = -(seen @ weighed[self.leg, :, None])[..., 0]

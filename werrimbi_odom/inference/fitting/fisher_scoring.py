@@ -31,23 +31,10 @@ def minimum(
 ) -> Floats:
     """Minimise a cost within bounds.
 
-    Parameters
-    ----------
-    evaluate : callable
-        Cost, gradient and expected Hessian; the cost is infinite outside its domain.
-    start : ndarray, shape (n,)
-        Start values; clipped to the bounds.
-    lowest, highest : float and ndarray, shape (n,)
-        Bounds.
-    longest : float
-        Largest step of a parameter: the quadratic model is not trusted beyond.
-    rounds : int
-        Largest number of iterations.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Parameters of least cost.
+    `evaluate`: cost, gradient and expected Hessian; the cost is infinite outside its domain.
+    `start` (n,): start values; clipped to the bounds. `lowest`, `highest` (n,): bounds. `longest`:
+    largest step of a parameter: the quadratic model is not trusted beyond. `rounds`: largest number
+    of iterations. Result (n,): parameters of least cost.
     """
     here = np.clip(start, lowest, highest)
     damping = 1e-6

@@ -111,21 +111,11 @@ def fit_model(
 ) -> ModelFit:
     """Fit parameters and noise to all runs at once.
 
-    Parameters
-    ----------
-    runs : Concatenated
-        Runs to fit.
-    point : Point
-        Start of the fit.
-    numbers : sequence of FreeParameter
-        Parameters that may change, including per-run ones.
-    given : Model, optional
-        Values of what the driving does not determine. Those of the start, if not given.
-    find_jumps : bool
-        Find the legs on which the reference jumped. Do this once for a set of runs: fits that are
-        compared must exclude the same legs.
-    rounds : int
-        Largest number of alternations between noise and model parameters.
+    `runs`: runs to fit. `point`: start of the fit. `numbers`: parameters that may change, including
+    per-run ones. `given`: values of what the driving does not determine. Those of the start, if not
+    given. `find_jumps`: find the legs on which the reference jumped. Do this once for a set of
+    runs: fits that are compared must exclude the same legs. `rounds`: largest number of
+    alternations between noise and model parameters.
     """
     given = given or point.model
     if find_jumps:

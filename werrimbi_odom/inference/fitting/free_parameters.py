@@ -75,12 +75,8 @@ DRIFT_OF_YAW = FreeParameter(YAW_DRIFT, "rad/s", 1e-4, (-10.0, 10.0), float("inf
 def parameters_to_fit(effect: Effect, shared: Sequence[str] = ()) -> tuple[FreeParameter, ...]:
     """Free parameters of an effect.
 
-    Parameters
-    ----------
-    effect : Effect
-        The effect.
-    shared : sequence of str
-        Per-run parameters that are the same in all runs (a phase, where counters keep their zero).
+    `effect`: the effect. `shared`: per-run parameters that are the same in all runs (a phase, where
+    counters keep their zero).
     """
     return tuple(
         FreeParameter(
@@ -173,10 +169,7 @@ class Model:
     def laid_out(self, steps: NDArray[np.intp]) -> Robot:
         """Robot with per-run values as arrays over the steps of all runs, (n,).
 
-        Parameters
-        ----------
-        steps : ndarray, shape (runs + 1,)
-            First step of each run, and the number of all steps.
+        `steps` (runs + 1,): first step of each run, and the number of all steps.
         """
         first = self.own[0] if self.own else {}
         names = [name for name in first if name not in NUISANCES]

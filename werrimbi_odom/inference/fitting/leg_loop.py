@@ -130,14 +130,8 @@ def loop_over_scalars(
 ) -> None:
     """The loop in scalars, one stretch after the other, for g sets of variances.
 
-    Parameters
-    ----------
-    bounds : ndarray, shape (r + 1,)
-        Leg k of stretch j is ``leg[bounds[k] + j]``.
-    unmeasured : float
-        Variance of what was not measured.
-
-    All else is as in `Loop`.
+    `bounds` (r + 1,): leg k of stretch j is ``leg[bounds[k] + j]``. `unmeasured`: variance of what
+    was not measured. All else is as in `Loop`.
     """
     alike = reading.shape[1] == 1
     for group in range(noise.shape[0]):

@@ -77,16 +77,9 @@ def step_by_step(
 ) -> None:
     """Fill `found`, (6, 2, m): the covariance of m legs for each wheel.
 
-    Parameters
-    ----------
-    begin, end : ndarray, shape (m,)
-        First steps of the legs, and one past the last.
-    places, yaw : ndarray, shape (n + 1, 2) and (n + 1,)
-        Poses before each of the n steps, and at the end.
-    facing : ndarray, shape (m,)
-        Heading of the axes in which a leg is told [rad].
-    ends : ndarray, shape (m, 2)
-        Where the point is that is measured, at the legs' ends [m].
+    `begin`, `end` (m,): first steps of the legs, and one past the last. `places`, `yaw` (n + 1, 2):
+    poses before each of the n steps, and at the end. `facing` (m,): heading of the axes in which a
+    leg is told [rad]. `ends` (m, 2): where the point is that is measured, at the legs' ends [m].
     """
     for leg in range(begin.size):
         cos, sin = math.cos(facing[leg]), math.sin(facing[leg])

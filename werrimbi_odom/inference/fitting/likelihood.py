@@ -111,10 +111,7 @@ class Innovations:
     def shocks(self, white: Floats) -> Shocks:
         """Score and information of a shock to the states in a single leg, for every leg.
 
-        Parameters
-        ----------
-        white : ndarray, shape (m, 3)
-            Whitened innovations, with nuisances projected out.
+        `white` (m, 3): whitened innovations, with nuisances projected out.
         """
         back = self._root().swapaxes(-1, -2)
         weighed, precision = (back @ white[..., None])[..., 0], back @ self._root()
@@ -157,27 +154,12 @@ def innovations(
 ) -> Innovations:
     """Filter all runs and return their innovations.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot, with its effects.
-    runs : Concatenated
-        Measured poses of m legs.
-    prediction : Prediction
-        Predicted legs.
-    variances : Variances
-        Sets of noise variances.
-    kind : ReferenceKind
-        Error model of the reference.
-    excluded : ndarray of bool, shape (m,), optional
-        Legs on which the reference jumped. Like gaps they do not count, and the pose restarts after
-        them.
-    start_yaws : sequence of float or None, optional
-        Heading at the first reference pose of each run, where not measured [rad].
-    heading : float
-        Variance of these where they were not fitted, for a local_map [rad²].
-    stretch : int
-        Least number of legs after which the filter may restart.
+    `robot`: the robot, with its effects. `runs`: measured poses of m legs. `prediction`: predicted
+    legs. `variances`: sets of noise variances. `kind`: error model of the reference. `excluded`
+    (m,): legs on which the reference jumped. Like gaps they do not count, and the pose restarts
+    after them. `start_yaws`: heading at the first reference pose of each run, where not measured
+    [rad]. `heading`: variance of these where they were not fitted, for a local_map [rad²].
+    `stretch`: least number of legs after which the filter may restart.
     """
     count = runs.count
     skip = runs.gap if excluded is None else runs.gap | excluded

@@ -183,20 +183,11 @@ def noise_estimates(
     """Noise estimates [m^0.5, m^0.5, m, rad] (and [s] for stamps) with standard deviations.
 
     Noises of what the reference does not measure are left out. Standard deviations are from the
-    observed information.
-
-    Parameters
-    ----------
-    costs : Costs
-        Likelihood at the fitted model.
-    variances : Variances
-        Maximum a posteriori variances.
-    held : (bool, bool)
-        Whether the reference's noise in position and in heading is known.
-    information : callable, optional
-        Log determinant of the information on the fitted model parameters, as a function of the
-        variances. Fitting these absorbs noise. With it the estimates are those of restricted
-        maximum likelihood (Patterson and Thompson, Biometrika 58, 1971), by one Newton step.
+    observed information. `costs`: likelihood at the fitted model. `variances`: maximum a posteriori
+    variances. `held`: whether the reference's noise in position and in heading is known.
+    `information`: log determinant of the information on the fitted model parameters, as a function
+    of the variances. Fitting these absorbs noise. With it the estimates are those of restricted
+    maximum likelihood (Patterson and Thompson, Biometrika 58, 1971), by one Newton step.
     """
     moving = _moving(costs, held)
     function = _in_logs(costs, variances, moving)

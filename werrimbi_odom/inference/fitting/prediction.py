@@ -50,14 +50,8 @@ class Prediction:
 def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
     """Predict the legs of one run.
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot, with its effects.
-    run : MatchedRun
-        The run, cut into legs.
-    start_yaw : float, optional
-        Heading at the first reference pose where not measured [rad].
+    `robot`: the robot, with its effects. `run`: the run, cut into legs. `start_yaw`: heading at the
+    first reference pose where not measured [rad].
     """
     own = {} if start_yaw is None else {START_YAW: start_yaw}
     return predict_all(Model(robot, (own,)), concatenated([run]))
@@ -66,14 +60,8 @@ def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Pr
 def predicted_legs(model: Model, runs: Concatenated, looked_at: Robot | None = None) -> Floats:
     """Relative pose of every leg as seen by the reference, shape (m, 3) [m, m, rad].
 
-    Parameters
-    ----------
-    model : Model
-        The model.
-    runs : Concatenated
-        The runs of the legs.
-    looked_at : Robot, optional
-        Robot whose travel is the input of the effects, where that is cached and close enough.
+    `model`: the model. `runs`: the runs of the legs. `looked_at`: Robot whose travel is the input
+    of the effects, where that is cached and close enough.
     """
     view = extrinsics_of(model, runs)
     runs = runs.seen_through(view)

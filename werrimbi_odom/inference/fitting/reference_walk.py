@@ -20,12 +20,8 @@ from werrimbi_odom.model.pose import Floats
 def walked(prediction: Prediction, growth: Floats, xy: Floats, yaw: Floats) -> Floats:
     """Covariance of each leg by a walk, evenly along its path, shape (..., m, 3, 3).
 
-    Parameters
-    ----------
-    growth : ndarray, shape (m,)
-        Variances gained over each leg, in units of `xy` and `yaw`.
-    xy, yaw : ndarray, shape (..., m) or (..., 1)
-        Variances of position and heading [m², rad²].
+    `growth` (m,): variances gained over each leg, in units of `xy` and `yaw`. `xy`, `yaw` (..., m)
+    or (..., 1): variances of position and heading [m², rad²].
     """
     none = np.zeros_like(growth)
     leg = BodyMotion(prediction.along, none, prediction.turn)

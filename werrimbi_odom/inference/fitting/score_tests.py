@@ -84,21 +84,12 @@ def candidates(
 ) -> tuple[Candidate, ...]:
     """All candidates: one for each combination of trial shapes of each effect.
 
-    Parameters
-    ----------
-    effects : iterable of Effect
-        Library of effects.
-    known : iterable of str
-        Effects that the model already has.
-    channels : iterable of str
-        Extra measured channels of the runs; effects that need others are left out.
-    runs : int
-        Number of runs: with one run nobody can tell whether a phase is the same in each.
-    asked : bool
-        The user asked for these effects. Otherwise those that stand for the wheel base
-        (`Parameter.as_base`) are left to the set-up search, which knows which robots have them.
-    own_scale : bool
-        The metric scale of the reference is unknown and the multipliers are not free.
+    `effects`: library of effects. `known`: effects that the model already has. `channels`: extra
+    measured channels of the runs; effects that need others are left out. `runs`: number of runs:
+    with one run nobody can tell whether a phase is the same in each. `asked`: the user asked for
+    these effects. Otherwise those that stand for the wheel base (`Parameter.as_base`) are left to
+    the set-up search, which knows which robots have them. `own_scale`: the metric scale of the
+    reference is unknown and the multipliers are not free.
     """
     there, measured = set(known), set(channels)
     found = []

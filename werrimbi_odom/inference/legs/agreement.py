@@ -51,15 +51,9 @@ class Agreement:
 def agreement_of_turns(windows: Windows, base: float) -> Agreement | None:
     """Estimate how turns depend on wheel travel; None if too little of the drive is consistent.
 
-    Drift at rest is subtracted first, unless it is as fast as turning.
-
-    Parameters
-    ----------
-    windows : Windows
-        Windows of turns.
-    base : float
-        Wheel base of the robot file [m]. Its law is preferred where part of the drive agrees with
-        it: a held robot turns less than predicted, and rarely by just that law.
+    Drift at rest is subtracted first, unless it is as fast as turning. `windows`: windows of turns.
+    `base`: wheel base of the robot file [m]. Its law is preferred where part of the drive agrees
+    with it: a held robot turns less than predicted, and rarely by just that law.
     """
     rest = windows.at_rest()
     rest = rest[np.abs(rest) < rules.NO_DRIVING_TURNS * windows.steps * windows.step]
@@ -179,12 +173,8 @@ def inlier_weight(windows: Windows, shown: Floats, gross: Floats) -> tuple[Float
 def accepted(found: Agreement, near: bool, least: float) -> Agreement | None:
     """Accept the result if a fair share of the informative windows are inliers.
 
-    Parameters
-    ----------
-    near : bool
-        Whether the law agrees with the robot file.
-    least : float
-        Least turn or path that the inliers must add up to.
+    `near`: whether the law agrees with the robot file. `least`: least turn or path that the inliers
+    must add up to.
     """
     windows = found.windows
     asked = (windows.rolled > windows.still) & np.isfinite(windows.measured)

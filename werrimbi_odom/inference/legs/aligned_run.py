@@ -34,19 +34,9 @@ def record_of(
 ) -> AlignedRun:
     """Put ticks and reference on one clock, and list the stretches to exclude.
 
-    The clocks differ by the reference's delay of the robot file, if it has one.
-
-    Parameters
-    ----------
-    run, robot, limits
-        As for `match`.
-    leg, turn : float
-        Travel that makes a leg [m, rad]; gaps are measured in legs.
-
-    Raises
-    ------
-    InputError
-        As `match`.
+    The clocks differ by the reference's delay of the robot file, if it has one. `run`, `robot`,
+    `limits`: as for `match`. `leg`, `turn`: travel that makes a leg [m, rad]; gaps are measured in
+    legs. InputError as `match`.
     """
     run = with_no_driving(run, robot, limits)
     reference = run.reference
@@ -193,12 +183,8 @@ def usable_rows(
 ) -> NDArray[np.intp]:
     """Rows with a known value within the ticks' time span, in strictly ascending time.
 
-    Parameters
-    ----------
-    time, known : ndarray, shape (r,)
-        Time of each row of a reference [s], and whether it holds the wanted value.
-    first, last : float
-        Time of the first and the last tick [s].
+    `time`, `known` (r,): time of each row of a reference [s], and whether it holds the wanted
+    value. `first`, `last`: time of the first and the last tick [s].
     """
     within = known & (time >= first) & (time <= last)
     if within.sum() < rules.FEW_POSES:

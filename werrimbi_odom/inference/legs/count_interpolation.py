@@ -91,12 +91,8 @@ class Counters:
 def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
     """Counters of a run, without the rows that the encoder model rejects.
 
-    Parts of a run share one computation.
-
-    Raises
-    ------
-    InputError
-        If fewer than two rows are usable, or the clock was set back.
+    Parts of a run share one computation. InputError if fewer than two rows are usable, or the clock
+    was set back.
     """
     together = run.reference is not None and run.reference.stamped_together
     least = rules.EVEN_LEAST_TOGETHER if together else rules.EVEN_LEAST
@@ -161,11 +157,9 @@ def nodes_at(
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
     """Nodes at the counters' messages and at the ascending times `at` (n,).
 
-    Returns
-    -------
-    time, left, right, ends, channels
-        Times of the nodes (k + 1,), counts between them (k,) and (k,), node indices of `at` (n,),
-        and values of the other channels at the start and end of each step.
+    Result: times of the nodes (k + 1,), counts between them
+    (k,) and (k,), node indices of `at` (n,), and values of the other channels at the start and end
+    of each step.
     """
     kept = counters.nodes
     known, left, right = (part[kept] for part in (counters.time, counters.left, counters.right))

@@ -46,14 +46,8 @@ def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
     """Remove jumps from the steps of a record.
 
     A counter that came back kept counting: only the readings in between are dropped. One that did
-    not has lost its counts: the wheel is assumed to have moved as before and after.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n + 1,)
-        Stamps, ascending [s].
-    left, right : ndarray, shape (n,)
-        Travel between them, in turns of the wheel.
+    not has lost its counts: the wheel is assumed to have moved as before and after. `time` (n +
+    1,): stamps, ascending [s]. `left`, `right` (n,): travel between them, in turns of the wheel.
     """
     found = counter_jumps_in(time, left, right)
     kept = np.ones(left.size, dtype=np.bool_)

@@ -38,23 +38,10 @@ def match(
 ) -> MatchedRun:
     """Split the steps of a run at its reference poses and cut it into legs.
 
-    Parameters
-    ----------
-    run : Run
-        Recorded run.
-    robot : Robot
-        Robot whose travel decides where legs end; later fits do not move them.
-    leg : float
-        Length of a leg [m]. A leg spans at least one interval of the reference.
-    limits : EncoderLimits, optional
-        Limits of the encoder model.
-    turn : float
-        Turning on the spot that also makes a leg [rad]; path and turning add up.
-
-    Raises
-    ------
-    InputError
-        If the run has no reference, or none while ticks were recorded.
+    `run`: recorded run. `robot`: Robot whose travel decides where legs end; later fits do not move
+    them. `leg`: length of a leg [m]. A leg spans at least one interval of the reference. `limits`:
+    limits of the encoder model. `turn`: turning on the spot that also makes a leg [rad]; path and
+    turning add up. InputError if the run has no reference, or none while ticks were recorded.
     """
     record = record_of(run, robot, limits, leg, turn)
     return divided(record, rows_of_legs(record, robot, leg, turn))
@@ -120,16 +107,9 @@ def ends_in(record: AlignedRun, way: Floats, leg: float = 1.0) -> NDArray[np.int
 def leg_ends(way: Floats, gap: NDArray[np.bool_], leg: float = 1.0) -> NDArray[np.intp]:
     """Rows at which legs begin and end: whenever one leg's worth of travel has accumulated.
 
-    After a gap the count restarts; an incomplete leg before it is dropped.
-
-    Parameters
-    ----------
-    way : ndarray, shape (r,)
-        Cumulative travel at each row of the reference, in any unit.
-    gap : ndarray of bool, shape (r - 1,)
-        Intervals that no leg may span.
-    leg : float
-        Length of a leg in that unit.
+    After a gap the count restarts; an incomplete leg before it is dropped. `way` (r,): cumulative
+    travel at each row of the reference, in any unit. `gap` (r - 1,): intervals that no leg may
+    span. `leg`: length of a leg in that unit.
     """
     gone = (way - way[0]) / leg
     rounding = ROUNDING * max(float(gone[-1]) * leg, 1.0) / leg

@@ -28,15 +28,9 @@ def agreement_of_displacements(
 ) -> Agreement | None:
     """Estimate how displacements depend on wheel travel; None if too little is consistent.
 
-    Parameters
-    ----------
-    windows : Windows
-        Windows of displacements.
-    turns : Agreement or None
-        Result for the turns. Without it, the wiring of the robot file and that with one wheel
-        reversed are tried.
-    base : float
-        Wheel base of the robot file, as the unit of turning [m].
+    `windows`: windows of displacements. `turns`: result for the turns. Without it, the wiring of
+    the robot file and that with one wheel reversed are tried. `base`: wheel base of the robot file,
+    as the unit of turning [m].
     """
     if turns is not None:
         turned = np.interp(windows.time, turns.windows.time, turns.expected)

@@ -38,21 +38,10 @@ def with_even_stamps(
 ) -> Floats:
     """Estimate when a timer read the counters; return the stamps unchanged if no timer did.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        Stamps [s].
-    left, right : ndarray, shape (n,)
-        Cumulative counts.
-    lost : ndarray, shape (n - 1,), optional
-        Number of missing messages between neighbours; none by default.
-    least : float
-        Stamps are corrected only if the correction exceeds this share of the message interval.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Ascending times [s]. A delay common to all stamps remains; it is estimated as such.
+    `time` (n,): stamps [s]. `left`, `right` (n,): cumulative counts. `lost` (n - 1,): number of
+    missing messages between neighbours; none by default. `least`: stamps are corrected only if the
+    correction exceeds this share of the message interval. Result (n,): ascending times [s]. A delay
+    common to all stamps remains; it is estimated as such.
     """
     if time.size < rules.EVEN_MESSAGES or not (np.diff(time) >= 0.0).all():
         return time

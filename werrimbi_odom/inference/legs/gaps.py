@@ -42,12 +42,9 @@ def are_gaps(
 ) -> NDArray[np.bool_]:
     """Classify intervals as gaps.
 
-    Parameters
-    ----------
-    duration, usual_duration
-        Durations of the intervals, and the usual duration of those with travel [s].
-    way, usual_way
-        Travel in the intervals, and the usual travel of those with any, in legs.
+    `duration`, `usual_duration`: durations of the intervals, and the usual duration of those with
+    travel [s]. `way`, `usual_way`: travel in the intervals, and the usual travel of those with any,
+    in legs.
     """
     long = (duration > rules.GAP_INTERVALS * usual_duration) & (way > rules.GAP_WAYS * usual_way)
     return np.asarray(long & (way >= rules.GAP_LEG))
@@ -56,12 +53,7 @@ def are_gaps(
 def gaps_in(time: Floats, way: Floats) -> NDArray[np.bool_]:
     """Find which intervals are gaps, shape (n - 1,).
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        Stamps [s].
-    way : ndarray, shape (n,)
-        Cumulative travel at each stamp, in legs.
+    `time` (n,): stamps [s]. `way` (n,): cumulative travel at each stamp, in legs.
     """
     duration, gone = np.diff(time), np.diff(way)
     moving = gone > 0.0

@@ -19,14 +19,8 @@ def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
     """Remove the bias estimated at rest from the headings of a gyro, if it is significant.
 
     The robot model takes no part, so all parts of a drive get the same bias. Its change while the
-    robot drives is left to the fits, where the drift of each run is free.
-
-    Parameters
-    ----------
-    reference : Reference
-        Headings alone.
-    spans : sequence of TimeSpan
-        What the robot did when, in order.
+    robot drives is left to the fits, where the drift of each run is free. `reference`: headings
+    alone. `spans`: what the robot did when, in order.
     """
     seen = reference.has_yaw
     time, turned = reference.time[seen], wrap_all(np.diff(reference.yaw[seen]))

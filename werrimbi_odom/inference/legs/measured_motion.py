@@ -46,10 +46,7 @@ def judged_motion(
 ) -> MeasuredMotion:
     """Flag windows whose deviation neither driving nor clock jitter explains.
 
-    Parameters
-    ----------
-    slowest : float
-        Turn or path per window below which nothing counts as moving.
+    `slowest`: turn or path per window below which nothing counts as moving.
     """
     found = _standing(found)
     windows, expected, gross = found.windows, found.expected, found.gross
@@ -101,12 +98,8 @@ def _standing(found: Agreement) -> Agreement:
 def _stopped(found: Agreement, low: Floats, high: Floats, least: Floats) -> NDArray[np.bool_]:
     """Windows in a row in which the robot should clearly move and does not; (k,).
 
-    Parameters
-    ----------
-    low, high : ndarray, shape (k,)
-        Range of the prediction over a window and its neighbours.
-    least : ndarray, shape (k,)
-        Threshold for clear motion.
+    `low`, `high` (k,): range of the prediction over a window and its neighbours. `least` (k,):
+    threshold for clear motion.
     """
     windows = found.windows
     expected = np.where(low * high > 0.0, np.minimum(np.abs(low), np.abs(high)), 0.0)

@@ -22,12 +22,8 @@ from werrimbi_odom.model.pose import Floats
 def stray_poses(measured: Reference, gap: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Poses that are wrong in position while those before and after are right, shape (n,).
 
-    Parameters
-    ----------
-    measured : Reference
-        Poses, shape (n,), in strictly ascending time.
-    gap : ndarray of bool, shape (n - 1,)
-        Intervals that no leg may span: a pose beside one is not judged by the pose beyond.
+    `measured`: poses, shape (n,), in strictly ascending time. `gap` (n - 1,): intervals that no leg
+    may span: a pose beside one is not judged by the pose beyond.
     """
     found = np.zeros(measured.time.size, dtype=np.bool_)
     if found.size < rules.JUMP_FEWEST or not measured.has_position.all():
@@ -55,12 +51,9 @@ def _beside(
 ) -> tuple[Floats, Floats, Floats]:
     """How far `count` poses in a row are from the line between the poses before and after them.
 
-    Returns
-    -------
-    (off, took, chord)
-        Of shapes (count, m), (count, m) and (m,): distance from the line [m]; time since its
-        beginning times time to its end [s^2], which half of an even acceleration turns into that
-        distance; length of the line [m].
+    Result: of shapes (count, m), (count, m) and (m,): distance from the line [m]; time since its
+    beginning times time to its end [s^2], which half of an even acceleration turns into that
+    distance; length of the line [m].
     """
     rows = np.arange(time.size - count - 1)
     last = rows + count + 1

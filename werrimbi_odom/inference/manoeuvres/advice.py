@@ -27,12 +27,8 @@ def shorter_leg(diagnosis: Diagnosis, leg: float) -> float | None:
 
     Over whole turns of a wheel a bump on its tread is a larger radius, and an axle off the centre
     is nothing: what tells them apart is seen within a turn alone. And few legs, as of one square,
-    hold a start, a stop and a turn each: a late clock is like play of a wheel.
-
-    Parameters
-    ----------
-    leg
-        Length of the legs of this diagnosis [m].
+    hold a start, a stop and a turn each: a late clock is like play of a wheel. `leg`: length of the
+    legs of this diagnosis [m].
     """
     if diagnosis.verdict != "ambiguous":
         return None
@@ -95,10 +91,7 @@ class AdvisedDiagnosis:
 def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosis:
     """Diagnose one robot, with the next manoeuvre, the detection limits and the changes.
 
-    Raises
-    ------
-    InputError
-        When the drives do not allow it; the message says why.
+    InputError when the drives do not allow it; the message says why.
     """
     diagnosis = _diagnosis(given, show)
     leg, open_at = given.how.leg, None

@@ -90,20 +90,10 @@ def ideal_run(
 ) -> Run:
     """The record of a manoeuvre by a robot that is exactly as the model, without noise.
 
-    Parameters
-    ----------
-    ideal : Ideal
-        The manoeuvre.
-    robot : Robot
-        The model.
-    pace : DrivingLimits
-        Speeds of the robot.
-    ticks, poses : float
-        Time between two messages, and between two poses of the reference [s].
-    measures : (bool, bool)
-        Whether the reference measures positions, and headings.
-    channels : dict
-        Extra channels, each with the range of its recorded values; here they rise along it.
+    `ideal`: the manoeuvre. `robot`: the model. `pace`: speeds of the robot. `ticks`, `poses`: time
+    between two messages, and between two poses of the reference [s]. `measures`: whether the
+    reference measures positions, and headings. `channels`: extra channels, each with the range of
+    its recorded values; here they rise along it.
     """
     time, along, turn = _path(ideal, pace)
     yaw = np.concatenate([[0.0], np.cumsum(turn)])

@@ -32,16 +32,9 @@ def imagined(
 ) -> tuple[Experiment, float]:
     """Predict the record of a manoeuvre, and its duration in minutes.
 
-    Parameters
-    ----------
-    ideal : Ideal
-        The manoeuvre.
-    runs, point
-        Recorded drives, and the model and noise fitted to them.
-    pace : DrivingLimits
-        Speeds of the robot.
-    better : bool
-        With a reference that measures positions and headings as well as motion capture does.
+    `ideal`: the manoeuvre. `runs`, `point`: recorded drives, and the model and noise fitted to
+    them. `pace`: speeds of the robot. `better`: with a reference that measures positions and
+    headings as well as motion capture does.
     """
     robot = point.model.robot
     ticks, poses = rates_of(runs)

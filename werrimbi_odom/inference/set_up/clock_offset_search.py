@@ -34,12 +34,8 @@ _STEPS = round(rules.DELAY_WINDOW / _PERIOD)
 def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     """Estimate the delay of the reference [s], and the gain in unexplained variance over no delay.
 
-    Returns
-    -------
-    lag : float
-        Delay [s]; 0 where none is clearly better.
-    gain : float
-        Ratio of the unexplained variance without delay to that with it; 1 for no delay.
+    Result: delay [s], 0 where none is clearly better; and the ratio of the unexplained variance
+    without delay to that with it; 1 for no delay.
     """
     most = round(rules.DELAY_LONGEST / _PERIOD)
     sums = [_Sums(width, most) for width in (2, 3)]  # of turns, and of squared steps

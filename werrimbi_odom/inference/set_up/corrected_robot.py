@@ -24,16 +24,8 @@ def with_findings(
     """Robot with the findings' effects before its own, and the findings with their final values.
 
     An effect that the robot already has is changed in place, so a finding's values are the combined
-    ones. The remaining few percent of the sizes go into the multipliers.
-
-    Parameters
-    ----------
-    robot : Robot
-        The robot as its file has it.
-    findings : sequence of SetUpFinding
-        What is wrong.
-    setting : Setting, optional
-        The set-up, where sizes were measured.
+    ones. The remaining few percent of the sizes go into the multipliers. `robot`: the robot as its
+    file has it. `findings`: what is wrong. `setting`: the set-up, where sizes were measured.
     """
     exchanged = any(finding.effect == "wheels_swapped" for finding in findings)
     wiring = wiring_of(robot.effects)

@@ -63,16 +63,9 @@ def findings_of(
 ) -> list[SetUpFinding]:
     """All mistakes that clearly increase the errors, in order of importance.
 
-    Parameters
-    ----------
-    setting : Setting
-        The best set-up.
-    ways : list of Wired
-        All combinations that explain the signs, that of `setting` first.
-    misfit : callable
-        Typical error of a set-up; only ratios matter.
-    yaw_alone : bool
-        The reference measures no position: only radii over base are identifiable.
+    `setting`: the best set-up. `ways`: all combinations that explain the signs, that of `setting`
+    first. `misfit`: typical error of a set-up; only ratios matter. `yaw_alone`: the reference
+    measures no position: only radii over base are identifiable.
     """
     best = misfit(setting)
     found = []

@@ -177,17 +177,9 @@ def cut(
 ) -> Cuts:
     """Cut all runs at rows of the reference, every half turn of the faster wheel.
 
-    Parameters
-    ----------
-    records : sequence of SetUpRecord
-        Runs to cut.
-    robot : Robot
-        The robot as its file has it.
-    measured : Measure
-        What the reference measures.
-    fewest : int
-        Cuts are shortened until there are this many; a cut is at least one interval of the
-        reference.
+    `records`: runs to cut. `robot`: the robot as its file has it. `measured`: what the reference
+    measures. `fewest`: cuts are shortened until there are this many; a cut is at least one interval
+    of the reference.
     """
     usable = [_usable(each, measured) for each in records]
     total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)

@@ -60,15 +60,9 @@ def turning(
 ) -> HeadingRegression | None:
     """Regress measured turns on the travel of both wheels; None where not determined.
 
-    Parameters
-    ----------
-    cuts : Cuts
-        Cuts of all runs.
-    with_bias : bool
-        Also fit a constant rate, such as a gyro's bias.
-    squares : bool
-        Use plain least squares. If a robot drives straight nearly all the time, its few turns look
-        like outliers, yet only they tell the wheels apart.
+    `cuts`: cuts of all runs. `with_bias`: also fit a constant rate, such as a gyro's bias.
+    `squares`: use plain least squares. If a robot drives straight nearly all the time, its few
+    turns look like outliers, yet only they tell the wheels apart.
     """
     columns = [cuts.summed(cuts.right), -cuts.summed(cuts.left)]
     if with_bias:
@@ -133,10 +127,7 @@ def robust(
 ) -> tuple[Complexes | Floats, Floats, float] | None:
     """Linear regression by least absolute deviations, then Tukey's biweight.
 
-    Returns
-    -------
-    (coefficients (p,), standard deviations (p,), dispersion) or None
-        None where the columns are rank deficient.
+    None where the columns are rank deficient.
     """
     known = np.isfinite(values) & np.isfinite(columns).all(axis=-1)
     rows, aims = columns[known], values[known]

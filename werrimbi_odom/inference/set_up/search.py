@@ -118,19 +118,9 @@ def look_for_mistakes(
 ) -> SetUp:
     """Search the whole range of set-up mistakes.
 
-    Parameters
-    ----------
-    runs : sequence of Run
-        Recorded runs.
-    robot : Robot
-        The robot as its file has it; its effects are kept, and undone for the search.
-    options : EvaluationOptions
-        Limits of the encoders.
-
-    Raises
-    ------
-    InputError
-        If a size would be beyond what its effect allows.
+    `runs`: recorded runs. `robot`: the robot as its file has it; its effects are kept, and undone
+    for the search. `options`: limits of the encoders. InputError if a size would be beyond what its
+    effect allows.
     """
     runs = [with_no_driving(run, robot, options.limits) for run in runs]
     records = [each for run in runs if (each := record_of(run, robot, options.limits)) is not None]
