@@ -94,6 +94,16 @@ def test_a_clockwise_lidar_of_no_times_is_found_too() -> None:
     assert matcher.order == "last to first"
 
 
+def test_one_short_turn_overrules_no_driver() -> None:
+    """Its scans share one swing of the map; a carried robot's have reversed a correct lidar so."""
+    _, given = driven(Lidar())
+    first = given[0].time
+    once = [each for each in backwards(given) if each.time - first < 5.0]
+    matcher = matched(once, AnyOrder())
+    assert len(once) > 40
+    assert matcher.order == "stated"
+
+
 def test_deskewed_the_wrong_way_legs_are_several_times_as_far_off() -> None:
     """What is at stake: more than not to deskew at all."""
     sweeps, given = driven(Lidar())

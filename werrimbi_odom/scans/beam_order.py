@@ -12,12 +12,20 @@ until a sign test decides.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.scans.limits import LONGEST_SWEEP, ORDER_FEWEST, ORDER_MOST, ORDER_SURE
+from werrimbi_odom.scans.limits import (
+    LONGEST_SWEEP,
+    ORDER_FEWEST,
+    ORDER_MOST,
+    ORDER_STRETCH,
+    ORDER_STRETCHES,
+    ORDER_SURE,
+)
 from werrimbi_odom.scans.sweep import Sweep
 from werrimbi_odom.scans.two_pass_odometry import INTERVALS, USUAL, ScanMatcher, ScanPath
 
@@ -72,7 +80,11 @@ class AnyOrder:
         return float(np.median(self._intervals)) if self._intervals else USUAL
 
     def _decide(self, others: dict[Order, ScanMatcher]) -> None:
-        """Decide by a sign test: in how many scans the echoes lie nearer to the walls."""
+        """Decide by a sign test: in how many scans the echoes lie nearer to the walls.
+
+        One turn in new territory, as of a robot that is carried, is one swing of the map however
+        many scans it has: several stretches must agree.
+        """
         both = set.intersection(*({*each.scatter} for each in (self._matcher, *others.values())))
         if len(both) < max(ORDER_FEWEST, self._asked + 1):
             return
@@ -80,12 +92,18 @@ class AnyOrder:
         for order, other in list(others.items()):
             nearer = [np.sign(self._matcher.scatter[time] - other.scatter[time]) for time in both]
             sure = float(np.sum(nearer)) / np.sqrt(len(both))
-            if sure > ORDER_SURE:
+            if sure > ORDER_SURE and _stretches(both, nearer) >= ORDER_STRETCHES:
                 self._matcher, self.order = other, order
                 others.clear()
                 return
             if sure < -ORDER_SURE or len(both) >= ORDER_MOST:
                 del others[order]
+
+
+def _stretches(times: Collection[float], nearer: Sequence[float]) -> int:
+    """In how many more stretches the majority of scans has it than contradicts it."""
+    _, stretch = np.unique(np.floor_divide([*times], ORDER_STRETCH), return_inverse=True)
+    return int(np.sum(np.sign(np.bincount(stretch, weights=nearer))))
 
 
 def _seen(sweep: Sweep, order: Order, turn: float) -> Sweep:

@@ -76,5 +76,10 @@ ORDER_FEWEST, ORDER_SURE = 30, 5.0
 Consecutive scans see the same walls: if only every fourth is independent, five standard deviations
 are two and a half."""
 
+ORDER_STRETCH, ORDER_STRETCHES = 5.0, 3
+"""Length [s] of a stretch within which scans see the same walls from new places, as while a robot
+is carried, and stretches that must agree before another order than the stated one is believed. One
+carry lasts about as long, and lies in two at most."""
+
 ORDER_MOST = 400
 """Scans without a decision after which the stated order is kept."""

@@ -197,7 +197,7 @@ SPARSE_CUTS, SPARSE_CUTS_MORE = 4, 16
 poses at the start and the end, and two or three between; a session of one drive has twenty."""
 
 SPARSE_SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
-"""Trial error levels of a robot with the right set-up, as shares of its path and turn; the
+"""Trial error levels of a robot with the right set-up, as shares of each wheel's counts; the
 likeliest counts. From a calibrated robot on a hard floor to one that was measured with a tape."""
 
 SPARSE_TURN, SPARSE_MOVE = 0.005, 0.003

@@ -3,7 +3,7 @@
 """Set-up search with two poses per drive, or few more: enough to tell mistakes apart, not sizes.
 
 Every set-up with at most one factor and one wiring predicts where each drive ends, with an error
-that grows with the distance driven. A finding needs a wide likelihood margin over all others.
+of some share of each wheel's counts. A finding needs a wide likelihood margin over all others.
 """
 
 from __future__ import annotations
@@ -33,6 +33,9 @@ from werrimbi_odom.model.robot import Robot
 
 STEPS = 4000
 """Steps in all drives together, some tenths of a second each."""
+
+NUDGE = 1e-6
+"""Share by which a wheel is changed for a derivative."""
 
 
 def is_sparse(records: Sequence[SetUpRecord], robot: Robot, measured: Measure) -> bool:
@@ -129,17 +132,24 @@ class _Drives:
     facing: bool
 
     def fits(self, setting: Setting) -> float:
-        """Log-likelihood of all drives, with errors that grow with the motion under this set-up."""
+        """Log-likelihood of all drives, each wheel off by some share under this set-up."""
         left, right, half_base, arm = setting.numbers(self.track)
         cuts = self.cuts
-        turned = cuts.summed(np.abs(right * cuts.right - left * cuts.left))
-        path = cuts.summed(abs(half_base) * np.abs(left * cuts.left + right * cuts.right))
-        extent = self._extent(left, right, half_base)
         off, of_heading = errors(cuts, left, right, half_base, arm)
+        extent = self._extent(left, right, half_base)
+        # What a share of each wheel's counts moves the end by. A robot that drives there and back
+        # ends where it began with any wheels, and tells nothing.
+        by_wheel = np.abs(
+            [
+                errors(cuts, left * (1.0 + NUDGE), right, half_base, arm) - (off, of_heading),
+                errors(cuts, left, right * (1.0 + NUDGE), half_base, arm) - (off, of_heading),
+            ]
+        )
+        moves, turns = np.hypot(*by_wheel) / NUDGE
         values = []
         for share in rules.SPARSE_SHARES:
-            of_turn = rules.SPARSE_TURN + share * turned
-            of_move = rules.SPARSE_MOVE + share * path + of_turn * extent
+            of_turn = np.hypot(rules.SPARSE_TURN, share * turns)
+            of_move = np.hypot(rules.SPARSE_MOVE + rules.SPARSE_TURN * extent, share * moves)
             if self.facing:
                 value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
                 value += _log_wrapped(of_heading.real, of_turn)
