@@ -30,8 +30,10 @@ from test.inference.set_up_mistakes import (
 from test.model.drives import ROBOT
 from test.white_noise_robot import WhiteNoiseRobot, drive, square
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.leg_errors import errors_of, statistics
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
@@ -41,7 +43,10 @@ from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match
+from werrimbi_odom.inference.set_up.explanation import AS_ENTERED
+from werrimbi_odom.inference.set_up.few_poses import _Drives, _settings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
+from werrimbi_odom.inference.set_up.records import cut, effective_track, record_of
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
@@ -335,6 +340,29 @@ def test_two_poses_a_drive_name_it_or_claim_nothing(session: list[Run], name: st
 def test_two_poses_a_drive_name_the_commonest(session: list[Run], name: str) -> None:
     mistake = {**WIRING, **SIZES}[name]
     assert found([two_poses(run) for run in session], NOMINAL, mistake).findings
+
+
+def test_drives_there_and_back_make_no_set_up_likelier(session: list[Run]) -> None:
+    """They end where they began with any wheels; one that spins was told of lost counts."""
+    random = np.random.default_rng(1046)
+
+    def there_and_back(run: Run) -> Run:
+        out = np.arange(run.ticks.time.size // 2)
+        rows, ticks = np.concatenate([out, out[::-1]]), run.ticks
+        time = ticks.time[: rows.size]
+        ends = Reference(time[[0, -1]], *(0.002 * random.standard_normal((3, 2))))
+        ticks = replace(ticks, time=time, left=ticks.left[rows], right=ticks.right[rows])
+        return replace(run, ticks=ticks, reference=ends)
+
+    runs = [there_and_back(run) for run in session]
+    records = [
+        each
+        for run in runs
+        if (each := record_of(run, NOMINAL, EvaluationOptions().limits)) is not None
+    ]
+    drives = _Drives(cut(records, NOMINAL, "pose"), effective_track(NOMINAL), True)
+    likeliest = max(drives.fits(each) for each in _settings())
+    assert likeliest < drives.fits(AS_ENTERED) + rules.SPARSE_MARGIN
 
 
 def test_one_window_of_noisy_positions_shows_no_mistake() -> None:

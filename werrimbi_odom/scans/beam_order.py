@@ -83,7 +83,8 @@ class AnyOrder:
         """Decide by a sign test: in how many scans the echoes lie nearer to the walls.
 
         One turn in new territory, as of a robot that is carried, is one swing of the map however
-        many scans it has: several stretches must agree.
+        many scans it has: several stretches must agree before a driver is overruled. (One that
+        states zero has said nothing.)
         """
         both = set.intersection(*({*each.scatter} for each in (self._matcher, *others.values())))
         if len(both) < max(ORDER_FEWEST, self._asked + 1):
@@ -92,7 +93,8 @@ class AnyOrder:
         for order, other in list(others.items()):
             nearer = [np.sign(self._matcher.scatter[time] - other.scatter[time]) for time in both]
             sure = float(np.sum(nearer)) / np.sqrt(len(both))
-            if sure > ORDER_SURE and _stretches(both, nearer) >= ORDER_STRETCHES:
+            enough = self.at_once or _stretches(both, nearer) >= ORDER_STRETCHES
+            if sure > ORDER_SURE and enough:
                 self._matcher, self.order = other, order
                 others.clear()
                 return

@@ -196,9 +196,9 @@ SPARSE_CUTS, SPARSE_CUTS_MORE = 4, 16
 """Cuts per drive, and more in all, below which the reference is too sparse to follow the robot:
 poses at the start and the end, and two or three between; a session of one drive has twenty."""
 
-SPARSE_SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
+SPARSE_SHARES = (0.002, 0.005, 0.01, 0.02, 0.04, 0.08)
 """Trial error levels of a robot with the right set-up, as shares of each wheel's counts; the
-likeliest counts. From a calibrated robot on a hard floor to one that was measured with a tape."""
+likeliest counts. From a calibrated robot on a hard floor to one that loses counts."""
 
 SPARSE_TURN, SPARSE_MOVE = 0.005, 0.003
 """Error without any driving [rad, m]: noise of two poses by tape, each `TAPE_XY` (2 sqrt(2) = 2.8

@@ -3,7 +3,8 @@
 """Set-up search with two poses per drive, or few more: enough to tell mistakes apart, not sizes.
 
 Every set-up with at most one factor and one wiring predicts where each drive ends, with an error
-of some share of each wheel's counts. A finding needs a wide likelihood margin over all others.
+of some share of each wheel's counts and the wheels' noise. A finding needs a wide likelihood
+margin over all others.
 """
 
 from __future__ import annotations
@@ -132,13 +133,13 @@ class _Drives:
     facing: bool
 
     def fits(self, setting: Setting) -> float:
-        """Log-likelihood of all drives, each wheel off by some share under this set-up."""
+        """Log-likelihood of all drives: wheels off by some share, and noisy, under this set-up."""
         left, right, half_base, arm = setting.numbers(self.track)
         cuts = self.cuts
         off, of_heading = errors(cuts, left, right, half_base, arm)
         extent = self._extent(left, right, half_base)
         # What a share of each wheel's counts moves the end by. A robot that drives there and back
-        # ends where it began with any wheels, and tells nothing.
+        # ends where it began with any wheels, but for noise, and tells nothing.
         by_wheel = np.abs(
             [
                 errors(cuts, left * (1.0 + NUDGE), right, half_base, arm) - (off, of_heading),
@@ -146,10 +147,15 @@ class _Drives:
             ]
         )
         moves, turns = np.hypot(*by_wheel) / NUDGE
+        base = 2.0 * abs(half_base)
+        ways = base * cuts.summed(np.abs(left * cuts.left) + np.abs(right * cuts.right))
+        noise = rules.TYPICAL_WHEEL_NOISE * np.sqrt(ways)
+        by_noise = rules.SPARSE_TURN + noise / base
         values = []
         for share in rules.SPARSE_SHARES:
-            of_turn = np.hypot(rules.SPARSE_TURN, share * turns)
-            of_move = np.hypot(rules.SPARSE_MOVE + rules.SPARSE_TURN * extent, share * moves)
+            of_turn = np.hypot(by_noise, share * turns)
+            of_move = rules.SPARSE_MOVE + 0.5 * noise + by_noise * extent
+            of_move = np.hypot(of_move, share * moves)
             if self.facing:
                 value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
                 value += _log_wrapped(of_heading.real, of_turn)
