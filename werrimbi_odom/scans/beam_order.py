@@ -93,8 +93,7 @@ class AnyOrder:
         for order, other in list(others.items()):
             nearer = [np.sign(self._matcher.scatter[time] - other.scatter[time]) for time in both]
             sure = float(np.sum(nearer)) / np.sqrt(len(both))
-            enough = self.at_once or _stretches(both, nearer) >= ORDER_STRETCHES
-            if sure > ORDER_SURE and enough:
+            if sure > ORDER_SURE and (self.at_once or _stretches(both, nearer) >= ORDER_STRETCHES):
                 self._matcher, self.order = other, order
                 others.clear()
                 return

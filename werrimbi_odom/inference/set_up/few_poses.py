@@ -27,8 +27,7 @@ from werrimbi_odom.inference.set_up.explanation import (
 from werrimbi_odom.inference.set_up.factors import FACTORS
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, effective_track
-from werrimbi_odom.inference.set_up.regression import errors
-from werrimbi_odom.model.motion import sinc
+from werrimbi_odom.inference.set_up.regression import errors, path_swept
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -137,25 +136,24 @@ class _Drives:
         left, right, half_base, arm = setting.numbers(self.track)
         cuts = self.cuts
         off, of_heading = errors(cuts, left, right, half_base, arm)
-        extent = self._extent(left, right, half_base)
         # What a share of each wheel's counts moves the end by. A robot that drives there and back
         # ends where it began with any wheels, but for noise, and tells nothing.
-        by_wheel = np.abs(
-            [
-                errors(cuts, left * (1.0 + NUDGE), right, half_base, arm) - (off, of_heading),
-                errors(cuts, left, right * (1.0 + NUDGE), half_base, arm) - (off, of_heading),
-            ]
-        )
-        moves, turns = np.hypot(*by_wheel) / NUDGE
+        turns = np.hypot(left * cuts.summed(cuts.left), right * cuts.summed(cuts.right))
+        changes = [
+            errors(cuts, *wheels, half_base, arm)[0] - off
+            for wheels in ((left * (1.0 + NUDGE), right), (left, right * (1.0 + NUDGE)))
+        ]
+        moves = np.hypot(*np.abs(changes)) / NUDGE
         base = 2.0 * abs(half_base)
         ways = base * cuts.summed(np.abs(left * cuts.left) + np.abs(right * cuts.right))
         noise = rules.TYPICAL_WHEEL_NOISE * np.sqrt(ways)
-        by_noise = rules.SPARSE_TURN + noise / base
+        turn_noise = rules.SPARSE_TURN + noise / base
+        extent = abs(half_base) * self._extent(left, right)
+        move_noise = rules.SPARSE_MOVE + 0.5 * noise + turn_noise * extent
         values = []
         for share in rules.SPARSE_SHARES:
-            of_turn = np.hypot(by_noise, share * turns)
-            of_move = rules.SPARSE_MOVE + 0.5 * noise + by_noise * extent
-            of_move = np.hypot(of_move, share * moves)
+            of_turn = np.hypot(turn_noise, share * turns)
+            of_move = np.hypot(move_noise, share * moves)
             if self.facing:
                 value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
                 value += _log_wrapped(of_heading.real, of_turn)
@@ -164,13 +162,9 @@ class _Drives:
             values.append(float(np.sum(value)))
         return max(values)
 
-    def _extent(self, left: float, right: float, half_base: complex) -> Floats:
-        """Root mean square distance of the path from each drive's start [m]."""
-        along = abs(half_base) * (left * self.cuts.left + right * self.cuts.right)
-        turn = right * self.cuts.right - left * self.cuts.left
-        heading = np.concatenate([[0.0], np.cumsum(turn)])
-        chord = along * sinc(0.5 * turn) * np.exp(1j * (heading[:-1] + 0.5 * turn))
-        path = np.concatenate([[0j], np.cumsum(chord)])
+    def _extent(self, left: float, right: float) -> Floats:
+        """Root mean square distance of the path from each drive's start, in halves of the base."""
+        path, _ = path_swept(self.cuts, left, right)
         spans = zip(self.cuts.begin.tolist(), self.cuts.end.tolist(), strict=True)
         return np.array(
             [np.sqrt(np.mean(np.abs(path[b : e + 1] - path[b]) ** 2)) for b, e in spans]

@@ -92,12 +92,17 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
     return Moving(complex(value[0]), 0j, float(std[0]), scatter)
 
 
-def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
-    """S of the module's formula for each cut, and its turn, for the given turn per travel."""
+def path_swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
+    """Path in units of half the base, and heading, at each node, for the given turn per travel."""
     along, turn = left * cuts.left + right * cuts.right, right * cuts.right - left * cuts.left
     heading = np.concatenate([[0.0], np.cumsum(turn)])
     chord = along * sinc(0.5 * turn) * np.exp(1j * (heading[:-1] + 0.5 * turn))
-    path = np.concatenate([[0j], np.cumsum(chord)])
+    return np.concatenate([[0j], np.cumsum(chord)]), heading
+
+
+def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
+    """S of the module's formula for each cut, and its turn, for the given turn per travel."""
+    path, heading = path_swept(cuts, left, right)
     gone = (path[cuts.end] - path[cuts.begin]) * np.exp(-1j * heading[cuts.begin])
     return gone, heading[cuts.end] - heading[cuts.begin]
 
