@@ -9,6 +9,7 @@ publishes to the node and keeps whatever the node publishes.
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -195,15 +196,23 @@ class Launched:
         )
         return self.odometry[-1]
 
-    def call(self, kind: type, service: str, request: Any) -> Any:
-        """Call a service of the node."""
+    def call(self, kind: type, service: str, request: Any, again_after: float = math.inf) -> Any:
+        """Call a service of a node; one that only tells something may be asked again [s].
+
+        A node that has not yet found us answers nobody: its service is ready, the answer is lost.
+        """
         if service not in self._clients:
             self._clients[service] = self.node.create_client(kind, service)
-        client = self._clients[service]
-        self.until(client.service_is_ready, f"service {service}")
-        future = client.call_async(request)
-        self.until(future.done, f"answer of {service}")
-        return future.result()
+        self.until(self._clients[service].service_is_ready, f"service {service}")
+        asked: list[tuple[float, Any]] = []
+
+        def answered() -> bool:
+            if not asked or time.monotonic() > asked[-1][0] + again_after:
+                asked.append((time.monotonic(), self._clients[service].call_async(request)))
+            return any(future.done() for _, future in asked)
+
+        self.until(answered, f"answer of {service}")
+        return next(future.result() for _, future in asked if future.done())
 
     def set_parameters(self, **values: Any) -> Any:
         """As `ros2 param set`, all or none; returns the result."""

@@ -122,7 +122,8 @@ class PlayedRobot:
 
     def ask(self, service: str) -> Any:
         """Call a service of drive_node."""
-        return self.client.call(Trigger, f"drive_node/{service}", Trigger.Request())
+        again = 2.0 if service == "check" else math.inf
+        return self.client.call(Trigger, f"drive_node/{service}", Trigger.Request(), again)
 
     def anew(self) -> None:
         """From the origin, sound, and ready to start."""

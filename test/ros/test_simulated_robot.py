@@ -46,11 +46,11 @@ def driven_round(client: Any) -> None:
     """Ask drive_node to start, and wait for the end."""
 
     def ask(service: str) -> Any:
-        return client.call(Trigger, f"drive_node/{service}", Trigger.Request())
+        return client.call(Trigger, f"drive_node/{service}", Trigger.Request(), again_after=2.0)
 
     client.until(lambda: ask("check").success, "robot that could start", 30.0)
     answer = ask("start")
-    assert answer.success, answer.message
+    assert answer.success or "driving already" in answer.message, answer.message
     client.until(lambda: drive_state(client).startswith(("done", "stopped")), "end", 120.0)
     assert drive_state(client).startswith("done"), drive_state(client)
 
