@@ -53,9 +53,19 @@ def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     assert said["found"][0]["parameters"]["delay"]["value"] == pytest.approx(LATE, rel=0.15)
 
 
+@pytest.mark.parametrize("counts", [100, pytest.param(60, marks=pytest.mark.evidence)])
+def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
+    """Accelerations of single messages are of the counters' steps: a late clock explained more."""
+    slip = hide("longitudinal_slip", 0.04, seed=1).peculiarity
+    first, *_ = diagnosed(tmp_path, counts, [slip]).to_dict()["found"]
+    assert first["effect"] == "longitudinal_slip"
+    share = first["parameters"]["coefficient"]
+    assert abs(share["value"] - 0.04) < 3.0 * share["std"] < 0.02
+
+
 def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> None:
     found = diagnosed(tmp_path, 40, [])
     assert found.to_dict()["verdict"] == "none"
     words = " ".join(found.summary().split())
     assert "A count of a wheel is 7.9 mm" in words
-    assert "(coulomb_slip) are not looked for" in words
+    assert "(coulomb_slip) are not looked for, and would look like longitudinal_slip" in words

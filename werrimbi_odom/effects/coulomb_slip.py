@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.effects.functions import limited, sign
-from werrimbi_odom.effects.wheel_force import TURNING
+from werrimbi_odom.effects.wheel_force import TURNING, accelerations
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -17,6 +17,10 @@ READ = 0.1
 before them rounds off each start, and takes 2 to 3.5 % of what lies above a threshold; steps of the
 counters lift what lies just below it. Fits to starts of an engine, at 50 Hz and 2000 counts a turn,
 are 1 to 6 % above the truth."""
+
+LEAST = 0.1
+"""Least threshold [m/s^2]: a friction of 0.01, where ice holds 0.02 and more. Below it a threshold
+is no property of a floor: it leaves out what counters' steps do to an acceleration."""
 
 
 @wheel_effect(
@@ -37,7 +41,7 @@ are 1 to 6 % above the truth."""
         "m/s^2",
         null=0.5,
         typical=0.5,
-        bounds=(0.02, 20.0),
+        bounds=(LEAST, 20.0),
         says="acceleration of the rim beyond which it slips",
         tries=(0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0, 3.0, 5.0, 8.0),
         grain=READ,
@@ -68,11 +72,10 @@ def coulomb_slip(
                one speed: drive gentle and hard starts
     """
     share = coefficient * drive.duration
-    left, right = drive.left_acceleration, drive.right_acceleration
-    apart = 0.5 * (1.0 - turning) * (right - left)
+    left, right = accelerations(drive, turning)
     return WheelTravel(
-        travel.left - share * _lost(left + apart, drive.left_smooth_speed, above),
-        travel.right - share * _lost(right - apart, drive.right_smooth_speed, above),
+        travel.left - share * _lost(left, drive.left_smooth_speed, above),
+        travel.right - share * _lost(right, drive.right_smooth_speed, above),
     )
 
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from werrimbi_odom.effects.wheel_force import accelerations
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -52,8 +53,8 @@ def load_transfer(
                reference of positions
     """
     shifted = lateral * drive.speed.end * drive.yaw_rate.end
-    gained = longitudinal * drive.speed.change
+    gained = longitudinal * accelerations(drive, turning=0.0)[0] * drive.duration
     return WheelTravel(
-        travel.left * (1.0 + shifted) - gained * drive.left_speed.mean,
-        travel.right * (1.0 - shifted) - gained * drive.right_speed.mean,
+        travel.left * (1.0 + shifted) - gained * drive.left_smooth_speed.mean,
+        travel.right * (1.0 - shifted) - gained * drive.right_smooth_speed.mean,
     )

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.wheel_force import TURNING
-from werrimbi_odom.model.drive import Drive, Span
+from werrimbi_odom.effects.wheel_force import TURNING, accelerations
+from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
@@ -44,12 +44,9 @@ def longitudinal_slip(
     Alike      reference_delay and encoder_skew, when driven at one speed: drive slow and fast lines
                with hard starts and stops
     """
-    along = (1.0 - turning) * drive.speed.change
-    left = turning * _gained(drive.left_speed) + along * abs(drive.left_speed.mean)
-    right = turning * _gained(drive.right_speed) + along * abs(drive.right_speed.mean)
-    return WheelTravel(travel.left - coefficient * left, travel.right - coefficient * right)
-
-
-def _gained(speed: Span[Number]) -> Number:
-    """Integral of the acceleration over the rolled path, from both ends of the step."""
-    return 0.5 * (speed.end * abs(speed.end) - speed.start * abs(speed.start))
+    share = coefficient * drive.duration
+    left, right = accelerations(drive, turning)
+    return WheelTravel(
+        travel.left - share * left * abs(drive.left_smooth_speed.mean),
+        travel.right - share * right * abs(drive.right_smooth_speed.mean),
+    )

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, Span
-from werrimbi_odom.model.motion import BodyMotion, displacement
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats
 
 QUANTITIES = tuple(item.name for item in fields(Drive))
@@ -142,14 +142,17 @@ def drive_of_run(
     )
 
 
-def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> DriveOfRun:
+def with_wheels_of_messages(
+    drive: DriveOfRun, message: NDArray[np.intp], speeds: WheelTravel[Floats] | None = None
+) -> DriveOfRun:
     """Return the same drive with wheel speeds averaged over whole messages instead of steps.
 
     A message may be split into steps at a reference stamp. The mean speed over one part contains
     the error of that stamp: a stamp that is off would make the robot both faster and farther ahead,
     which looks like wheel slip. So both parts get the speed of the message. The speeds of the body
     stay those of the steps: they sum exactly to the robot's path and turn. `message` (n,): index of
-    the message in which each step ends, from 0 on, without gaps.
+    the message in which each step ends, from 0 on, without gaps. `speeds`: those of the rims over
+    each message [m/s], where something better than the counts tells them.
     """
 
     @cache
@@ -157,6 +160,8 @@ def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> Dri
         return np.asarray(np.bincount(message, drive.found("duration")), dtype=np.float64)
 
     def mean(name: str) -> Floats:
+        if speeds is not None:
+            return speeds.left if name == "left_speed" else speeds.right
         gone = drive.found(name).end * drive.found("duration")
         return np.asarray(np.bincount(message, gone) / lasted())
 

@@ -89,12 +89,14 @@ def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tupl
 def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:
     """Effects that such counters can show and such a reference can have.
 
-    The acceleration by a coarse counter is that of its steps. A scan tells place and heading of one
-    instant: no gyro has a part in it, and its heading is not later than its place, unless a gyro's
-    headings were put in. Where no heading was measured, none is late or drifts.
+    The acceleration by a coarse counter is that of its steps, which a linear law adds up to the
+    true one, and no other does. A scan tells place and heading of one instant: no gyro has a part
+    in it, and its heading is not later than its place, unless a gyro's headings were put in. Where
+    no heading was measured, none is late or drifts.
     """
     if runs.has_coarse_counters:
-        effects = _without(effects, ACCELERATIONS, runs.drive(robot))
+        drive = runs.drive(robot)
+        effects = [each for each in effects if each.lacks(()) or not _bends(each, drive)]
     of_places = runs.positions_alone or runs.own_axes
     if not of_places or runs.has_gyro_headings:
         return tuple(effects)
@@ -115,8 +117,31 @@ def _without(
 
 
 def _reads(effect: Effect, inputs: frozenset[str], drive: Drive[Floats]) -> bool:
+    return not inputs.isdisjoint(support_of(_typical(effect), drive).inputs)
+
+
+def _bends(effect: Effect, drive: Drive[Floats]) -> bool:
+    """Whether a law of the acceleration is no straight line of it."""
+    if not _reads(effect, ACCELERATIONS, drive):
+        return False
+    law = _typical(effect)
+    one = np.ones_like(drive.duration)
+    before: Any = WheelTravel(one, one) if effect.stage == "wheels" else BodyMotion(one, one, one)
+    none, half, whole = (
+        drive.but(**{name: factor * getattr(drive, name) for name in ACCELERATIONS})
+        for factor in (0.0, 0.5, 1.0)
+    )
+    for coordinate in law.coordinates:
+        values = law.with_value(coordinate, 1.0).values
+        after = [np.stack(effect.apply(before, seen, **values)) for seen in (none, half, whole)]
+        if not np.allclose(after[0] + after[2], 2.0 * after[1], rtol=0.0, atol=1e-12):
+            return True
+    return False
+
+
+def _typical(effect: Effect) -> Candidate:
     shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
-    return not inputs.isdisjoint(support_of(Candidate(effect, shape), drive).inputs)
+    return Candidate(effect, shape)
 
 
 _OF_A_GYRO = Support(frozenset({"time"}), frozenset({"sideways", "heading"}))

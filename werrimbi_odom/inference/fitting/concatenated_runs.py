@@ -269,23 +269,28 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
     )
 
 
-def _messages(runs: Sequence[MatchedRun]) -> list[NDArray[np.intp]]:
-    """The message that each step is a part of, numbered from 0 on in each run."""
+Messages = tuple[NDArray[np.intp], NDArray[np.intp]]
+"""Numbers of the messages of a run, and which of these each step is a part of."""
+
+
+def _messages(runs: Sequence[MatchedRun]) -> list[Messages]:
     middles = [(run, 0.5 * (run.time[1:] + run.time[:-1])) for run in runs]
     return [
-        np.unique(run.counters.message_at(middle), return_inverse=True)[1]
-        for run, middle in middles
+        np.unique(run.counters.message_at(middle), return_inverse=True) for run, middle in middles
     ]
 
 
-def _drive_of(
-    run: MatchedRun, message: NDArray[np.intp], robot: Robot, wiring: Wiring
-) -> DriveOfRun:
+def _drive_of(run: MatchedRun, messages: Messages, robot: Robot, wiring: Wiring) -> DriveOfRun:
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     drive = features(robot, np.diff(run.time), raw, first_counts, run.channels)
-    return with_wheels_of_messages(drive, message)
+    rates = run.counters.rates
+    if rates is None:
+        return with_wheels_of_messages(drive, messages[1])
+    left, right = wiring.wheels(*rates[:, messages[0]])
+    speeds = WheelTravel(left * robot.left_tick, right * robot.right_tick)
+    return with_wheels_of_messages(drive, messages[1], speeds)
 
 
 def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:

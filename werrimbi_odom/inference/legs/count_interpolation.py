@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
@@ -73,6 +74,22 @@ class Counters:
     def are_coarse(self) -> bool:
         """Whether a counter brings few counts at a time to the nodes."""
         return any(_steps_seen(side[self.nodes]) for side in (self.left, self.right))
+
+    @property
+    def rates(self) -> Floats | None:
+        """Counts per second of both wheels up to each node, between the steps of coarse counters.
+
+        Shape (2, nodes), moving averages. None where no counter is coarse. As a count comes the
+        wheel seems fast, and is as far as it says; before the next it is farther. So the speeds
+        of single messages tell how far a wheel is beyond its count, and a law of them seems true.
+        """
+        if not self.are_coarse:
+            return None
+        time = self.time[self.nodes]
+        sides = [_without_steps(time, side[self.nodes]) for side in (self.left, self.right)]
+        rates = np.diff(sides) / np.diff(time)
+        rates = uniform_filter1d(rates, rules.MESSAGES_A_SPEED, axis=1, mode="nearest")
+        return np.concatenate([rates[:, :1], rates], axis=1)
 
     def way(self, robot: Robot, leg: float, turn: float) -> Floats:
         """Cumulative travel at each message, in legs: path / `leg` [m] + turning / `turn`.

@@ -236,8 +236,8 @@ def coarse_counters(diagnosis: Diagnosis) -> list[str]:
     count = max(diagnosis.robot.left_tick, diagnosis.robot.right_tick)
     return [
         f"A count of a wheel is {error_words(count, 'm')}, and a message brings a few at "
-        "most: how hard the robot starts cannot be told from that, and effects of the acceleration "
-        "(coulomb_slip) are not looked for."
+        "most: how hard the robot starts is told roughly by that. Laws that bend with the "
+        "acceleration (coulomb_slip) are not looked for, and would look like longitudinal_slip."
     ]
 
 
