@@ -72,9 +72,12 @@ def test_what_a_change_would_explain_is_what_least_squares_says() -> None:
             assert degrees == test.degrees
 
 
-@pytest.mark.parametrize(("before", "possible"), [(-0.92, False), (0.98, True)])
-def test_no_wheel_had_a_radius_below_zero(before: float, possible: bool) -> None:
-    """Derivatives that hold for a percent had told of one of -46 mm, by a yaw that was none."""
+@pytest.mark.parametrize(("before", "possible"), [(-0.92, False), (0.98, True), (2.0, False)])
+def test_no_wheel_had_a_radius_below_zero_or_doubled(before: float, possible: bool) -> None:
+    """Derivatives that hold for a percent had told of one of -46 mm, by a yaw that was none.
+
+    And of a base twice as wide, by the steps of counters along lines.
+    """
     name = CALIBRATION[RIGHT].name
     bounds = {name: CALIBRATION[RIGHT].bounds_about(1.0)}
     drives = ("first", "second", "second")

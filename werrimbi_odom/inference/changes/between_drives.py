@@ -28,9 +28,10 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns, pattern_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import Score, candidates, scores
 from werrimbi_odom.inference.linear import nuisance, score_test
+from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.effect import Effect, extended_by
 
 
@@ -126,9 +127,13 @@ def _beside(
 
 
 def is_within(moved: ParameterChange, bounds: Mapping[str, tuple[float, float]]) -> bool:
-    """Whether a parameter is within its physical limits on either side of a change."""
+    """Whether a parameter is within its physical limits on either side of a change.
+
+    No base doubles from drive to drive: on lines, a turn that coarse counters show is their own.
+    """
     low, high = bounds.get(moved.what, (-math.inf, math.inf))
-    return low <= min(moved.before, moved.after) and max(moved.before, moved.after) <= high
+    there = low <= min(moved.before, moved.after) and max(moved.before, moved.after) <= high
+    return there and (moved.what not in MULTIPLIERS or is_ordinary(moved.after / moved.before))
 
 
 def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
