@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from werrimbi_odom.simulation import Recording
 
 NOISE_XY, NOISE_YAW = 1e-3, 2e-3
+
+COARSE = replace(ROBOT, left_ticks_per_revolution=20.0, right_ticks_per_revolution=20.0)
+"""With an encoder disc of few slots."""
 
 COMMON = tuple(
     find(name)
@@ -54,6 +58,14 @@ def run_of(
     smooth = np.ones(8) / 8.0
     driven = [np.convolve(np.repeat(part, each), smooth, "same") for part in (speed, turning)]
     return run_by(truth, *driven, seed=random, name=f"run_{seed}", channels=channels)
+
+
+def of_coarse_counts(seed: int) -> Run:
+    """The drive of `run_of`, counted by the encoder of `COARSE`."""
+    run = run_of(ROBOT, seed)
+    share = COARSE.left_ticks_per_revolution / ROBOT.left_ticks_per_revolution
+    left, right = (np.floor(share * side) for side in (run.ticks.left, run.ticks.right))
+    return replace(run, ticks=replace(run.ticks, left=left, right=right))
 
 
 def run_by(

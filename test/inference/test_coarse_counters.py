@@ -5,12 +5,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.inference.driven import COARSE, of_coarse_counts
 from werrimbi_odom.api.result import Result
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.fitting.likelihood import quantisation
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.simulation import (
     TrueRobot,
@@ -69,3 +75,33 @@ def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> Non
     words = " ".join(found.summary().split())
     assert "A count of a wheel is 7.9 mm" in words
     assert "(coulomb_slip) are not looked for, and would look like longitudinal_slip" in words
+
+
+def test_counts_err_along_the_path_and_in_heading_and_never_sideways() -> None:
+    """Drawn: what two counters read, and where the robot then is."""
+    robot = replace(COARSE, right_ticks_per_revolution=40.0)
+    random, heading, many = np.random.default_rng(1), 0.7, 200_000
+    left, right = (
+        tick * random.uniform(-0.5, 0.5, many) for tick in (robot.left_tick, robot.right_tick)
+    )
+    along, turn = 0.5 * (left + right), (right - left) / robot.track
+    drawn = np.stack([along * np.cos(heading), along * np.sin(heading), turn])
+    told = quantisation(robot, np.array([heading]))[0]
+    unit = np.sqrt(np.diagonal(told))
+    assert np.cov(drawn) / np.outer(unit, unit) == pytest.approx(
+        told / np.outer(unit, unit), abs=0.01
+    )
+    across = np.array([-np.sin(heading), np.cos(heading), 0.0])
+    assert across @ told @ across == pytest.approx(0.0, abs=1e-12)
+    anywhere = quantisation(robot, np.linspace(0.0, 2.0 * np.pi, 1000, endpoint=False))
+    assert quantisation(robot, np.array([np.nan]))[0] == pytest.approx(
+        anywhere.mean(axis=0), abs=1e-12
+    )
+
+
+def test_a_sound_robot_with_few_counts_is_told_to_be_sound() -> None:
+    """It was told to have a covariance that is too large, and a reference that jumped."""
+    runs = [of_coarse_counts(seed) for seed in range(1, 9)]
+    found = compare(runs, COARSE)
+    assert verdict_of(found).good
+    assert not found.legs.outlier.any()

@@ -10,10 +10,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, NOISE_XY, NOISE_YAW, run_of, runs_of
+from test.inference.driven import (
+    COARSE,
+    COMMON,
+    NOISE_XY,
+    NOISE_YAW,
+    of_coarse_counts,
+    run_of,
+    runs_of,
+)
 from test.model.drives import ROBOT
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.diagnosis import as_json
@@ -93,3 +102,12 @@ def test_noise_that_is_only_assumed_is_held_against_nothing() -> None:
         poses = [part[every] for part in (seen.time, seen.x, seen.y, seen.yaw) if part is not None]
         rare.append(replace(run, reference=Reference(*poses)))
     assert diagnosed(rare[:2], rare[2:]).left is None
+
+
+def test_coarse_counters_do_not_hide_the_references_own_noise() -> None:
+    """A reference is no better because the wheels' counts are worse: 20 of them in a turn."""
+    runs = [of_coarse_counts(seed) for seed in (1, 2)]
+    ((_, noise),) = compare(runs, COARSE, HOW).prepared.noises
+    assert noise.sigma_xy == pytest.approx(NOISE_XY, rel=0.3)
+    # A bound: this robot begins its turns at once, which the differences of the path hold too.
+    assert 0.9 * NOISE_YAW < noise.sigma_yaw < 2.0 * NOISE_YAW

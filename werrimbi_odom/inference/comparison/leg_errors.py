@@ -20,6 +20,7 @@ from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
     paces,
+    quantisation_of_legs,
     quantisation_variance,
     stated_shares,
     wheel_covariance,
@@ -188,14 +189,14 @@ def _reference_part(
     The reference's part is that of its positions, headings and stamps; `shares` are as in
     `Concatenated.shares`, and `heading` is measured at the legs' starts, shape (m,).
     """
-    reading = quantisation_variance(robot)
+    counted = quantisation_of_legs(robot, prediction.relative)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
     begun = ended = np.zeros((runs.count, 3))
     if sigmas[2] > 0.0:  # speeds for an hour of steps are costly
         begun, ended = (sigmas[2] ** 2 * pace for pace in _paces(robot, runs))
     if kind == "incremental":
         walk = walked(prediction, runs.intervals, xy, yaw)
-        return np.asarray(walk + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
+        return np.asarray(walk + counted + (begun + ended)[..., None] * np.eye(3))
     lever = lever_of(prediction.relative)
     own = np.stack([xy, xy, yaw], axis=-1)[:, :, None] * np.eye(3)
     both = np.stack([own, own])
@@ -205,11 +206,10 @@ def _reference_part(
         turn_into(turn, heading)
         both = turn.transpose(0, 2, 1) @ (shares * np.outer(unit, unit)) @ turn
     first, last = (
-        part + (late + reading)[:, :, None] * np.eye(3)
-        for part, late in zip(both, (begun, ended), strict=True)
+        part + late[:, :, None] * np.eye(3) for part, late in zip(both, (begun, ended), strict=True)
     )
     of_map = map_walk(prediction, runs.map_growth, xy, yaw) if runs.own_axes else 0.0
-    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + of_map)
+    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1) + counted + of_map)
 
 
 def _paces(robot: Robot, runs: Concatenated) -> tuple[Floats, Floats]:

@@ -66,7 +66,8 @@ def group_of(
     residuals, _ = residuals_of(plain, every, measure)
     own = noise_of(robot, every, residuals, measure, options)
     jumps = tuple(
-        jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
+        jumps_of(residual, run.gap, robot)
+        for residual, run in zip(residuals, every.runs, strict=True)
     )
     return ReferenceGroup(
         tuple(index for index, _, _ in members),

@@ -15,15 +15,17 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 
-def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
+def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     """Jump of the reference in each interval, (x, y, yaw); zero where there is none; (n - 1, 3).
 
     A jump is an error of one interval that exceeds the dispersion of all errors, the errors of its
-    neighbours, and a share of the motion around it (over `JUMP_SPAN` at least). No wrong model
-    causes such errors. Intervals in a `gap` (n - 1,) are not tested. A spike is recorded with its
-    neighbours: the poses before and after it err as well, so it comes and goes in several steps.
+    neighbours, and a share of the motion around it (over `JUMP_SPAN` at least) by more than a count
+    of both wheels of `robot`. No wrong model causes such errors. Intervals in a `gap` (n - 1,) are
+    not tested. A spike is recorded with its neighbours: the poses before and after it err as well,
+    so it comes and goes in several steps.
     """
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
     if errors.shape[0] < rules.JUMP_FEWEST:
@@ -56,7 +58,8 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     scatter = np.where(often, np.maximum(many, scatter), scatter)
     # A reference's noise has the axes of its room, the robot's turn: of two, the larger is of both.
     scatter[:2] = scatter[:2].max()
-    wrong = np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least)
+    count = np.array([0.5, 0.5, 1.0 / robot.track]) * (robot.left_tick + robot.right_tick)
+    wrong = np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least) + count
     total = _windows(left, rules.JUMP_NEIGHBOURS, "constant").sum(axis=-1)
     stays = np.abs(total) > rules.JUMP_LASTS * np.abs(left)
     returns = _windows(wrong & ~stays, rules.JUMP_NEIGHBOURS).any(axis=-1)

@@ -7,7 +7,8 @@ smooth or grow with travel; noise of a reference does neither. So the noise is t
 third differences of measured minus predicted path over a few poses. The part that grows with the
 span (wheel noise) is removed by a line through several spans. Differences are taken in motion where
 possible, as a robot at rest shows a tracker at its best. The noise is never less than the
-quantisation of the written values.
+quantisation of the written values. Where coarse counters hide it, the same differences of the
+measured path alone bound it: those hold how unevenly the robot moved, and no counts.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ def reference_noise(
     quantity is not measured.
     """
     reading = quantisation_variance(robot)
+    bounds = [0.0, 0.0]
     if kind == "incremental":
         errors = np.concatenate([_steps(item) for item in residuals])
         sigmas = [_growing(errors[:, part]) for part in ((0, 1), (2,))]
@@ -48,11 +50,15 @@ def reference_noise(
             _level([_position_differences(item) for item in residuals]),
             _level([_heading_differences(item) for item in residuals]),
         ]
+        bounds = [
+            _bound([_third(item.measured) for item in residuals]),
+            _bound([_third(item.measured_yaw) for item in residuals]),
+        ]
     positions = [item.measured.real for item in residuals]
     headings = [item.measured_yaw for item in residuals]
     return (
-        _less(sigmas[0], float(reading[0]), _rounding(positions)),
-        _less(sigmas[1], float(reading[2]), _rounding(headings)),
+        _less(sigmas[0], float(reading[0]), bounds[0], _rounding(positions)),
+        _less(sigmas[1], float(reading[2]), bounds[1], _rounding(headings)),
     )
 
 
@@ -219,9 +225,30 @@ def _growing(columns: Floats) -> float | None:
     return (MEDIAN_TO_SIGMA * float(np.median(np.abs(known)))) ** 2
 
 
-def _less(variance: float | None, reading: float, rounding: float) -> float | None:
-    """Standard deviation without encoder quantisation, which the legs account for themselves."""
-    return None if variance is None else float(np.sqrt(max(variance - reading, rounding)))
+def _third(measured: NDArray[np.complex128] | Floats) -> Floats:
+    """Third differences of a measured path between neighbours, of each coordinate."""
+    if np.iscomplexobj(measured):
+        return np.concatenate([_third(measured.real), _third(measured.imag)])
+    found = np.diff(measured, n=3)
+    return np.asarray(found[np.isfinite(found)])
+
+
+def _bound(runs: list[Floats]) -> float:
+    """Variance that the noise of a pose cannot exceed, by the reference alone."""
+    every = np.concatenate(runs)
+    return _variance(every) if every.size >= rules.DIFFERENCES else 0.0
+
+
+def _less(variance: float | None, reading: float, bound: float, rounding: float) -> float | None:
+    """Standard deviation without encoder quantisation, which the legs account for themselves.
+
+    Counts that the driving interpolates err by less than that: taken off whole, nothing would be
+    left, whatever the noise.
+    """
+    if variance is None:
+        return None
+    least = min(bound, rules.NOISE_LEFT * variance)
+    return float(np.sqrt(max(variance - reading, least, rounding)))
 
 
 def _rounding(values: Sequence[Floats]) -> float:

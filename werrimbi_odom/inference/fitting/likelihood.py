@@ -31,7 +31,7 @@ from werrimbi_odom.inference.fitting.filtering import (
     Ways,
     filtered,
 )
-from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of, lever_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
@@ -176,7 +176,7 @@ def innovations(
             begun[runs.legs[index]] = given
     start = np.where(np.isfinite(begun)[:, None] & [False, False, True], np.nan, start)
     noise = wheel_covariance(prediction, runs, variances.left, variances.right)
-    reading = _reading(robot, variances, runs, prediction, kind, view.mirrored)
+    reading = _reading(robot, variances, runs, prediction, finish, kind, view.mirrored)
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
     if kind == "absolute" and runs.own_axes:
@@ -212,7 +212,7 @@ def _of_increments(
     covariance = (
         wheel_covariance(prediction, runs, variances.left, variances.right)
         + walked(prediction, runs.intervals, variances.xy[:, None], variances.yaw[:, None])
-        + 2.0 * np.diag(quantisation_variance(robot))
+        + quantisation_of_legs(robot, prediction.relative)
     )
     covariance = covariance + UNMEASURED * diagonal_of(~np.isfinite(value))
     value = np.where(known, value, 0.0)
@@ -262,10 +262,14 @@ def _reading(
     variances: Variances,
     runs: Concatenated,
     prediction: Prediction,
+    finish: Floats,
     kind: ReferenceKind,
     mirrored: bool,
 ) -> Floats:
-    """Covariance of a measured pose, including encoder quantisation; (g, 1 or m, 3, 3)."""
+    """Covariance of the poses measured at the legs' ends (m, 3), with that of the counts' steps.
+
+    Shape (g, m, 3, 3).
+    """
     shares = stated_shares(runs, kind, mirrored)
     heading = np.zeros_like(variances.yaw) if kind == "incremental" else variances.yaw
     unit = np.sqrt(np.stack([variances.xy, variances.xy, heading], axis=-1))[:, None, :]
@@ -274,7 +278,7 @@ def _reading(
         pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
         late = variances.stamp[:, None, None] * pace
         reading = reading + late[..., None] * np.eye(3)
-    return np.asarray(reading + np.diag(quantisation_variance(robot)))
+    return np.asarray(reading + quantisation(robot, finish[:, 2] - view_of(robot.effects).yaw))
 
 
 def stated_shares(runs: Concatenated, kind: ReferenceKind, mirrored: bool) -> Floats | None:
@@ -302,7 +306,38 @@ def wheel_covariance(
 
 
 def quantisation_variance(robot: Robot) -> Floats:
-    """Quantisation variance of a pose from one reading of both counters (uniform), shape (3,)."""
+    """Diagonal of `quantisation`, in the axes of a reference in which the robot heads anywhere."""
+    return np.asarray(np.diagonal(quantisation(robot, np.array([np.nan]))[0]))
+
+
+def quantisation(robot: Robot, heading: Floats) -> Floats:
+    """Quantisation covariance of a pose from one reading of both counters (uniform), (m, 3, 3).
+
+    Counts err along the path and in heading, never sideways. `heading` (m,): of the robot, in the
+    axes of the covariance [rad]; where it is NaN, the mean over all headings.
+    """
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
-    along = 0.25 * (left + right)
-    return np.array([along, along, (left + right) / robot.track**2])
+    along, yaw = 0.25 * (left + right), (left + right) / robot.track**2
+    both = 0.5 * (right - left) / robot.track
+    cos, sin = np.nan_to_num(np.cos(heading)), np.nan_to_num(np.sin(heading))
+    twice = np.nan_to_num(np.exp(2j * heading))
+    found = np.empty((heading.size, 3, 3))
+    found[:, 0, 0] = 0.5 * along * (1.0 + twice.real)
+    found[:, 1, 1] = 0.5 * along * (1.0 - twice.real)
+    found[:, 0, 1] = found[:, 1, 0] = 0.5 * along * twice.imag
+    found[:, 0, 2] = found[:, 2, 0] = both * cos
+    found[:, 1, 2] = found[:, 2, 1] = both * sin
+    found[:, 2, 2] = yaw
+    return found
+
+
+def quantisation_of_legs(robot: Robot, relative: Floats) -> Floats:
+    """Quantisation covariance of the legs' errors, from the readings at both ends, (m, 3, 3).
+
+    `relative` (m, 3): predicted, in the frame of the reference at each leg's start.
+    """
+    axis = view_of(robot.effects).yaw
+    lever = lever_of(relative)
+    begun = quantisation(robot, np.array([-axis]))
+    ended = quantisation(robot, relative[:, 2] - axis)
+    return np.asarray(ended + lever @ begun @ lever.swapaxes(-1, -2))
