@@ -91,14 +91,22 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
 
     The acceleration by a coarse counter is that of its steps. A scan tells place and heading of one
     instant: no gyro has a part in it, and its heading is not later than its place, unless a gyro's
-    headings were put in. Where no heading was measured, none is late or drifts.
+    headings were put in. Where no heading was measured, none is late or drifts. A clock gains
+    nothing where the recorder's shows that it does not.
     """
     if runs.has_coarse_counters:
         effects = _without(effects, ACCELERATIONS, runs.drive(robot))
+    if runs.of_one_rate:
+        effects = tuple(each for each in effects if not _of_a_clock(each))
     of_places = runs.positions_alone or runs.own_axes
     if not of_places or runs.has_gyro_headings:
         return tuple(effects)
     return tuple(each for each in effects if each.stage != "reference" or not _of_a_gyro(each))
+
+
+def _of_a_clock(effect: Effect) -> bool:
+    """Whether an effect is of a clock that runs at another rate."""
+    return effect.stage == "reference" and usual_view(effect).clock_drift != 0.0
 
 
 def _of_a_gyro(effect: Effect) -> bool:
