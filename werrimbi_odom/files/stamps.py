@@ -260,6 +260,8 @@ _COPIED = 1e-4
 """Range of the times from stamp to receipt up to which one was copied from the other [s]."""
 _PARTS = 10
 """Parts of a drive in which the soonest message is looked for."""
+_HALF = 5
+"""Least number of these in which both were received: a topic may be silent for a while."""
 _GAINS = 0.03
 """What one clock gains on the other in a drive up to which they run at one rate [s]: the usual
 `reference_delay`, which a delay that does not grow takes up but for a part."""
@@ -280,12 +282,14 @@ def of_one_rate(wheels: Lateness, reference: Lateness) -> bool:
     end = min(wheels.span[1], reference.span[1])
     edges = np.linspace(begin, end, _PARTS + 1)
     apart = reference.soonest(edges) - wheels.soonest(edges)
-    if end <= begin or not np.isfinite(apart).all():
+    known = np.isfinite(apart)
+    if end <= begin or known.sum() < _HALF:
         return False
-    along = np.linspace(-0.5, 0.5, _PARTS)
+    along, apart = np.linspace(-0.5, 0.5, _PARTS)[known], apart[known]
+    along -= along.mean()
     gain = float(along @ apart / (along @ along))
     left = apart - apart.mean() - gain * along
-    std = float(np.sqrt(left @ left / (_PARTS - 2) / (along @ along)))
+    std = float(np.sqrt(left @ left / (left.size - 2) / (along @ along)))
     return abs(gain) + _SURE * std < _GAINS
 
 
