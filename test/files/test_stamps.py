@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
 from werrimbi_odom.report.info_words import _clock
 
 MS = 10**6
+WHEELS = ["left_wheel_joint", "right_wheel_joint"]
 
 
 def test_the_rate_of_messages_in_bursts_is_how_many_come_a_second(tmp_path: Path, ros: Any) -> None:
@@ -84,3 +86,35 @@ def test_what_only_comes_unevenly_is_kept(time: np.ndarray) -> None:
     keep, told = newest_of_bursts(time)
     assert keep.mean() > 0.95
     assert not (keep.all() and told)
+
+
+@pytest.mark.parametrize(
+    ("gain", "copied", "one_rate"),
+    [(0.0, False, True), (2e-3, False, False), (0.0, True, False)],
+    ids=["one clock", "two clocks", "a log written to a bag"],
+)
+def test_receipt_tells_whether_two_clocks_run_at_one_rate(
+    tmp_path: Path, ros: Any, robot: Any, gain: float, copied: bool, one_rate: bool
+) -> None:
+    """A recorder's clock that is set right by 0.2 s on the way, as of a laptop beside a robot.
+
+    Three drives of a TurtleBot3, whose lidar and wheels one computer stamps, were told of a clock
+    that gains 4 to 11 ms a second.
+    """
+    random = np.random.default_rng(1)
+    entries = []
+
+    def sent(topic: str, at: float, stamp: float, make: Any) -> None:
+        waited = random.exponential(0.01) + 0.2 * (at > 20.0)
+        stamped = round(1e9 * stamp)
+        entries.append((topic, stamped if copied else round(1e9 * (at + waited)), make(stamped)))
+
+    for at in np.arange(1.0, 40.0, 0.05):
+        angle = 0.01 * at
+        sent("/joint_states", at, at, lambda t, a=angle: ros.joints(t, WHEELS, [a, a]))
+    for at in np.arange(1.0, 40.0, 0.1):
+        sent("/mocap", at, at * (1.0 + gain), lambda t, x=0.1 * at: ros.pose(t, x, 0.0, 0.2))
+    entries.sort(key=lambda entry: entry[1])
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.reference is not None
+    assert run.reference.one_rate is one_rate

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import runs_of
+from test.inference.driven import COMMON, runs_of
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
@@ -38,7 +38,10 @@ from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.proposal import for_twins
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.remarks import or_the_reference_s_scale
+from werrimbi_odom.report.diagnosis.remarks import (
+    of_a_lidar_askew,
+    or_the_reference_s_scale,
+)
 from werrimbi_odom.report.number_format import quantity
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=5e-4, right_wheel_noise=5e-4)
@@ -267,6 +270,22 @@ def test_wheels_that_are_smaller_by_scans_may_be_ranges_that_are_short(scans: bo
     assert set(found.found) == {"wheel_radius_scale", "track_width"}
     said = " ".join(or_the_reference_s_scale(found))
     assert ("A lidar whose ranges are 4 % too short shows the same" in said) == scans
+
+
+def test_a_lidar_that_is_askew_where_it_sits_may_look_as_if_it_sat_elsewhere() -> None:
+    """200 mm ahead by its transform, and turned by 50 mrad: 10 mm aside, where nothing is."""
+    runs = []
+    for run in (scan_drive(seed, 0.0) for seed in (7, 8, 9)):
+        seen = run.reference
+        place = seen.x + 1j * seen.y + 0.2 * np.exp(1j * seen.yaw)
+        axle = place - 0.2 * np.exp(1j * (seen.yaw + 0.05))
+        turned = replace(seen, x=axle.real, y=axle.imag, yaw=seen.yaw + 0.05)
+        runs.append(replace(run, reference=turned))
+    found = diagnose(runs, NOMINAL, COMMON)
+    assert {"reference_yaw_offset", "reference_lever_arm"} <= set(found.found)
+    said = " ".join(of_a_lidar_askew(found))
+    assert "it may sit there exactly" in said
+    assert "5.0 mm aside for each 100 mm" in said
 
 
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])

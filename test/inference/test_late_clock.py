@@ -24,7 +24,9 @@ from werrimbi_odom.inference.adding.start_values import drives_of
 from werrimbi_odom.inference.comparison.judged_legs import figures_of, statistics_of
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.effect_support import able
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import at_edges
@@ -135,6 +137,21 @@ def test_a_late_clock_that_drifts_is_one_effect() -> None:
         assert values == pytest.approx(truth, abs={"delay": 0.01, "rate": 3e-4}[key])
     mended = replace(ROBOT, effects=(find("reference_clock_drift").using(),))
     assert diagnose(runs, mended, LIBRARY, EvaluationOptions(leg=0.5)).verdict == "none"
+
+
+def test_no_clock_drifts_that_the_recorders_shows_to_keep_its_rate() -> None:
+    runs = [run_of(ROBOT, seed, 30) for seed in (1, 2)]
+    shown = [
+        replace(run, reference=replace(run.reference, one_rate=True))
+        for run in runs
+        if run.reference is not None
+    ]
+    asked = [
+        {each.name for each in able(LIBRARY, concatenated(match_for_fit(of, ROBOT, 0.5)), ROBOT)}
+        for of in (runs, [shown[0], runs[1]], shown)
+    ]
+    assert asked[0] == asked[1]
+    assert asked[0] - asked[2] == {"reference_clock_drift"}
 
 
 def kept(runs: list[Run]) -> list[Run]:

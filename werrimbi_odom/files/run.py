@@ -105,6 +105,9 @@ class Reference:
     stamped_together: bool = field(default=False, kw_only=True)
     """Its stamps are delayed together with those of the wheels; see
     `inference.legs.even_stamps`."""
+    one_rate: bool = field(default=False, kw_only=True)
+    """By when the recorder received its messages and the wheels', neither clock gains on the other;
+    see `files.stamps.of_one_rate`."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -135,6 +138,7 @@ class Reference:
             covariance=None if self.covariance is None else self.covariance[which],
             gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
             stamped_together=self.stamped_together,
+            one_rate=self.one_rate,
         )
 
 

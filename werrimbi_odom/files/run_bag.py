@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -19,7 +20,7 @@ from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Collected, Reference, Run
-from werrimbi_odom.files.stamps import Lateness, on_one_clock
+from werrimbi_odom.files.stamps import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.text_files import readable
 
 Progress = Callable[[float], None]
@@ -56,12 +57,16 @@ def read_run_bag(
         chosen = _chosen(held, source, reference_topic, force)
         ticks_of = ticks_collector(path, source, robot_file)
         collectors = [_collector(path, held, each, robot_file) for each in chosen]
-        takers = [(source.topics, Lateness(ticks_of))]
-        takers += [(each.topics, Lateness(each)) for each in collectors]
-        _collect(bag, takers, progress)
+        late = [Lateness(each) for each in (ticks_of, *collectors)]
+        topics = [each.topics for each in (source, *collectors)]
+        _collect(bag, list(zip(topics, late, strict=True)), progress)
     ticks, notes = ticks_of.ticks()
     collected = [each.reference() for each in collectors]
-    ticks, collected, clocks = on_one_clock(ticks, collected, [each.usual for _, each in takers])
+    ticks, collected, clocks = on_one_clock(ticks, collected, [each.usual for each in late])
+    collected = [
+        each._replace(reference=replace(each.reference, one_rate=of_one_rate(late[0], its)))
+        for each, its in zip(collected, late[1:], strict=True)
+    ]
     found = _put_together(held, source, chosen, collectors, collected)
     lacking = ""
     if found.reference is None:

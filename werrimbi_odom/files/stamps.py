@@ -208,13 +208,17 @@ class Lateness:
     def __init__(self, taker: Any) -> None:
         self._taker = taker
         self._late = array("d")
+        self._received = array("d")
+        self._many = False
 
     def take(self, message: BagMessage) -> None:
         """Add a message."""
         self._taker.take(message)
         if not is_static(message.topic):
             received = message.received / 1e9
+            self._received.append(received)
             self._late.append(received - (header_stamp(message.content) or received))
+            self._many |= hasattr(message.content, "transforms")
 
     @property
     def usual(self) -> float:
@@ -223,6 +227,70 @@ class Lateness:
         if not late.size or np.subtract(*np.quantile(late, [0.95, 0.05])) > STEADY:
             return np.nan
         return float(np.median(late))
+
+    @property
+    def tells_a_clock(self) -> bool:
+        """Whether receipt was noted by a clock of its own, and all was stamped by one sender.
+
+        A bag that was made from a log has its stamps as times of receipt. Several nodes send
+        transforms on one topic.
+        """
+        late = np.array(self._late)
+        return not self._many and bool(late.size) and float(np.ptp(late)) > _COPIED
+
+    def soonest(self, edges: Floats) -> Floats:
+        """Least time from stamp to receipt between times of receipt, (n,): (n - 1,), NaN if none.
+
+        The least, since a queue only adds.
+        """
+        received, late = np.array(self._received), np.array(self._late)
+        part = np.searchsorted(edges, received, side="right") - 1
+        least = np.full(edges.size - 1, np.inf)
+        inside = (part >= 0) & (part < least.size)
+        np.minimum.at(least, part[inside], late[inside])
+        return np.where(np.isfinite(least), least, np.nan)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last time of receipt [s]."""
+        return min(self._received), max(self._received)
+
+
+_COPIED = 1e-4
+"""Range of the times from stamp to receipt up to which one was copied from the other [s]."""
+_PARTS = 10
+"""Parts of a drive in which the soonest message is looked for."""
+_HALF = 5
+"""Least number of these in which both were received: a topic may be silent for a while."""
+_GAINS = 0.03
+"""What one clock gains on the other in a drive up to which they run at one rate [s]: the usual
+`reference_delay`, which a delay that does not grow takes up but for a part."""
+_SURE = 2.0
+"""Standard deviations of that gain which are added to it before."""
+
+
+def of_one_rate(wheels: Lateness, reference: Lateness) -> bool:
+    """Whether by the recorder's clock neither of two clocks gains on the other.
+
+    How long after its stamp a message is received has the recorder's clock in it, which cancels,
+    and the way to it. What a driver holds back before it stamps does not show. False if receipt
+    tells nothing.
+    """
+    if not (wheels.tells_a_clock and reference.tells_a_clock):
+        return False
+    begin = max(wheels.span[0], reference.span[0])
+    end = min(wheels.span[1], reference.span[1])
+    edges = np.linspace(begin, end, _PARTS + 1)
+    apart = reference.soonest(edges) - wheels.soonest(edges)
+    known = np.isfinite(apart)
+    if end <= begin or known.sum() < _HALF:
+        return False
+    along, apart = np.linspace(-0.5, 0.5, _PARTS)[known], apart[known]
+    along -= along.mean()
+    gain = float(along @ apart / (along @ along))
+    left = apart - apart.mean() - gain * along
+    std = float(np.sqrt(left @ left / (left.size - 2) / (along @ along)))
+    return abs(gain) + _SURE * std < _GAINS
 
 
 def on_one_clock(

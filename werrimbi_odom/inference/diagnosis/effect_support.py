@@ -92,15 +92,23 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
     The acceleration by a coarse counter is that of its steps, which a linear law adds up to the
     true one, and no other does. A scan tells place and heading of one instant: no gyro has a part
     in it, and its heading is not later than its place, unless a gyro's headings were put in. Where
-    no heading was measured, none is late or drifts.
+    no heading was measured, none is late or drifts. A clock gains nothing where the recorder's
+    shows that it does not.
     """
     if runs.has_coarse_counters:
         drive = runs.drive(robot)
         effects = [each for each in effects if each.lacks(()) or not _bends(each, drive)]
+    if runs.of_one_rate:
+        effects = [each for each in effects if not _of_a_clock(each)]
     of_places = runs.positions_alone or runs.own_axes
     if not of_places or runs.has_gyro_headings:
         return tuple(effects)
     return tuple(each for each in effects if each.stage != "reference" or not _of_a_gyro(each))
+
+
+def _of_a_clock(effect: Effect) -> bool:
+    """Whether an effect is of a clock that runs at another rate."""
+    return effect.stage == "reference" and usual_view(effect).clock_drift != 0.0
 
 
 def _of_a_gyro(effect: Effect) -> bool:

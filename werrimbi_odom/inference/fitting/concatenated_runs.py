@@ -121,6 +121,11 @@ class Concatenated:
         return any(run.measured.own_axes for run in self.runs)
 
     @property
+    def of_one_rate(self) -> bool:
+        """Whether no clock of a reference can gain on that of its wheels (`Reference.one_rate`)."""
+        return all(run.measured.one_rate for run in self.runs)
+
+    @property
     def shares(self) -> Floats | None:
         """Stated covariances of the poses at both ends of each leg, relative to usual.
 

@@ -187,7 +187,12 @@ def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
         None if each is None else each[rows] for each in (reference.walked, reference.covariance)
     )
     return Reference(
-        *columns, own_axes=reference.own_axes, walked=walked, covariance=covariance, gyro=gyro
+        *columns,
+        own_axes=reference.own_axes,
+        walked=walked,
+        covariance=covariance,
+        gyro=gyro,
+        one_rate=reference.one_rate,
     )
 
 

@@ -24,6 +24,7 @@ from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.number_format import (
     chance_words,
     error_words,
+    length,
     listed,
     quantity,
     two_digits,
@@ -261,6 +262,22 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     return [
         f"A lidar whose ranges are {share} too {'long' if size > 1.0 else 'short'} shows the same: "
         "a wall at a taped distance, or a straight line of 10 m beside a tape, tells."
+    ]
+
+
+def of_a_lidar_askew(diagnosis: Diagnosis) -> list[str]:
+    """What a lever arm across may be, where the lidar's place was taken from a transform.
+
+    The path of the base is that of the lidar less its place, in axes that are askew with it.
+    """
+    if not diagnosis.runs.own_axes or diagnosis.runs.has_gyro_headings:
+        return []
+    if not {"reference_yaw_offset", "reference_lever_arm"} <= set(diagnosis.found):
+        return []
+    angle = abs(values_of(diagnosis, "reference_yaw_offset")["angle"].value)
+    return [
+        "If a transform told where the lidar sits, it may sit there exactly: askew by this angle "
+        f"it is seen {length(0.1 * angle)} aside for each 100 mm that it sits ahead or behind."
     ]
 
 
