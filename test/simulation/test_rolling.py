@@ -195,3 +195,20 @@ def test_no_noise_at_rest() -> None:
     rest = path.t_s < 0.5
     assert np.ptp(path.x_m[rest]) < 1e-6
     assert np.ptp(path.yaw_rad[rest]) < 1e-6
+
+
+def test_a_robot_that_tips_over_is_refused_instead_of_recorded() -> None:
+    """Its wheels count what its body turns over, which looks like radii that change."""
+    high = sim.TrueRobot(2.0, 0.2, 0.2, mass=300.0, nominal=sim.Nominal(2.0, 0.2))
+    with pytest.raises(sim.UnstableError, match="tipped by"):
+        sim.record(high, sim.start_stop(3, laps=1), seed=1)
+    gently = sim.MoveLimits(speed=1.0, acceleration=0.5)
+    sim.record(high, sim.moves("line", [(2.0, 0.0)], gently), seed=1)
+
+
+def test_wheels_larger_than_half_the_base_roll_by_their_radius() -> None:
+    """Their spheres overlap; what they sink into each other is not taken for the floor."""
+    small = sim.TrueRobot(0.05, 0.03, 0.03, mass=1.0, nominal=sim.Nominal(0.05, 0.03))
+    path = sim.record(small, sim.spin(1.0), seed=1).true_path
+    counted = np.ptp(path.right_angle_rad - path.left_angle_rad) * 0.03 / 0.05
+    assert np.ptp(path.yaw_rad) == pytest.approx(counted, rel=1e-4)

@@ -6,6 +6,7 @@ Reasons for the settings (measured; the figures are in docs/simulation.md):
 
 - Wheels are spheres: one contact point each, vertically below the centre at any tilt of the body.
 - The skid has no friction, so only the wheels determine the motion.
+- Wheels and skid touch the floor alone (`conaffinity`): spheres larger than half the base overlap.
 - MuJoCo's contacts are springs. A wheel penetrates the floor by a few micrometres, and its contact
   acts at half of this depth, so the rolling radius is short by half the penetration.
 - Friction removes slip with a time constant of TIME_CONSTANT * IMPEDANCE / 2, as an acceleration
@@ -155,7 +156,7 @@ def to_mjcf(chassis: Chassis) -> str:
       <geom name="hull" type="box" size="0.15 0.1 0.02" pos="-0.04 0 0" mass="{hull_mass}"
             contype="0" conaffinity="0"/>
       <geom name="skid" type="sphere" size="{skid}" pos="{-SKID_BEHIND} 0 {skid - height}"
-            mass="0.001" condim="1" friction="0 0 0" priority="1"/>
+            mass="0.001" condim="1" friction="0 0 0" priority="1" conaffinity="0"/>
       <body name="axle" euler="0 0 {math.degrees(chassis.axle_yaw)}">
         {left}{right}
       </body>
@@ -194,7 +195,7 @@ def _wheel(plan: WheelPlan, height: float, mass: float, *, gives: bool) -> str:
         <body name="{plan.side}" pos="{hub}">{give}
           <joint name="{plan.side}" type="hinge" axis="0 1 0" armature="{rotor}" {drag}/>
           <geom name="{plan.side}" {shape} pos="{ahead} 0 {up}" mass="{mass}"
-                condim="3" friction="1.5 0 0"/>
+                condim="3" friction="1.5 0 0" conaffinity="0"/>
         </body>"""
     if plan.play:
         body += f"""
