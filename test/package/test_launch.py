@@ -15,10 +15,7 @@ from test.command_line import ROOT
 from test.package.launching import launched
 
 FILES = sorted(path.name for path in (ROOT / "launch").glob("*"))
-ASKED = {
-    "compare.launch.xml": {"reference": "/vrpn/robot/pose"},
-    "drive.launch.xml": {"area_radius": "4.0"},
-}
+ASKED = {"compare.launch.xml": {"reference": "/vrpn/robot/pose"}}
 PACKAGE_OF = {"tf2_ros": "tf2_ros_py"}  # whose Python module bears another package's name
 ELSEWHERE = {("robot_localization", "ekf_node"), ("rviz2", "rviz2")}
 

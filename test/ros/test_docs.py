@@ -12,7 +12,11 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from test.package.launching import launched
+from werrimbi_odom.files.node_parameter import NodeParameter
 from werrimbi_odom.files.parameters import PARAMETERS
+from werrimbi_odom.ros import compare_parameters, drive_parameters
+from werrimbi_odom.ros.declared_parameters import NONE, told
 from werrimbi_odom.ros.odom_parameters import CHANGEABLE
 
 ROOT = Path(__file__).parents[2]
@@ -46,3 +50,24 @@ def test_the_tables_of_the_driving_page_are_what_the_commands_print(node: str, m
     page = (ROOT / "docs" / "driving.md").read_text(encoding="utf-8")
     kept = page.partition(f"<!-- {node} -->\n")[2].partition(f"<!-- end of {node} -->")[0]
     assert kept == printed
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "own"),
+    [
+        ("drive.launch.xml", drive_parameters.PARAMETERS, {"record": "drives"}),
+        ("compare.launch.xml", compare_parameters.PARAMETERS, {}),
+    ],
+    ids=["drive", "compare"],
+)
+def test_a_launch_file_takes_every_parameter_of_its_node(
+    name: str, parameters: tuple[NodeParameter, ...], own: dict[str, str]
+) -> None:
+    """One that it lacks would be ignored without a word: a scan that is to stop the robot, say."""
+    asked = {"reference": "pose"} if "compare" in name else {}
+    for item in parameters:
+        (process,) = launched(ROOT, name, **asked)
+        default = own.get(item.name, told(item.default) if item.default != "" else NONE)
+        assert f"{item.name}:={default}" in process.arguments
+        (process,) = launched(ROOT, name, **asked, **{item.name: "sentinel"})
+        assert f"{item.name}:=sentinel" in process.arguments

@@ -63,6 +63,7 @@ def test_an_unknown_key_names_the_nearest_known_one(refused: Refused) -> None:
         ({"left_wheel_names": [1, 2]}, "left_wheel_names must be a list of names"),
         ({"effects": ["drift"]}, "unknown effect drift; the nearest known one is radius_drift"),
         ({"enable_odom_tf": True}, "enable_odom_tf needs tf2_ros, which is not installed here"),
+        ({"slip_imu_topic": "1imu"}, "'1imu' is not the name of a topic: topic name token must"),
         ({"use_sim_time": 3}, "'use_sim_time'"),
         pytest.param(
             {"qos_overrides": {"/joint_states": {"subscription": {"depth": "deep"}}}},
@@ -109,6 +110,11 @@ def test_everything_wrong_is_said_at_once() -> None:
         settings_of({"wheel_radius": -1.0, "wheel_with": 2.0})
     for words in ("wheel_radius must be", "unknown parameter wheel_with", "missing: wheel_sep"):
         assert words in str(error.value)
+
+
+def test_a_joint_is_of_one_side() -> None:
+    with pytest.raises(InputError, match="wheel is in left_wheel_names and in right_wheel_names"):
+        settings_of({**BARE, "left_wheel_names": ["wheel"], "right_wheel_names": ["wheel", "b"]})
 
 
 def test_whole_numbers_and_an_empty_list_of_effects_are_taken() -> None:

@@ -182,25 +182,48 @@ def test_several_effects_can_be_hidden() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("node", "words", "says"),
     [
         pytest.param(
+            "simulated_robot",
             ["-p", "real_time_factor:=2.0"],
             "real_time_factor 2 needs publish_clock: true",
             marks=pytest.mark.evidence,
         ),
         pytest.param(
+            "simulated_robot",
             ["-p", "seeds:=2"],
             "unknown parameter seeds: did you mean seed?",
             marks=pytest.mark.evidence,
         ),
-        ([], "the physics engine is not installed (mujoco is missing): pip install mujoco"),
+        (
+            "simulated_robot",
+            [],
+            "the physics engine is not installed (mujoco is missing): pip install mujoco",
+        ),
+        (
+            "drive_node",
+            ["-p", "area_radius:=4.0", "-p", "scan_topic:=front scan", "-p", "record:=none"],
+            "'front scan' is not the name of a topic: topic name must not contain characters",
+        ),
+        (
+            "drive_node",
+            ["-p", "area_radius:=4.0", "-p", "record_topics:=[odom, /a//b]"],
+            "'/a//b' is not the name of a topic: topic name must not contain repeated '/'",
+        ),
+        (
+            "drive_node",
+            ["-p", "diagnosis:=none", "-p", "scan_topic:=none"],
+            "no area is given in which the robot may move: give area_radius, or",
+        ),
     ],
-    ids=["faster", "misspelt", "no mujoco"],
+    ids=["faster", "misspelt", "no mujoco", "no topic", "none to record", "no area"],
 )
-def test_what_it_cannot_start_with_is_told_in_a_line(words: list[str], says: str) -> None:
+def test_what_a_node_cannot_start_with_is_told_in_a_line(
+    node: str, words: list[str], says: str
+) -> None:
     without = "" if words else "sys.modules['mujoco'] = None;"
-    code = f"import sys; {without} from werrimbi_odom.ros.simulated_robot import main; "
+    code = f"import sys; {without} from werrimbi_odom.ros.{node} import main; "
     run = subprocess.run(
         [sys.executable, "-c", f"{code} sys.exit(main({['--ros-args', *words]}))"],
         capture_output=True,

@@ -25,8 +25,8 @@ PARAMETERS: tuple[NodeParameter, ...] = (
         "Standard deviation of the reference's x and y, where its messages state none."),
     within("reference_sigma_yaw", rules.TAPE_YAW, "rad", LEAST, MOST, "The same of its heading."),
     NodeParameter("robot_file", "",
-        "Robot file of odom_node: tell what is missing in it; empty or `none`: do not look. It is "
-        "read, never written."),
+        "Robot file of odom_node: tell what is missing in it; empty: do not look. It is read, "
+        "never written."),
     within("diagnose_every", 5.0, "min", 0.1, 60.0,
         "Driving between two looks for what is missing, each of which is at twice as much."),
     NodeParameter("reference_kind", "auto",

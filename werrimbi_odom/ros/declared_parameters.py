@@ -16,6 +16,9 @@ from werrimbi_odom.files import parameters as robot_file
 from werrimbi_odom.files.effect_parameters import EFFECTS
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
 
+NONE = "none"
+"""An empty text, in a launch file or on a command line: those cannot say one."""
+
 
 def above_zero(name: str, default: float, unit: str, maximum: float, says: str) -> NodeParameter:
     """A number above zero."""
@@ -46,7 +49,9 @@ def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value
     for item in parameters:
         assert item.default is not None
         try:
-            values[item.name] = item.checked(given.get(item.name, item.default))
+            value = given.get(item.name, item.default)
+            empty = value == NONE and item.default == ""
+            values[item.name] = item.checked("" if empty else value)
         except InputError as error:
             wrong.append(str(error))
     if wrong:
@@ -71,7 +76,7 @@ def _unknown(name: str, known: list[str]) -> str:
     return f"unknown parameter {name}: {hint}"
 
 
-def _told(default: Value | None) -> str:
+def told(default: Value | None) -> str:
     """A default value in YAML notation."""
     if isinstance(default, tuple):
         return f"[{', '.join(default)}]"
@@ -85,7 +90,7 @@ def table(parameters: Sequence[NodeParameter]) -> str:
         says = item.says
         if item.choices:
             says += f" One of {', '.join(f'`{each}`' for each in item.choices)}."
-        default = f"`{_told(item.default)}`" if item.default != "" else "empty"
+        default = f"`{told(item.default)}`" if item.default != "" else "empty"
         start = f"| `{item.name}` | {item.kind} | {default}"
         lines.append(f"{start} | {item.unit} | {says} |")
     return "\n".join(lines) + "\n"

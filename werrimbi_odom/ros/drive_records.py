@@ -17,6 +17,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from werrimbi_odom.files.bag_writing import BagWriter, known_types
 from werrimbi_odom.files.node_parameter import Value
+from werrimbi_odom.ros.topics import full_topic
 
 
 class Bagging:
@@ -86,7 +87,7 @@ LINGER = 0.5
 class Records:
     """Records a bag for each drive, if requested.
 
-    InputError if rosbags is needed and not installed.
+    InputError if a topic's name is none, or rosbags is needed and not installed.
     """
 
     def __init__(self, node: Node, values: Mapping[str, Value]) -> None:
@@ -95,7 +96,7 @@ class Records:
         self._robot = str(values["robot_file"]) or "ROBOT.yaml"
         names = values["record_topics"]
         assert isinstance(names, tuple)
-        self._topics = [node.resolve_topic_name(name) for name in names]
+        self._topics = [full_topic(node, name) for name in names]
         self._bag: Bagging | None = None
         self._ends = math.inf
         if self._folder:

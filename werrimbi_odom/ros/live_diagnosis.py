@@ -235,6 +235,6 @@ def watching_of(
     node: Node, values: Mapping[str, Value], kind: type, subscribe: Callable[..., None]
 ) -> NoWatching:
     """Create what the parameters request."""
-    if values["robot_file"] in ("", "none"):
+    if not values["robot_file"]:
         return NoWatching()
     return Watching(node, values, kind, subscribe)

@@ -16,11 +16,12 @@ from typing import Any
 
 from geometry_msgs.msg import TransformStamped
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from rclpy.exceptions import ParameterException
+from rclpy.exceptions import InvalidTopicNameException, ParameterException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
+from rclpy.validate_topic_name import validate_topic_name
 
 from werrimbi_odom.errors import InputError
 
@@ -45,10 +46,10 @@ def subscribe(
 ) -> None:
     """Subscribe, by default with `sensor_qos`; `raw`: `take` gets serialised messages.
 
-    `overridable`: the QoS can be overridden by parameters; InputError names one that is invalid.
-    `lost` is called when messages are lost.
+    `overridable`: the QoS can be overridden by parameters. InputError names an override that is
+    invalid, or a topic whose name is. `lost` is called when messages are lost.
     """
-    with _errors_of_overrides(topic, overridable):
+    with _errors_of(topic, overridable):
         node.create_subscription(
             kind,
             topic,
@@ -66,7 +67,7 @@ def publisher(
     node: Node, kind: type, topic: str, qos: QoSProfile | int = 100, *, overridable: bool = False
 ) -> Publisher:
     """Create a publisher; `qos` may be the depth alone, `overridable` is as in `subscribe`."""
-    with _errors_of_overrides(topic, overridable):
+    with _errors_of(topic, overridable):
         return node.create_publisher(
             kind,
             topic,
@@ -81,14 +82,30 @@ def _overriding(overridable: bool) -> QoSOverridingOptions | None:
 
 
 @contextmanager
-def _errors_of_overrides(topic: str, overridable: bool) -> Iterator[None]:
-    """Convert exceptions of rclpy on an invalid QoS override to one that names the topic."""
+def _errors_of(topic: str, overridable: bool) -> Iterator[None]:
+    """Convert exceptions of rclpy on a name or a QoS override to one that names the topic."""
     try:
         yield
+    except InvalidTopicNameException as error:
+        raise InputError(_no_name(topic, error)) from error
     except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:
         if not overridable:
             raise
         raise InputError(f"QoS override of {topic}: {error}") from error
+
+
+def full_topic(node: Node, topic: str) -> str:
+    """Name of a topic with its namespace and after remapping; InputError if it is no name."""
+    try:
+        validate_topic_name(topic)
+        return str(node.resolve_topic_name(topic))
+    except (InvalidTopicNameException, RuntimeError) as error:
+        raise InputError(_no_name(topic, error)) from error
+
+
+def _no_name(topic: str, error: Exception) -> str:
+    why = str(error).splitlines()[0].partition(", at /")[0].rpartition(": ")[2].rstrip(":")
+    return f"{topic!r} is not the name of a topic: {why}"
 
 
 SendTransform = Callable[[TransformStamped], None]
