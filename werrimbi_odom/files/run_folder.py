@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.csv_table import CsvTable, read_table
+from werrimbi_odom.files.own_headings import words_about_own_headings
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
 from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable, replacing
@@ -139,10 +140,12 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         for name in SIGMA_COLUMNS
     ]
     reference = Reference(_times(table), x, y, yaw, *sigmas)
+    reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
     keep, late = _on_time(reference)
     remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
+    remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
     return (reference if keep.all() else reference.chosen(keep)), remarks
 
 
