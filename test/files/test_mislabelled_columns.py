@@ -16,6 +16,7 @@ from werrimbi_odom.files import mislabelled_columns
 from werrimbi_odom.files.mislabelled_columns import words_about_one_clock_unit, words_about_ways
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -251,3 +252,10 @@ def test_ways_of_the_wheels_in_metres_and_angles() -> None:
     assert not words_about_ways(run, ROBOT)
     carried = counted(run, lambda total: np.where(run.ticks.time < 5.0, total, 0.0))
     assert not words_about_ways(carried, ROBOT), "wheels that stand tell no unit"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_quaternions_z_is_no_yaw(seed: int) -> None:
+    run = driven(seed)
+    with pytest.raises(InputError, match="it is the z of a quaternion: write the angle, 2 atan2"):
+        refuse_wrong_columns(seen(run, yaw=lambda it: np.sin(0.5 * wrap_all(it.yaw + 0.3))))

@@ -235,10 +235,22 @@ def _no_heading(ticks: Ticks, reference: Reference) -> str:
         )
     ahead = np.interp(when, ticks.time, 0.5 * (ticks.left + ticks.right))
     backwards = np.where(np.diff(ahead, axis=0)[0] < 0.0, np.pi, 0.0)
-    along, against = (
-        max(_together(course + sign * yaw), _together(course + sign * yaw + backwards))
-        for sign in (-1.0, 1.0)
-    )
+
+    def follows(sign: float, yaw: Floats) -> float:
+        return max(_together(course + sign * yaw), _together(course + sign * yaw + backwards))
+
+    along, against = follows(-1.0, yaw), follows(1.0, yaw)
+    of_quaternion = _chords(replace(reference, yaw=2.0 * np.arcsin(reference.yaw.clip(-1.0, 1.0))))
+    if (
+        of_quaternion is not None
+        and np.nanmax(np.abs(reference.yaw)) <= 1.0
+        and along < CONTRADICTS
+        and follows(-1.0, of_quaternion[1]) > FOLLOWS
+    ):
+        return (
+            "yaw_rad stays within 1 while the path turns all round, and twice its arcsine follows "
+            "the path: it is the z of a quaternion: write the angle, 2 atan2(z, w)"
+        )
     if against < FOLLOWS or along > CONTRADICTS:
         return ""
     return (
