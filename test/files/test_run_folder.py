@@ -372,3 +372,14 @@ def test_logs_of_other_programs_are_to_be_saved_as_text(tmp_path: Path, name: st
     for path in (tmp_path, tmp_path / name):
         with pytest.raises(InputError, match=f"; save what {name} holds as text: "):
             bag_at(path)
+
+
+@pytest.mark.parametrize(("interval", "told"), [(1.0, 2), (0.5, 0), (10.0, 0)])
+def test_times_without_a_fraction_may_be_rounded(
+    tmp_path: Path, interval: float, told: int
+) -> None:
+    times = [1539699406 + interval * row for row in range(24)]
+    ticks = "".join(f"{time:.12g},{row},{row}\n" for row, time in enumerate(times))
+    poses = "".join(f"{time:.12g},{row},0,0\n" for row, time in enumerate(times))
+    run = read_run_folder(folder(tmp_path, TICKS + ticks, REFERENCE + poses))
+    assert sum("all its times are whole seconds" in each for each in run.damage) == told
