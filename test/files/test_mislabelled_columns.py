@@ -10,10 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.files.recorded import ROBOT, driven
+from test.files.recorded import ROBOT, TRUE, driven
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import mislabelled_columns
+from werrimbi_odom.files.mislabelled_columns import words_about_one_clock_unit, words_about_ways
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -223,3 +226,36 @@ def test_a_robot_that_starts_at_zero_was_there() -> None:
         run, x=lambda it: it.x - it.x[0], y=lambda it: it.y - it.y[0], yaw=lambda it: 0.0 * it.yaw
     )
     assert mislabelled_columns.without_zeros(start) is start
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e3, "milliseconds"), (1e6, "microseconds")])
+def test_times_of_one_file_in_another_unit(factor: float, unit: str) -> None:
+    run = driven(1)
+    assert run.reference is not None
+    assert not words_about_one_clock_unit(run.ticks, run.reference)
+    later = seen(run, time=lambda it: factor * it.time)
+    with pytest.raises(InputError, match=f"the times of the reference are in {unit}, and t_s mea"):
+        refuse_unjudgeable(later, ROBOT)
+    ticks = replace(run.ticks, time=factor * run.ticks.time)
+    with pytest.raises(InputError, match=f"the times of the ticks are in {unit}, and t_s means"):
+        refuse_unjudgeable(replace(run, ticks=ticks), ROBOT)
+
+
+def test_ways_of_the_wheels_in_metres_and_angles() -> None:
+    run = driven(1)
+    refuse_wrong_columns(run)
+    with pytest.raises(InputError, match="they are metres, and no counts: write how many steps"):
+        refuse_wrong_columns(counted(run, lambda total: total * ROBOT.left_tick))
+    radians = counted(run, lambda total: total * ROBOT.left_tick / TRUE.left_radius)
+    refuse_wrong_columns(radians)  # the diagnosis says how many of them are a turn
+    assert "it went 0.0" in words_about_ways(radians, ROBOT)
+    assert not words_about_ways(run, ROBOT)
+    carried = counted(run, lambda total: np.where(run.ticks.time < 5.0, total, 0.0))
+    assert not words_about_ways(carried, ROBOT), "wheels that stand tell no unit"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_quaternions_z_is_no_yaw(seed: int) -> None:
+    run = driven(seed)
+    with pytest.raises(InputError, match="it is the z of a quaternion: write the angle, 2 atan2"):
+        refuse_wrong_columns(seen(run, yaw=lambda it: np.sin(0.5 * wrap_all(it.yaw + 0.3))))

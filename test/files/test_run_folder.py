@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import csv_table
+from werrimbi_odom.files.read_run import bag_at
 from werrimbi_odom.files.run_folder import read_run_folder
 
 TICKS = "t_s,left_ticks,right_ticks\n"
@@ -321,3 +322,64 @@ def test_a_million_rows_in_little_time(tmp_path: Path) -> None:
 def test_no_permission(tmp_path: Path) -> None:
     (folder(tmp_path) / "ticks.csv").chmod(0)
     assert complaint(tmp_path) == "ticks.csv cannot be read: Permission denied"
+
+
+RENAMED = {
+    "time_ms,enc_l,enc_r,rpm_l,rpm_r": "(perhaps t_s for time_ms, divided by 1000; left_ticks for "
+    "enc_l, right_ticks for enc_r)",
+    "t,left_rpm,right_rpm": "right_ticks for right_rpm, a speed: the running sum of it / 60 (turns)"
+    " times the seconds since the row before, as whole numbers of small steps)",
+    "time,s_right,s_left": "right_ticks for s_right, a way or an angle: as whole numbers of small",
+    "time,dL,dR": "right_ticks for dR, if that is what came since the row before, its running sum)",
+    "time,left_cmd,right_cmd": "in place of its own (perhaps t_s for time), and bring",
+    "leftEncoder,rightEncoder": "no column is called like a time: where rows come at a steady rate",
+}
+
+
+@pytest.mark.parametrize("header", RENAMED)
+def test_what_a_strangers_columns_may_be_and_how_they_become_ours(
+    tmp_path: Path, header: str
+) -> None:
+    assert RENAMED[header] in complaint(folder(tmp_path, f"{header}\n1,2,3,4,5\n"))
+
+
+def test_the_robots_own_pose_is_not_offered_as_a_reference(tmp_path: Path) -> None:
+    columns = "time_us,x_cm,y_cm,x_acc,encoder_heading_deg,yaw_rate"
+    said = complaint(folder(tmp_path, FINE, f"{columns}\n1,2,3,4,5,6\n"))
+    assert "t_s for time_us, divided by 10^6; x_m for x_cm, y_m for y_cm, divided by 100)" in said
+    assert "the cells of what was not measured may be empty, but the name must be there" in said
+
+
+def test_a_header_that_numpy_wrote_as_a_remark(tmp_path: Path) -> None:
+    assert read_run_folder(folder(tmp_path, "# " + FINE)).ticks.left.tolist() == [1, 3]
+
+
+def test_remarks_before_the_rows_are_named(tmp_path: Path) -> None:
+    said = complaint(folder(tmp_path, "%% logfile of a robot:\n% 1 time\n0.1 2 3\n"))
+    assert said.startswith("ticks.csv, line 1 is a remark, '%% logfile of a robot:'; leave such")
+
+
+def test_a_header_that_fits_no_row(tmp_path: Path) -> None:
+    """A logger named the time, and did not write it: what it calls time is x."""
+    rows = "".join(f"{0.1 * row},2.0,0.5\n" for row in range(5))
+    said = complaint(folder(tmp_path, FINE, REFERENCE + rows))
+    assert "line 2: 3 cells under 4 columns, as in all rows: one that it names was not" in said
+
+
+@pytest.mark.parametrize("name", ["odom.mat", "log.xlsx", "run.npz"])
+def test_logs_of_other_programs_are_to_be_saved_as_text(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(b"MATLAB 5.0 MAT-file")
+    for path in (tmp_path, tmp_path / name):
+        with pytest.raises(InputError, match=f"; save what {name} holds as text: "):
+            bag_at(path)
+
+
+@pytest.mark.parametrize(("interval", "told"), [(1.0, 2), (0.5, 0), (10.0, 0)])
+def test_times_without_a_fraction_may_be_rounded(
+    tmp_path: Path, interval: float, told: int
+) -> None:
+    times = [1539699406 + interval * row for row in range(24)]
+    ticks = "".join(f"{time:.12g},{row},{row}\n" for row, time in enumerate(times))
+    poses = "".join(f"{time:.12g},{row},0,0\n" for row, time in enumerate(times))
+    run = read_run_folder(folder(tmp_path, TICKS + ticks, REFERENCE + poses))
+    assert sum("all its times are whole seconds" in each for each in run.damage) == told

@@ -23,7 +23,7 @@ from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.merged_reference import SCALE_MOST
-from werrimbi_odom.files.mislabelled_columns import without_zeros
+from werrimbi_odom.files.mislabelled_columns import without_zeros, words_about_ways
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
 from werrimbi_odom.files.run import Run
@@ -264,6 +264,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         if recorded.reference is not None:
             refuse_unjudgeable(recorded, robot)
             if source is not None or first.has_sizes:
+                if words := words_about_ways(recorded, robot):
+                    return replace(held, problem=f"{recorded.path}: {words}")
                 require_independent(recorded, robot, limits)
             if recorded.reference.kind != "incremental":  # as where drives are judged
                 recorded = without_held_poses(recorded, robot)

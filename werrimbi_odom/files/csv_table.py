@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.column_names import perhaps_meant
 from werrimbi_odom.model.pose import Floats
 
 MAX_BYTES = 2**30
@@ -29,13 +30,6 @@ MAX_LINE = 2**20
 _NUMBER = re.compile(
     r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
 )
-_OTHER_NAMES = {
-    "t_s": ("t", "time", "timestamp", "stamp", "sec", "secs", "seconds"),
-    "left_ticks": ("left", "l"),
-    "right_ticks": ("right", "r"),
-    "yaw_rad": ("yaw", "theta", "heading", "th", "phi"),
-}
-"""Words of the names that other logs have for a column."""
 _BLANK = re.compile(r'[\s,"]*\Z')
 """A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
@@ -88,7 +82,7 @@ def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> Cs
     """
     try:
         _refuse_too_large(path)
-        names = _header(path, required)
+        names = _header(path, required, filled)
         cut = _cut_line(path, names, [names.index(name) for name in filled])
         values = _values(path, names, cut)
     except IsADirectoryError:
@@ -118,28 +112,35 @@ def _refuse_too_large(path: Path) -> None:
                 )
 
 
-def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
+def _header(path: Path, required: Sequence[str], filled: Sequence[str]) -> tuple[str, ...]:
     wanted = ",".join(required)
     with path.open(encoding="utf-8-sig", newline=None) as file:
         line = file.readline(65536)
     if not line:
         raise InputError(f"{path} is empty; its first line must be {wanted}")
-    names = tuple(name.strip() for name in next(csv.reader([line]), []))
+    # numpy.savetxt writes the names as a remark.
+    names = tuple(name.strip() for name in next(csv.reader([line.lstrip("#% ")]), []))
     place = f"{path}, line 1"
     missing = [name for name in required if name not in names]
     if missing:
         if all(_NUMBER.match(name) for name in names):
             raise InputError(f"{place}: there is no header; the first line must be {wanted}")
+        if line.lstrip()[:1] in ("#", "%"):
+            raise InputError(
+                f"{place} is a remark, {line.strip()[:200]!r}; leave such lines out: the first "
+                f"line must be {wanted}, and columns be separated by commas"
+            )
         if len(names) == 1 and len(re.split(r"[;\s]+", names[0])) > 1:
             raise InputError(
                 f"{place}: the columns are not separated by commas; separate them so, and the "
                 f"first line must be {wanted}"
             )
         held = line.strip()[:200]
+        empty = [name for name in missing if name not in filled]
         raise InputError(
             f"{place}: no column {', '.join(missing)}; the header is {held!r}; write these names "
-            f"into it in place of its own{_perhaps(missing, names)}, and bring the values to the "
-            "units that they name"
+            f"into it in place of its own{perhaps_meant(missing, names)}, and bring the values to "
+            f"the units that they name{_may_be_empty(empty)}"
         )
     if len(names) > MAX_COLUMNS:
         raise InputError(f"{place}: {len(names)} columns are more than {MAX_COLUMNS}")
@@ -151,15 +152,12 @@ def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def _perhaps(missing: Sequence[str], names: Sequence[str]) -> str:
-    """Columns that may be meant by those that are missing."""
-    found = []
-    for name in missing:
-        words = _OTHER_NAMES.get(name, ()) or (name.partition("_")[0],)
-        like = [own for own in names if set(words) & set(re.split(r"[^a-z]+", own.lower()))]
-        if len(like) == 1:
-            found.append(f"{name} for {like[0]}")
-    return f" (perhaps {', '.join(found)})" if found else ""
+def _may_be_empty(names: Sequence[str]) -> str:
+    """What to do where nothing was measured for some columns."""
+    if not names:
+        return ""
+    which = "its cells" if len(names) == 1 else "the cells of what was not measured"
+    return f"; {which} may be empty, but the name must be there"
 
 
 def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
@@ -245,9 +243,24 @@ def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
                         "leave the cell empty where there is none"
                     )
             if len(cells) != len(names):
-                raise InputError(f"{place}: {len(cells)} cells under {len(names)} columns")
+                raise InputError(
+                    f"{place}: {len(cells)} cells under {len(names)} columns"
+                    f"{_in_all_rows(path, names, cut)}"
+                )
     except csv.Error as error:
         raise InputError(f"{path} cannot be read: {error}") from error
+
+
+def _in_all_rows(path: Path, names: Sequence[str], cut: int) -> str:
+    """Remark on a header that fits no row."""
+    counts = {len(cells) for _, cells in _rows(path, cut)}
+    if len(counts) > 1:
+        return ""
+    few = min(counts) < len(names)
+    return (
+        f", as in all rows: {'one that it names was not written' if few else 'one has no name'}, "
+        "so the others may not stand under their names"
+    )
 
 
 def _shown(cell: str) -> str:

@@ -31,6 +31,15 @@ another unit. Chosen: ten times below a robot that creeps; in milliseconds 1 m/s
 UNITS = ((2e6, "nanoseconds", 9), (2e3, "microseconds", 6), (0.0, "milliseconds", 3))
 """Units of time by the median interval of the rows: messages come at 0.5 Hz to 1 kHz."""
 
+SPANS_ALIKE = 2.0
+"""Factor within which the spans of both files are alike once one's times are divided."""
+
+METRES, OTHERWISE = 1.25, 3.0
+"""Factor within which counters go as many units as the reference goes metres, and that by which the
+robot file says otherwise."""
+FAR_APART = 20.0
+"""Factor between the ways by wheels and reference above which a robot file is of another unit."""
+
 SHARED, WHOLE = 0.5, 0.001
 """Share of rows at the time of the row before above which times are rounded, if they come in whole
 multiples of their smallest step, to within this share of it. Bursts of messages do not."""
@@ -43,6 +52,9 @@ below which they do not. A path along the yaw has 1 less its scatter (0.8 at 0.6
 that hardly turns, both senses of turning have much."""
 TURNED = 0.9
 """Mean resultant length of the path's direction above which it hardly turned (0.46 rad)."""
+
+LEAST_CHORD, ROLLED = 0.01, 0.8
+"""Length of such chords [m], and share of them with counts, from which ways are compared."""
 
 FAR, FAR_STEPS = 0.05, 20.0
 """Distance [m], and in typical steps of the reference, beyond which a pose of zeros is none."""
@@ -58,6 +70,7 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     words = (
         _other_unit_of_time(run.ticks, run.reference)
         or _rounded_times(run.ticks, run.reference)
+        or _metres(run.ticks, run.reference, robot)
         or what_counters_hold(run.ticks, run.reference, robot.encoder_bits)
         or _no_heading(run.ticks, run.reference)
     )
@@ -117,6 +130,82 @@ def _other_unit_of_time(ticks: Ticks, reference: Reference) -> str:
     )
 
 
+def words_about_one_clock_unit(ticks: Ticks, reference: Reference) -> str:
+    """Which file has its times in another unit than the other; "" if none does."""
+    if min(ticks.rows, reference.time.size) < FEWEST:
+        return ""
+    spans = [float(np.ptp(each.time)) for each in (ticks, reference)]
+    if not min(spans) > 0.0:
+        return ""
+    long, times = ("ticks", ticks.time) if spans[0] > spans[1] else ("reference", reference.time)
+    if float(np.median(np.abs(np.diff(times)))) < LONG_INTERVAL:
+        return ""
+    for _, name, power in UNITS:
+        if 1.0 / SPANS_ALIKE < max(spans) / min(spans) / 10.0**power < SPANS_ALIKE:
+            return (
+                f"the ticks last {spans[0]:.6g} s and the reference {spans[1]:.6g} s: the times "
+                f"of the {long} are in {name}, and t_s means seconds: divide that column there "
+                f"by 10^{power}"
+            )
+    return ""
+
+
+def words_about_ways(run: Run, robot: Robot) -> str:
+    """Ways by wheels and reference that are of different units; "" if they are not.
+
+    Of a robot that rolled most of the time while it moved: one that is carried does not.
+    """
+    ways = _ways(run.ticks, run.reference) if run.reference is not None else None
+    if ways is None:
+        return ""
+    counted, seen = ways
+    rolled = 0.5 * counted * (robot.left_tick + robot.right_tick)
+    if seen / FAR_APART < rolled < FAR_APART * seen:
+        return ""
+    return (
+        f"by its wheels, with this robot file, it went {rolled:.2g} m, and by the reference "
+        f"{seen:.2g} m, {seen / counted:.2g} m for each count: look at wheel_radius and at the "
+        "counts of a turn; counters in radians have left_ticks_per_revolution: 6.283185, in "
+        "degrees 360" + ("; or x_m and y_m are in millimetres" if seen > rolled else "")
+    )
+
+
+def _metres(ticks: Ticks, reference: Reference, robot: Robot) -> str:
+    ways = _ways(ticks, reference)
+    if ways is None or all((part == np.rint(part)).all() for part in (ticks.left, ticks.right)):
+        return ""
+    counted, seen = ways
+    size = 0.5 * (robot.left_tick + robot.right_tick)
+    if not 1.0 / METRES < seen / counted < METRES or 1.0 / OTHERWISE < size < OTHERWISE:
+        return ""
+    return (
+        f"left_ticks and right_ticks go {counted:.4g} where the robot goes {seen:.4g} m: they are "
+        "metres, and no counts: write how many steps of 0.01 mm they are, as whole numbers, and "
+        "into the robot file how many of these its wheel goes in a turn (left_ticks_per_revolution "
+        "= 2 pi wheel_radius / 0.00001)"
+    )
+
+
+def _ways(ticks: Ticks, reference: Reference) -> tuple[float, float] | None:
+    """Counts of a wheel and metres by the reference, of both together; None if hardly any."""
+    rows = np.flatnonzero(reference.has_position)
+    if min(ticks.rows, rows.size) < FEWEST:
+        return None
+    place = reference.x[rows] + 1j * reference.y[rows]
+    chord = CHORD * float(np.hypot(np.ptp(place.real), np.ptp(place.imag)))
+    ends = _ends(place, chord)
+    when = reference.time[rows[ends]]
+    inside = (when >= ticks.time.min()) & (when <= ticks.time.max())
+    if np.count_nonzero(inside) <= FEWEST or chord < LEAST_CHORD:
+        return None
+    stamps = np.maximum.accumulate(ticks.time)
+    counts = [np.interp(when[inside], stamps, part) for part in (ticks.left, ticks.right)]
+    moved = np.abs(np.diff(counts, axis=1)).mean(axis=0)
+    if not np.isfinite(moved).all() or np.count_nonzero(moved) < ROLLED * moved.size:
+        return None
+    return float(moved.sum()), float(np.abs(np.diff(place[ends][inside])).sum())
+
+
 def _rounded_times(ticks: Ticks, reference: Reference) -> str:
     for name, time in (("ticks", ticks.time), ("the reference", reference.time)):
         steps = np.diff(time)
@@ -146,10 +235,22 @@ def _no_heading(ticks: Ticks, reference: Reference) -> str:
         )
     ahead = np.interp(when, ticks.time, 0.5 * (ticks.left + ticks.right))
     backwards = np.where(np.diff(ahead, axis=0)[0] < 0.0, np.pi, 0.0)
-    along, against = (
-        max(_together(course + sign * yaw), _together(course + sign * yaw + backwards))
-        for sign in (-1.0, 1.0)
-    )
+
+    def follows(sign: float, yaw: Floats) -> float:
+        return max(_together(course + sign * yaw), _together(course + sign * yaw + backwards))
+
+    along, against = follows(-1.0, yaw), follows(1.0, yaw)
+    of_quaternion = _chords(replace(reference, yaw=2.0 * np.arcsin(reference.yaw.clip(-1.0, 1.0))))
+    if (
+        of_quaternion is not None
+        and np.nanmax(np.abs(reference.yaw)) <= 1.0
+        and along < CONTRADICTS
+        and follows(-1.0, of_quaternion[1]) > FOLLOWS
+    ):
+        return (
+            "yaw_rad stays within 1 while the path turns all round, and twice its arcsine follows "
+            "the path: it is the z of a quaternion: write the angle, 2 atan2(z, w)"
+        )
     if against < FOLLOWS or along > CONTRADICTS:
         return ""
     return (

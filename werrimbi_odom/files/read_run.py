@@ -32,6 +32,8 @@ from werrimbi_odom.files.run_folder import (
 )
 
 _TEXT = (".csv", ".txt", ".dat", ".log", ".tsv", ".clf")
+_TABLES = (".mat", ".xls", ".xlsx", ".ods", ".npy", ".npz", ".pkl", ".parquet", ".h5", ".json")
+"""Ends of names of logs of other programs."""
 FROM_TEXT = (
     f"a log of text is read from a folder of its own with {TICKS} ({','.join(TICKS_COLUMNS)}: "
     "seconds, and counts since the start) and, as far as it was measured, "
@@ -143,8 +145,7 @@ def _bag_in(folder: Path) -> Path:
     for below in (*sorted(folder.glob(f"*/{TICKS}")), *sorted(folder.glob("*/metadata.yaml"))):
         hint = f"; did you mean {below.parent}?"
         break
-    if not hint and any(_is_text(each) for each in folder.iterdir()):
-        hint = f"; {FROM_TEXT}"
+    hint = hint or next(filter(None, map(_hint, sorted(folder.iterdir()))), "")
     raise InputError(f"{folder} holds neither {TICKS} nor a bag (metadata.yaml){hint}")
 
 
@@ -153,9 +154,14 @@ def _bag_file(path: Path) -> Path:
         return path
     if path.name == TICKS:
         raise InputError(f"{path}: give the folder that holds it, {path.parent}")
-    hint = f"; {FROM_TEXT}" if _is_text(path) else ""
-    raise InputError(f"{path} is neither a run folder nor a bag ({', '.join(SUFFIXES)}){hint}")
+    raise InputError(
+        f"{path} is neither a run folder nor a bag ({', '.join(SUFFIXES)}){_hint(path)}"
+    )
 
 
-def _is_text(path: Path) -> bool:
-    return path.suffix.lower() in _TEXT
+def _hint(path: Path) -> str:
+    """How a log that is no bag is read."""
+    kind = path.suffix.lower()
+    if kind in _TABLES:
+        return f"; save what {path.name} holds as text: {FROM_TEXT}"
+    return f"; {FROM_TEXT}" if kind in _TEXT else ""

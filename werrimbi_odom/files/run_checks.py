@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns
+from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns, words_about_one_clock_unit
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.encoder_online import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
@@ -38,6 +38,8 @@ def refuse_unjudgeable(run: Run, robot: Robot) -> None:
     _refuse_reversed(run, "the ticks go", run.ticks.time)
     _refuse_reversed(run, "the reference goes", run.reference.time)
     _refuse_back(run)
+    if words := words_about_one_clock_unit(run.ticks, run.reference):
+        raise InputError(f"{run.path}: {words}")
     _refuse_apart(run, run.reference)
     refuse_wrong_columns(run, robot)
 
@@ -63,7 +65,7 @@ def _refuse_reversed(run: Run, what: str, time: Floats) -> None:
     if back and back >= REVERSED * np.count_nonzero(steps):
         raise InputError(
             f"{run.path}: {what} back in time in {back} of {time.size} rows: the last row comes "
-            "first; sort the rows by t_s"
+            "first; sort the rows by t_s (or t_s holds something else than times)"
         )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.csv_table import CsvTable, read_table
+from werrimbi_odom.files.own_headings import words_about_own_headings
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
 from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable, replacing
@@ -23,6 +24,9 @@ TICKS = "ticks.csv"
 TICKS_COLUMNS = ("t_s", "left_ticks", "right_ticks")
 REFERENCE = "reference.csv"
 REFERENCE_COLUMNS = ("t_s", "x_m", "y_m", "yaw_rad")
+FEWEST_WHOLE, SELDOM = 20, 10.0
+"""Rows whose times are all whole seconds and are taken for rounded, and the interval [s] from which
+that matters little."""
 LATEST = 1e12
 """Upper limit of a time in seconds [s]; Unix time in milliseconds or nanoseconds exceeds it."""
 SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
@@ -87,7 +91,20 @@ def _ticks(path: Path) -> tuple[Ticks, tuple[str, ...]]:
     table = read_table(path, TICKS_COLUMNS, TICKS_COLUMNS)
     channels = {name: table.column(name) for name in table.names if name not in TICKS_COLUMNS}
     left, right = (_counts(table, name) for name in TICKS_COLUMNS[1:])
-    return Ticks(_times(table), left, right, channels), _cut(table)
+    times = _times(table)
+    return Ticks(times, left, right, channels), (*_cut(table), *_whole_seconds(table, times))
+
+
+def _whole_seconds(table: CsvTable, times: Floats) -> tuple[str, ...]:
+    """Remark on times without a fraction, as `int(time.time())` writes them."""
+    if times.size < FEWEST_WHOLE or not (times == np.rint(times)).all():
+        return ()
+    if float(np.median(np.abs(np.diff(times)))) >= SELDOM:
+        return ()
+    return (
+        f"{table.path.name}: all its times are whole seconds; if they were rounded, each is off by "
+        "up to one, and delays and short legs tell no more than that: write all their digits",
+    )
 
 
 def _times(table: CsvTable) -> Floats:
@@ -139,10 +156,13 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         for name in SIGMA_COLUMNS
     ]
     reference = Reference(_times(table), x, y, yaw, *sigmas)
+    reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
     keep, late = _on_time(reference)
     remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
+    remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
+    remarks += _whole_seconds(table, reference.time)
     return (reference if keep.all() else reference.chosen(keep)), remarks
 
 

@@ -144,7 +144,9 @@ def listed(words: Sequence[str], last: str = "and") -> str:
 
 
 def capital(words: str) -> str:
-    """Words as the beginning of a sentence."""
+    """Words as the beginning of a sentence; the name of a file stays as it is."""
+    if "." in words.partition(" ")[0].rstrip(".:,"):
+        return words
     return words[:1].upper() + words[1:]
 
 
