@@ -18,7 +18,7 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 CHORD, FEWEST = 0.25, 8
 """Parts of the path that are compared [m], and how many there must be."""
 SIDEWAYS = 3e-4
-"""Share of a part that it goes sideways, below which nothing measured it: 75 um in 0.25 m. Of six
+"""Share of a part that it goes sideways, below which nothing measured it: 75 um in 0.25 m. Of four
 drives seen by motion capture, the best has 1.6 mm."""
 COARSE = 2e-4
 """Resolution of positions [m] above which so little cannot be seen."""
