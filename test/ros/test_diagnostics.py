@@ -77,6 +77,18 @@ def test_counts_that_never_meet_are_an_error(launch: Any, robot: dict[str, Any])
     assert "pairing_window" in words
 
 
+def test_a_named_topic_that_nobody_publishes_is_a_warning(
+    launch: Any, robot: dict[str, Any]
+) -> None:
+    """A misspelt gyro would leave the covariance as it is when wheels slip."""
+    eccentric = {"effects": ["eccentric_left_wheel"], "eccentric_left_wheel": {"amplitude": 0.001}}
+    node = launch(robot | eccentric | {"slip_imu_topic": "im", "learn_from_topic": "pose"}).begin()
+    level, words = level_and_words(node, lambda: node.step(20, 10))
+    assert level == DiagnosticStatus.WARN
+    assert "no gyro heard on im (slip_imu_topic): wheels that slip go unseen" in words
+    assert "nothing heard on pose (learn_from_topic): no phase is learnt" in words
+
+
 def test_the_first_reading_is_no_error(launch: Any, robot: dict[str, Any]) -> None:
     node = launch(robot)
     node.publisher(JointState, "joint_states")

@@ -194,6 +194,7 @@ class OdomNode(Node):  # type: ignore[misc]
         effects = status_of_effects(self._settings.effects, self._learning) | self._slip.status()
         # Another driver on the topic may be that of an arm, with other joints.
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
+        wrong += [*self._learning.wrong(), *self._slip.wrong()]
         self._foreign = self._health.foreign
         crowded = self._company.crowded
         tally, counts = self._tracker.odometer.tally, self._input.tally()

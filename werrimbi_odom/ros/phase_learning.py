@@ -52,6 +52,10 @@ class NoLearning:
         """Current estimate of an effect's phase; None if it is not estimated."""
         return None
 
+    def wrong(self) -> list[str]:
+        """What /diagnostics warns of."""
+        return []
+
 
 class Learning(NoLearning):
     """Estimates phases of a robot's effects from a topic.
@@ -64,6 +68,7 @@ class Learning(NoLearning):
     ) -> None:
         self.topic = topic
         self._learner = PhaseLearner(robot)
+        self._heard = False
         self._tracker: LiveOdometer | None = None
         self._clock = wiring.node.get_clock()
         self._logger = wiring.node.get_logger()
@@ -126,7 +131,14 @@ class Learning(NoLearning):
         found = (phase for phase in self._learner.phases() if phase.effect == effect)
         return next(found, None)
 
+    def wrong(self) -> list[str]:
+        """The topic was not heard although the wheels were."""
+        if self._heard or self._done or self._tracker is None:
+            return []
+        return [f"nothing heard on {self.topic} (learn_from_topic): no phase is learnt"]
+
     def _see_imu(self, message: Any) -> None:
+        self._heard = True
         if message.angular_velocity_covariance[0] < 0.0:  # REP-145: the Imu does not measure this
             self._health.refuse("no angular velocity", "the Imu measures none", NOT_LEARNT)
             return
@@ -138,6 +150,7 @@ class Learning(NoLearning):
             self._learner.see_rate(self._time_of(message), rate)
 
     def _see_yaw(self, message: Any, orientation: Any) -> None:
+        self._heard = True
         if not self._done:
             try:
                 yaw = planar.yaw_of(orientation, slack=1.0)

@@ -35,6 +35,10 @@ class NoSlip:
         """Entries for /diagnostics."""
         return {}
 
+    def wrong(self) -> list[str]:
+        """What /diagnostics warns of."""
+        return []
+
 
 class Slip(NoSlip):
     """Compares the wheels with the gyro of a topic (sensor_msgs/Imu)."""
@@ -59,9 +63,17 @@ class Slip(NoSlip):
     def status(self) -> dict[str, str]:
         """Entries for /diagnostics."""
         if not self._heard:
-            return {"slip": f"no gyro heard on {self._topic}"}
+            return {"slip": self._unheard}
         turn = math.degrees(self._guard.missed)
         return {"slip": f"{self._guard.times} times, {turn:.1f} deg missed"}
+
+    def wrong(self) -> list[str]:
+        """The gyro was not heard although the wheels were."""
+        return [] if self._heard or self._tracker is None else [self._unheard]
+
+    @property
+    def _unheard(self) -> str:
+        return f"no gyro heard on {self._topic} (slip_imu_topic): wheels that slip go unseen"
 
     def _see(self, message: Any) -> None:
         if message.angular_velocity_covariance[0] < 0.0:
