@@ -200,7 +200,7 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
 
 
 def refuse_unearned(added: Added, insist: str) -> None:
-    """InputError if there is an objection to any of the effects; it names those without one.
+    """Raise InputError if there is an objection to any of the effects; it names those without one.
 
     `insist` says how to add them regardless.
     """
