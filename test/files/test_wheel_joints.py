@@ -150,15 +150,29 @@ def test_an_arm_in_a_urdf_moves_neither_base_nor_radius() -> None:
     assert (robot.separation, robot.radius) == (0.4, 0.1)
 
 
+def test_an_array_of_more_than_two_values_is_not_called_an_unread_type(
+    tmp_path: Path, ros: Any
+) -> None:
+    """The type is read, where its values are the two counters: it says so."""
+    array = ros.counts(0, 0, 50, 52, bits=32)
+    entries = [("/encoder_status", n, array) for n in range(1, 60)]
+    said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
+    assert "such a type is read only if it holds two values" in said
+    assert "no type that is read" not in said
+
+
 def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, ros: Any) -> None:
     """Another reference would not help: no command is printed."""
+    mode = ("std_msgs/msg/Bool", ros.make("std_msgs/msg/Bool", True))
     entries = []
     for n in range(1, 60):
-        entries.append(("/ticks", n, ("std_msgs/msg/Int32", ros.make("std_msgs/msg/Int32", n))))
+        entries.append(("/ticks", n, ros.count(n)))
+        entries.append(("/wheel_mode", n, mode))
         entries.append(("/imu", n, ros.imu(10 * n * MS, 0.1)))
         entries.append(("/mocap", n, ros.pose(10 * n * MS, 0.01 * n, 0.0, 0.0)))
     result = wo.info(ros.write(tmp_path / "bag", entries))
     said = " ".join(result.summary().split())
-    assert "By name /ticks (std_msgs/msg/Int32) may, but is of no type that is read." in said
+    assert "By name /ticks (std_msgs/msg/Int32) may, but such a type is read only where" in said
+    assert "By name /wheel_mode (std_msgs/msg/Bool) may, but is of no type that is read." in said
     assert "Record how the wheels turned as well" in said
     assert result.to_dict()["next"] is None

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from werrimbi_odom.files.bag import topic_in_words
-from werrimbi_odom.files.bag_contents import FLOATS, SCAN
+from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS, SCAN
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
@@ -242,6 +242,13 @@ def wheels_words(held: Held) -> str:
     return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
 
 
+_READ_ONLY_IF = {
+    tuple(ARRAYS): "if it holds two values, the counters of the left and the right wheel",
+    tuple(PAIRS): "where each wheel has a topic (--ticks-topic LEFT,RIGHT)",
+}
+"""Types of counters that do not always tell of both wheels, and when they do."""
+
+
 def _unread(held: Held) -> str:
     """Topics with names that suggest wheel data, but that are not read by default."""
     assert held.contents is not None
@@ -257,7 +264,11 @@ def _unread(held: Held) -> str:
         for each in may
         if each.kind in FLOATS
     ]
-    others = [topic_in_words(each) for each in may if each.kind not in FLOATS]
+    for kinds, why in _READ_ONLY_IF.items():
+        if named := [topic_in_words(each) for each in may if each.kind in kinds]:
+            words.append(f" By name {listed(named)} may, but such a type is read only {why}.")
+    read = {*FLOATS, *(kind for kinds in _READ_ONLY_IF for kind in kinds)}
+    others = [topic_in_words(each) for each in may if each.kind not in read]
     if others:
         verb = "is" if len(others) == 1 else "are"
         words.append(f" By name {listed(others)} may, but {verb} of no type that is read.")
