@@ -240,17 +240,13 @@ def _no_heading(ticks: Ticks, reference: Reference) -> str:
         return max(_together(course + sign * yaw), _together(course + sign * yaw + backwards))
 
     along, against = follows(-1.0, yaw), follows(1.0, yaw)
-    of_quaternion = _chords(replace(reference, yaw=2.0 * np.arcsin(reference.yaw.clip(-1.0, 1.0))))
-    if (
-        of_quaternion is not None
-        and np.nanmax(np.abs(reference.yaw)) <= 1.0
-        and along < CONTRADICTS
-        and follows(-1.0, of_quaternion[1]) > FOLLOWS
-    ):
-        return (
-            "yaw_rad stays within 1 while the path turns all round, and twice its arcsine follows "
-            "the path: it is the z of a quaternion: write the angle, 2 atan2(z, w)"
-        )
+    if along < CONTRADICTS and np.nanmax(np.abs(reference.yaw)) <= 1.0:
+        halves = _chords(replace(reference, yaw=2.0 * np.arcsin(reference.yaw)))
+        if halves is not None and follows(-1.0, halves[1]) > FOLLOWS:
+            return (
+                "yaw_rad stays within 1 while the path turns all round, and twice its arcsine "
+                "follows the path: it is the z of a quaternion: write the angle, 2 atan2(z, w)"
+            )
     if against < FOLLOWS or along > CONTRADICTS:
         return ""
     return (

@@ -280,17 +280,17 @@ def of_one_rate(wheels: Lateness, reference: Lateness) -> bool:
         return False
     begin = max(wheels.span[0], reference.span[0])
     end = min(wheels.span[1], reference.span[1])
+    if end <= begin:
+        return False
     edges = np.linspace(begin, end, _PARTS + 1)
     apart = reference.soonest(edges) - wheels.soonest(edges)
     known = np.isfinite(apart)
-    if end <= begin or known.sum() < _HALF:
+    if known.sum() < _HALF:
         return False
-    along, apart = np.linspace(-0.5, 0.5, _PARTS)[known], apart[known]
-    along -= along.mean()
-    gain = float(along @ apart / (along @ along))
-    left = apart - apart.mean() - gain * along
-    std = float(np.sqrt(left @ left / (left.size - 2) / (along @ along)))
-    return abs(gain) + _SURE * std < _GAINS
+    along = np.linspace(-0.5, 0.5, _PARTS)
+    (gain, _), spread = np.polyfit(along[known], apart[known], 1, cov=True)
+    std = float(np.sqrt(spread[0, 0]))
+    return abs(float(gain)) + _SURE * std < _GAINS
 
 
 def on_one_clock(

@@ -227,10 +227,8 @@ def _growing(columns: Floats) -> float | None:
 
 def _third(measured: NDArray[np.complex128] | Floats) -> Floats:
     """Third differences of a measured path between neighbours, of each coordinate."""
-    if np.iscomplexobj(measured):
-        return np.concatenate([_third(measured.real), _third(measured.imag)])
     found = np.diff(measured, n=3)
-    return np.asarray(found[np.isfinite(found)])
+    return found[np.isfinite(found)].view(np.float64)
 
 
 def _bound(runs: list[Floats]) -> float:

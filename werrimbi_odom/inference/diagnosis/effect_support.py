@@ -42,12 +42,11 @@ def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
     if effect.stage not in ("wheels", "body"):
         return Support(frozenset(), frozenset())
     seen = watched(drive)
-    one = np.ones_like(drive.duration)
-    before: Any = WheelTravel(one, one) if effect.stage == "wheels" else BodyMotion(one, one, one)
+    before = _unit_motion(effect, drive)
     outputs: set[str] = set()
     for coordinate in candidate.coordinates:
         after = effect.apply(before, seen, **candidate.with_value(coordinate, 1.0).values)
-        changed = [not np.allclose(part, one, rtol=0.0, atol=1e-15) for part in after]
+        changed = [not np.allclose(part, 1.0, rtol=0.0, atol=1e-15) for part in after]
         if effect.stage == "wheels":
             outputs |= _OF_WHEELS[changed[0], changed[1]]
         else:
@@ -133,8 +132,7 @@ def _bends(effect: Effect, drive: Drive[Floats]) -> bool:
     if not _reads(effect, ACCELERATIONS, drive):
         return False
     law = _typical(effect)
-    one = np.ones_like(drive.duration)
-    before: Any = WheelTravel(one, one) if effect.stage == "wheels" else BodyMotion(one, one, one)
+    before = _unit_motion(effect, drive)
     none, half, whole = (
         drive.but(**{name: factor * getattr(drive, name) for name in ACCELERATIONS})
         for factor in (0.0, 0.5, 1.0)
@@ -145,6 +143,12 @@ def _bends(effect: Effect, drive: Drive[Floats]) -> bool:
         if not np.allclose(after[0] + after[2], 2.0 * after[1], rtol=0.0, atol=1e-12):
             return True
     return False
+
+
+def _unit_motion(effect: Effect, drive: Drive[Floats]) -> Any:
+    """Motion of 1 in each step and coordinate, as an effect of wheels or of the body takes it."""
+    one = np.ones_like(drive.duration)
+    return WheelTravel(one, one) if effect.stage == "wheels" else BodyMotion(one, one, one)
 
 
 def _typical(effect: Effect) -> Candidate:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -274,28 +274,35 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
     )
 
 
-Messages = tuple[NDArray[np.intp], NDArray[np.intp]]
-"""Numbers of the messages of a run, and which of these each step is a part of."""
+class _Messages(NamedTuple):
+    """Messages of a run that have a part in its steps."""
+
+    of_step: NDArray[np.intp]
+    """Which of them each step is a part of."""
+    rates: Floats | None
+    """Counts per second in each (2, k), where the counts alone are too coarse to tell them."""
 
 
-def _messages(runs: Sequence[MatchedRun]) -> list[Messages]:
-    middles = [(run, 0.5 * (run.time[1:] + run.time[:-1])) for run in runs]
-    return [
-        np.unique(run.counters.message_at(middle), return_inverse=True) for run, middle in middles
-    ]
+def _messages(runs: Sequence[MatchedRun]) -> list[_Messages]:
+    found = []
+    for run in runs:
+        middles = 0.5 * (run.time[1:] + run.time[:-1])
+        numbers, of_step = np.unique(run.counters.message_at(middles), return_inverse=True)
+        rates = run.counters.rates
+        found.append(_Messages(of_step, None if rates is None else rates[:, numbers]))
+    return found
 
 
-def _drive_of(run: MatchedRun, messages: Messages, robot: Robot, wiring: Wiring) -> DriveOfRun:
+def _drive_of(run: MatchedRun, messages: _Messages, robot: Robot, wiring: Wiring) -> DriveOfRun:
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     drive = features(robot, np.diff(run.time), raw, first_counts, run.channels)
-    rates = run.counters.rates
-    if rates is None:
-        return with_wheels_of_messages(drive, messages[1])
-    left, right = wiring.wheels(*rates[:, messages[0]])
-    speeds = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    return with_wheels_of_messages(drive, messages[1], speeds)
+    speeds = None
+    if messages.rates is not None:
+        left, right = wiring.wheels(*messages.rates)
+        speeds = WheelTravel(left * robot.left_tick, right * robot.right_tick)
+    return with_wheels_of_messages(drive, messages.of_step, speeds)
 
 
 def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:
