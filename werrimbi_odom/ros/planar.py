@@ -29,6 +29,7 @@ indefinite."""
 
 _ASYMMETRY = 1e-6  # tolerance of two entries that should be equal, relative to a correlation of 1
 _ROUNDING = 1e-9  # tolerance of a correlation matrix's eigenvalues for rounding
+_TINY = sys.float_info.min  # a smaller variance has too few digits for a matrix to be valid
 _SMALL = 1e-60  # smallest variance for which squares and products of two do not underflow
 _PLANE = (0, 1, 5)  # indices of x, y and yaw among x, y, z, roll, pitch, yaw
 
@@ -115,11 +116,13 @@ def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
 
     When a poorly known heading is propagated far away and back, the squared distance cancels. What
     remains of a variance is rounding error of either sign; its absolute value then replaces the
-    variance.
+    variance. A variance below the smallest normal number becomes zero.
     """
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
     xx, yy, yawyaw = xx * UP, yy * UP, yawyaw * UP
-    if yawyaw > 0.0:  # conditional covariance of x and y given the heading
+    if 0.0 < xx < _TINY or 0.0 < yy < _TINY or 0.0 < yawyaw < _TINY:
+        pass
+    elif yawyaw > 0.0:  # conditional covariance of x and y given the heading
         a, b, c = xx - xyaw * (xyaw / yawyaw), yy - yyaw * (yyaw / yawyaw), xyaw * (yyaw / yawyaw)
         if a >= 0.0 and b >= 0.0 and abs(xy - c) <= math.sqrt(a) * math.sqrt(b):
             return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
@@ -128,8 +131,8 @@ def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
     ):
         return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
     matrix = PoseCovariance(abs(xx), xy, xyaw, abs(yy), yyaw, abs(yawyaw)).matrix()
-    variances = matrix.diagonal()  # the smallest numbers have no digits left to round
-    sigma = np.sqrt(np.where(variances < sys.float_info.min, 0.0, variances))
+    variances = matrix.diagonal()
+    sigma = np.sqrt(np.where(variances < _TINY, 0.0, variances))
     size = np.where(sigma > 0.0, sigma, np.inf)
     with np.errstate(over="ignore"):
         correlation = np.clip(matrix / size[:, None] / size, -1.0, 1.0)
