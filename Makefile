@@ -10,6 +10,8 @@ READY := $(VENV)/.ready
 unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 # Images of containers often set it; each of a thousand processes would then compile every module anew.
 unexport PYTHONDONTWRITEBYTECODE
+# The matrices are small: two threads of OpenBLAS mostly wait for each other.
+export OPENBLAS_NUM_THREADS = 1
 
 .PHONY: help setup demo test lint mypy ruff imports bench evidence peers recordings docs pictures lock clean
 
@@ -61,7 +63,7 @@ demo: setup  ## ticks through the real node, then a robot that finds out what it
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile --no-loadscope-reorder
 
 # mypy takes most of it, and does not wait for the others.
 lint: setup
@@ -85,7 +87,7 @@ bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/page_hour.py
 
 evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; ALL=1: more, HALF=1: fewer), many seeds, soaks
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m test.hidden
+	$(BIN)/python -m test.hidden
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[docs,release]'
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[evidence]' || echo "no atheris for this Python: tests that need it will skip"
 	$(BIN)/python -m pytest -m evidence

@@ -17,7 +17,7 @@ import pytest
 
 import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run
-from test.command_line import Werrimbi
+from test.command_line import Werrimbi, ran
 from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
@@ -110,6 +110,29 @@ def test_odometry_is_that_of_the_command(drives: Path, tmp_path: Path) -> None:
     found = wo.odometry(robot, ticks.time, ticks.left, ticks.right, start=start)
     np.testing.assert_array_equal(found.x, table["x_m"])
     np.testing.assert_array_equal(found.covariance[:, 0, 0], table["xx"])
+
+
+def test_sums_are_made_by_one_thread(drives: Path) -> None:
+    """As on the command line; also in a process that has loaded no scipy yet."""
+    looks = (
+        "import sys, json\n"
+        "from threadpoolctl import threadpool_info\n"
+        "import werrimbi_odom as wo\n"
+        "def threads():\n"
+        "    return [pool['num_threads'] for pool in threadpool_info()"
+        " if pool['user_api'] == 'blas']\n"
+        "during = []\n"
+        "robot, *runs = sys.argv[1:]\n"
+        "wo.diagnose(wo.read_robot(robot), runs, show=lambda *_: during.append(threads()))\n"
+        "print(json.dumps([during, threads()]))\n"
+    )
+    words = [sys.executable, "-c", looks, str(drives / "robot.yaml"), *map(str, runs(drives))]
+    done = ran(words, OPENBLAS_NUM_THREADS="2")
+    assert done.returncode == 0, done.stderr
+    during, after = json.loads(done.stdout)
+    assert during
+    assert all(set(pools) == {1} for pools in during)
+    assert set(after) == {2}
 
 
 CASES: dict[str, tuple[list[str], Any]] = {

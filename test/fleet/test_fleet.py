@@ -95,9 +95,7 @@ def test_a_robot_of_a_fleet_is_diagnosed_as_by_itself(home: Path, said: Said) ->
     words = ["--robot", str(folder / "robot.yaml")]
     words += [str(folder / "train" / name) for name in ("free", "square")]
     words += ["--holdout", str(folder / "holdout" / "free")]
-    threadpoolctl = pytest.importorskip("threadpoolctl")
-    with threadpoolctl.threadpool_limits(1):
-        alone = say(home, *words)
+    alone = say(home, *words)
     (row,) = (row for row in said.figures["robots"] if row["robot"] == "robot_2")
     del row["robot"]
     assert row == alone.figures

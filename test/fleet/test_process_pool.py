@@ -8,13 +8,12 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
 
-from test.command_line import WERRIMBI, ran, started
+from test.command_line import WERRIMBI, started
 from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
 from werrimbi_odom.files.recordings import Asked, DriveOptions
@@ -71,24 +70,6 @@ def test_memory_that_is_too_small_is_no_bug(monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(robot_task, "read", full)
     assert "more memory than there is" in row_of(nowhere("robot_1")).error
-
-
-def test_sums_are_made_by_one_thread(tmp_path: Path) -> None:
-    """Also in a process that has not loaded scipy yet, which brings a library of its own."""
-    looks = (
-        "from threadpoolctl import threadpool_info\n"
-        "from test.fleet.test_process_pool import nowhere\n"
-        "from werrimbi_odom.fleet import robot_task\n"
-        "def read(*anything):\n"
-        "    print([pool['num_threads'] for pool in threadpool_info()])\n"
-        "robot_task.read = read\n"
-        "robot_task.row_of(nowhere('robot_1'))\n"
-    )
-    run = ran([sys.executable, "-c", looks], OPENBLAS_NUM_THREADS="2")
-    assert run.returncode == 0, run.stderr
-    pools = json.loads(run.stdout)
-    assert pools
-    assert set(pools) == {1}
 
 
 def begun(tmp_path: Path) -> subprocess.Popen[str]:

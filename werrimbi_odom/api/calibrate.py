@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.calibrate_umbmark import calibration
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
+from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
@@ -57,6 +58,7 @@ def calibrate_fit(
     return calibrated(given)
 
 
+@with_one_blas_thread
 def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for recordings that are already read."""
     source = given.source

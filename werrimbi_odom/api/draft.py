@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.next_command import beside, next_command
+from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.api.verbs import as_judged
 from werrimbi_odom.errors import InputError
@@ -85,6 +86,7 @@ def draft(
     return drafted(given, "" if force else "force=True drafts", show)
 
 
+@with_one_blas_thread
 def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted:
     """`draft` for recordings that are already read.
 

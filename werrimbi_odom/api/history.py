@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from werrimbi_odom.api.drives import Drives, Options, collection_of, how_of, refuse_circles
+from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
@@ -143,6 +144,7 @@ def unusable_task(task: DriveTask, why: str) -> Unusable:
     return Unusable(task.run, " ".join(why.split()))
 
 
+@with_one_blas_thread
 def _looked_at(run: Run | Path, robot: RobotFile, how: DriveOptions) -> Dated:
     given = gathered(robot, _collection(how.effects), [run], (), how)
     for words in refuse_circles(given):

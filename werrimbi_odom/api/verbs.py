@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.next_command import beside, next_command
+from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
@@ -52,6 +53,7 @@ def compare(
     return compared(given, show)
 
 
+@with_one_blas_thread
 def compared(
     given: Recordings, show: Show = silent, *, over: PreparedRuns | None = None
 ) -> Result[Comparison]:
@@ -94,6 +96,7 @@ def diagnose(
     return diagnosed(given, show)
 
 
+@with_one_blas_thread
 def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis]:
     """`diagnose` for recordings that are already read."""
     from werrimbi_odom.inference.manoeuvres.advice import advised_diagnosis, with_leg
@@ -182,6 +185,7 @@ def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings)
     return found
 
 
+@with_one_blas_thread
 def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> Result[Added]:
     """`add` for recordings that are already read, without raising on objections."""
     from werrimbi_odom.inference.adding.adding import add_effects

@@ -17,7 +17,7 @@ from werrimbi_odom.files.recordings import Asked, read
 from werrimbi_odom.report.fleet import Row
 
 _ONE_AT_A_TIME = Lock()
-"""Modules of effect files, and the limit on threads, are global to the process."""
+"""Modules of effect files are global to the process."""
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,9 @@ class Task:
 
 
 def row_of(task: Task) -> Row:
-    """Diagnose a robot; errors are returned in its row, never raised.
-
-    BLAS is limited to one thread, because the order of its sums changes the last digits.
-    """
+    """Diagnose a robot; errors are returned in its row, never raised."""
     try:
-        import scipy.linalg  # noqa: F401  its BLAS must be there to be limited
-        from threadpoolctl import threadpool_limits
-
-        with _ONE_AT_A_TIME, threadpool_limits(1):
+        with _ONE_AT_A_TIME:
             asked = task.asked
             given = read(asked, all_effects(asked.how.effects))
             refuse_circles(given)
