@@ -60,6 +60,33 @@ def test_other_names_of_joints_are_no_fault_of_the_reference(
     assert "Next: werrimbi compare" in told
 
 
+@pytest.mark.parametrize(
+    ("header", "receipt", "told"),
+    [
+        (0, 0, "either clock will do (intervals of both vary by ± 0 ms)"),
+        (0, 9, "believe the headers, whose intervals vary by ± 0 ms against"),
+        (9, 0, "the headers are used, though their intervals vary by"),
+    ],
+)
+def test_of_two_clocks_the_evener_is_to_be_believed_if_either_is(
+    header: int, receipt: int, told: str, tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    ros, run, late = (
+        Messages(),
+        run_of(ROBOT, 1, 20),
+        np.random.default_rng(3).integers(2, size=999),
+    )
+    entries = [
+        (
+            topic,
+            stamp + int(1e6 * receipt * late[row]),
+            ros.joints(stamp + int(1e6 * header * late[row]), JOINTS, message.position),
+        )
+        for row, (topic, stamp, (_, message)) in enumerate(joints(ros, run))
+    ]
+    assert told in werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+
+
 @pytest.mark.parametrize("sizes", [False, True])
 def test_a_robot_that_stood_shows_nothing(sizes: bool, tmp_path: Path, werrimbi: Werrimbi) -> None:
     bag, robot = bag_of(tmp_path, moves=False), tmp_path / "robot.yaml"

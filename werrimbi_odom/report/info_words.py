@@ -137,8 +137,14 @@ def _clock(name: str, stamps: Stamps) -> str:
             f"± {_ms(stamps.received_jitter)}"
         )
     else:
-        pair = f"± {_ms(stamps.jitter)} against ± {_ms(stamps.received_jitter)} of receipt"
-        if stamps.believed == "header":
+        own, receipt = _ms(stamps.jitter), _ms(stamps.received_jitter)
+        pair = f"± {own} against ± {receipt} of receipt"
+        if own == receipt:
+            words = (
+                f"Stamps of {name}: the headers are used; by their evenness either clock will do "
+                f"(intervals of both vary by ± {own})"
+            )
+        elif stamps.believed == "header":
             words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"
         else:
             words = (
