@@ -210,9 +210,12 @@ def test_an_array_of_floats_is_told_with_how_it_is_read(tmp_path: Path, werrimbi
     entries = [("/wheel_ticks", n * 10**8, ros.floats(10.0 * n, 10.0 * n)) for n in range(1, 100)]
     bag = ros.write(tmp_path / "floats", entries)
     printed = werrimbi("info", bag).words
-    assert "if its two values count both wheels, --ticks-topic /wheel_ticks reads them" in printed
-    then = werrimbi("info", bag, "--ticks-topic", "/wheel_ticks").out
-    assert "Wheels: /wheel_ticks, counters at 10 Hz" in then
+    assert (
+        "if two of its values count the wheels, --ticks-topic /wheel_ticks:0:1 reads the first two"
+        in printed
+    )
+    then = werrimbi("info", bag, "--ticks-topic", "/wheel_ticks:0:1").out
+    assert "Wheels: /wheel_ticks:0:1, counters at 10 Hz" in then
 
 
 def test_a_run_folder_is_looked_at_too(werrimbi: Werrimbi) -> None:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from werrimbi_odom.files.array_places import counting_places
 from werrimbi_odom.files.bag import Bag, Topic
 from werrimbi_odom.files.derived_references import copies, second_hand
 from werrimbi_odom.files.driver_messages import DRIVERS
@@ -71,7 +72,8 @@ class Wheels:
     """A topic, or two, with wheel data."""
 
     name: str
-    """Value for --ticks-topic: TOPIC, LEFT,RIGHT, or /tf:PARENT:CHILD."""
+    """Value for --ticks-topic: TOPIC, LEFT,RIGHT, TOPIC:LEFT:RIGHT with two places in an array, or
+    /tf:PARENT:CHILD."""
     kind: str
     """Message type, as in `sensor_msgs/msg/JointState`."""
     messages: int
@@ -83,6 +85,12 @@ class Wheels:
     def topics(self) -> tuple[str, ...]:
         """Topics of its messages."""
         return tuple(each.partition(":")[0] for each in self.name.split(","))
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """Places of the two counters within an array, from 0, if it holds more."""
+        array = self.kind in (*ARRAYS, *FLOATS)
+        return tuple(map(int, self.name.split(":")[1:])) if array else ()
 
 
 @dataclass(frozen=True)
@@ -122,7 +130,8 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     for message in bag.messages(names) if names else ():
         edges.take(message.topic, message.content.transforms)
     found = edges.edges()
-    looked_at = [each.name for each in bag.topics if each.kind in (JOINT_STATE, *ARRAYS, *POSES)]
+    kinds = (JOINT_STATE, *ARRAYS, *FLOATS, *POSES)
+    looked_at = [each.name for each in bag.topics if each.kind in kinds]
     firsts = bag.firsts(looked_at)
     references = [
         *_chains(found, base),
@@ -238,10 +247,15 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
             angles = len(getattr(first, "position", ())) > 0 or not joints
             gives: Gives = "positions" if angles else "velocities"
             found.append(Wheels(topic.name, topic.kind, topic.messages, gives, joints))
-        elif topic.kind in DRIVERS or (
-            topic.kind in ARRAYS and len(getattr(firsts.get(topic.name), "data", ())) == 2
-        ):
+        elif topic.kind in DRIVERS:
             found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
+        elif topic.kind in (*ARRAYS, *FLOATS):
+            values = len(getattr(firsts.get(topic.name), "data", ()))
+            if values == 2 and topic.kind in ARRAYS:
+                found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
+            elif values > 2 and len(counting := counting_places(bag, topic.name, values)) == 2:
+                name = f"{topic.name}:{counting[0]}:{counting[1]}"
+                found.append(Wheels(name, topic.kind, topic.messages, "counts"))
         elif topic.kind in PAIRS:
             mirrored = topic.name.replace("left", "right")
             for each in bag.topics if mirrored != topic.name else ():

@@ -245,14 +245,13 @@ def wheels_words(held: Held) -> str:
         told = f", on the left {listed(joints.left)}, on the right {listed(joints.right)}"
     elif wheels.joints:
         told = f"; no name says which joint is a wheel: {listed(wheels.joints)}"
+    if wheels.places:
+        left, right = wheels.places
+        told = (
+            f": of its values, counted from 0, number {left} as the left wheel's and {right} as "
+            f"the right one's; --ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
+        )
     return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
-
-
-_READ_ONLY_IF = {
-    tuple(ARRAYS): "if it holds two values, the counters of the left and the right wheel",
-    tuple(PAIRS): "where each wheel has a topic (--ticks-topic LEFT,RIGHT)",
-}
-"""Types of counters that do not always tell of both wheels, and when they do."""
 
 
 def _unread(held: Held) -> str:
@@ -265,15 +264,17 @@ def _unread(held: Held) -> str:
         if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
     ]
     words = [
-        f" By name {topic_in_words(each)} may: if its two values count both wheels, --ticks-topic "
-        f"{each.name} reads them."
+        f" By name {topic_in_words(each)} may: if two of its values count the wheels, "
+        f"--ticks-topic {each.name}:0:1 reads the first two, and other numbers others."
         for each in may
-        if each.kind in FLOATS
+        if each.kind in (*ARRAYS, *FLOATS)
     ]
-    for kinds, why in _READ_ONLY_IF.items():
-        if named := [topic_in_words(each) for each in may if each.kind in kinds]:
-            words.append(f" By name {listed(named)} may, but such a type is read only {why}.")
-    read = {*FLOATS, *(kind for kinds in _READ_ONLY_IF for kind in kinds)}
+    if named := [topic_in_words(each) for each in may if each.kind in PAIRS]:
+        words.append(
+            f" By name {listed(named)} may, but such a type is read only where each wheel has a "
+            "topic (--ticks-topic LEFT,RIGHT)."
+        )
+    read = (*ARRAYS, *FLOATS, *PAIRS)
     others = [topic_in_words(each) for each in may if each.kind not in read]
     if others:
         verb = "is" if len(others) == 1 else "are"
