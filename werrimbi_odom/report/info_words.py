@@ -98,7 +98,8 @@ def _references(held: Held) -> Iterator[str]:
         else:
             yield f"No reference: {each.name}, {each.why}."
     yield from (
-        f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
+        f"No reference{'' if name in held.contents.moved else ' as it is'}: {name}, {what}."
+        for name, what in other_scans(held.contents)
     )
     yield from _gyro_in_odometry(held)
     if held.reference is None:
