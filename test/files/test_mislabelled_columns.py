@@ -157,6 +157,21 @@ def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
             refuse_wrong_columns(wrong)
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("of_range", [wrap_all, lambda yaw: yaw % (2.0 * np.pi), np.unwrap])
+@pytest.mark.parametrize("places", [True, False])
+def test_a_yaw_in_degrees(
+    seed: int, of_range: Callable[[np.ndarray], np.ndarray], places: bool
+) -> None:
+    """Of most of such a drive `info` said that the robot was carried or turned by hand."""
+    run = driven(seed)
+    if not places:
+        run = seen(run, x=lambda it: it.x * np.nan, y=lambda it: it.x * np.nan)
+    refuse_wrong_columns(seen(run, yaw=lambda it: of_range(it.yaw)))
+    with pytest.raises(InputError, match=r"the reference's yaw is in degrees, and must be in rad"):
+        refuse_wrong_columns(seen(run, yaw=lambda it: np.degrees(of_range(it.yaw))))
+
+
 def test_a_yaw_that_was_never_measured() -> None:
     wrong = seen(driven(2), yaw=lambda it: np.zeros(it.yaw.shape))
     with pytest.raises(InputError, match=r"is 0 in all rows, while the path turns.* leave that"):

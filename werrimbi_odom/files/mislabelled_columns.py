@@ -4,7 +4,7 @@
 
 Such mistakes are made where a log is written as a run folder. No effect corrects them, and each
 makes wheels and reference look as if they had nothing in common. Degrees and millimetres are
-recognised in the set-up search, which knows how well each fits (`inference.set_up.search`).
+recognised in the set-up search too, which knows how well each fits (`inference.set_up.search`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.counter_columns import what_counters_hold
+from werrimbi_odom.files.counter_columns import (
+    HARDLY,
+    TAKES,
+    turns_by_wheels,
+    what_counters_hold,
+)
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -56,6 +61,13 @@ TURNED = 0.9
 LEAST_CHORD, ROLLED = 0.01, 0.8
 """Length of such chords [m], and share of them with counts, from which ways are compared."""
 
+MORE_THAN_A_TURN = 2.1 * np.pi
+"""Range of yaw from which it may be in degrees: wrapped, in radians, it is 2 pi at most."""
+IN_DEGREES = (
+    "the reference's yaw is in degrees, and must be in radians: convert that column (times "
+    "pi/180; of a gyro, its rates)"
+)
+
 FAR, FAR_STEPS = 0.05, 20.0
 """Distance [m], and in typical steps of the reference, beyond which a pose of zeros is none."""
 
@@ -64,7 +76,7 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     """Check the meaning of a run's columns by its data.
 
     InputError if the times are not in seconds or are rounded, the counters are no running, signed
-    totals, the yaw is no heading, or it turns the other way round than the path.
+    totals, the yaw is in degrees or no heading, or it turns the other way round than the path.
     """
     assert run.reference is not None
     words = (
@@ -72,6 +84,7 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
         or _rounded_times(run.ticks, run.reference)
         or _metres(run.ticks, run.reference, robot)
         or what_counters_hold(run.ticks, run.reference, robot.encoder_bits)
+        or _degrees(run.ticks, run.reference)
         or _no_heading(run.ticks, run.reference)
     )
     if words:
@@ -221,6 +234,16 @@ def _rounded_times(ticks: Ticks, reference: Reference) -> str:
                 "each time"
             )
     return ""
+
+
+def _degrees(ticks: Ticks, reference: Reference) -> str:
+    known = reference.yaw[reference.has_yaw]
+    if known.size < FEWEST or np.ptp(known) < MORE_THAN_A_TURN:
+        return ""
+    if turns_by_wheels(ticks, reference) > HARDLY:
+        return ""
+    in_radians = replace(reference, yaw=np.radians(reference.yaw))
+    return IN_DEGREES if turns_by_wheels(ticks, in_radians) > TAKES else ""
 
 
 def _no_heading(ticks: Ticks, reference: Reference) -> str:
