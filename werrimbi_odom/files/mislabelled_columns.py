@@ -42,6 +42,8 @@ SPANS_ALIKE = 2.0
 METRES, OTHERWISE = 1.25, 3.0
 """Factor within which counters go as many units as the reference goes metres, and that by which the
 robot file says otherwise."""
+ONE_SCALE = 1.5
+"""Factor within which most chords have the drive's own ratio of both ways."""
 FAR_APART = 20.0
 """Factor between the ways by wheels and reference above which a robot file is of another unit."""
 
@@ -58,8 +60,9 @@ that hardly turns, both senses of turning have much."""
 TURNED = 0.9
 """Mean resultant length of the path's direction above which it hardly turned (0.46 rad)."""
 
-LEAST_CHORD, ROLLED = 0.01, 0.8
-"""Length of such chords [m], and share of them with counts, from which ways are compared."""
+LEAST_CHORD, FEWEST_CHORDS, ROLLED = 0.01, 10, 0.8
+"""Length of such chords [m], their number (a line makes at most 20), and share of them with counts,
+from which ways are compared."""
 
 MORE_THAN_A_TURN = 2.1 * np.pi
 """Range of yaw from which it may be in degrees: wrapped, in radians, it is 2 pi at most."""
@@ -171,7 +174,7 @@ def words_about_ways(run: Run, robot: Robot) -> str:
     ways = _ways(run.ticks, run.reference) if run.reference is not None else None
     if ways is None:
         return ""
-    counted, seen = ways
+    counted, seen = (float(each.sum()) for each in ways)
     rolled = 0.5 * counted * (robot.left_tick + robot.right_tick)
     if seen / FAR_APART < rolled < FAR_APART * seen:
         return ""
@@ -183,11 +186,27 @@ def words_about_ways(run: Run, robot: Robot) -> str:
     )
 
 
+def ways_of_one_scale(run: Run, robot: Robot) -> tuple[float, float] | None:
+    """Ways [m] by the wheels and by the reference, if chord by chord they differ by one factor.
+
+    A robot file that is wrong by it hides all that both have in common, unless the turns show it.
+    """
+    ways = _ways(run.ticks, run.reference) if run.reference is not None else None
+    if ways is None:
+        return None
+    counted, seen = ways
+    ratio = (seen / np.maximum(counted, 1e-9)) / (seen.sum() / counted.sum())
+    if np.mean((ratio < ONE_SCALE) & (ratio > 1.0 / ONE_SCALE)) < ROLLED:
+        return None
+    rolled = 0.5 * float(counted.sum()) * (robot.left_tick + robot.right_tick)
+    return rolled, float(seen.sum())
+
+
 def _metres(ticks: Ticks, reference: Reference, robot: Robot) -> str:
     ways = _ways(ticks, reference)
     if ways is None or all((part == np.rint(part)).all() for part in (ticks.left, ticks.right)):
         return ""
-    counted, seen = ways
+    counted, seen = (float(each.sum()) for each in ways)
     size = 0.5 * (robot.left_tick + robot.right_tick)
     if not 1.0 / METRES < seen / counted < METRES or 1.0 / OTHERWISE < size < OTHERWISE:
         return ""
@@ -199,8 +218,8 @@ def _metres(ticks: Ticks, reference: Reference, robot: Robot) -> str:
     )
 
 
-def _ways(ticks: Ticks, reference: Reference) -> tuple[float, float] | None:
-    """Counts of a wheel and metres by the reference, of both together; None if hardly any."""
+def _ways(ticks: Ticks, reference: Reference) -> tuple[Floats, Floats] | None:
+    """Counts of a wheel and metres by the reference, of each chord; None if hardly any."""
     rows = np.flatnonzero(reference.has_position)
     if min(ticks.rows, rows.size) < FEWEST:
         return None
@@ -209,14 +228,14 @@ def _ways(ticks: Ticks, reference: Reference) -> tuple[float, float] | None:
     ends = _ends(place, chord)
     when = reference.time[rows[ends]]
     inside = (when >= ticks.time.min()) & (when <= ticks.time.max())
-    if np.count_nonzero(inside) <= FEWEST or chord < LEAST_CHORD:
+    if np.count_nonzero(inside) <= FEWEST_CHORDS or chord < LEAST_CHORD:
         return None
     stamps = np.maximum.accumulate(ticks.time)
     counts = [np.interp(when[inside], stamps, part) for part in (ticks.left, ticks.right)]
     moved = np.abs(np.diff(counts, axis=1)).mean(axis=0)
     if not np.isfinite(moved).all() or np.count_nonzero(moved) < ROLLED * moved.size:
         return None
-    return float(moved.sum()), float(np.abs(np.diff(place[ends][inside])).sum())
+    return moved, np.abs(np.diff(place[ends][inside]))
 
 
 def _rounded_times(ticks: Ticks, reference: Reference) -> str:
