@@ -172,6 +172,20 @@ def test_a_yaw_in_degrees(
         refuse_wrong_columns(seen(run, yaw=lambda it: np.degrees(of_range(it.yaw))))
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_longitude_and_latitude_are_no_metres(seed: int) -> None:
+    """`info` said that such drives can show base and radii."""
+    run = driven(seed)
+    fixes = seen(
+        run, x=lambda it: 5.66 + it.x / 6.9e4, y=lambda it: 51.9 + it.y / 1.11e5,
+        yaw=lambda it: it.yaw * np.nan,
+    )  # fmt: skip
+    with pytest.raises(InputError, match="as degrees of longitude and latitude do: write metres"):
+        refuse_wrong_columns(fixes)
+    still = seen(run, x=lambda it: it.x * 1e-9, y=lambda it: it.y * 0.0)
+    refuse_wrong_columns(still)
+
+
 def test_a_yaw_that_was_never_measured() -> None:
     wrong = seen(driven(2), yaw=lambda it: np.zeros(it.yaw.shape))
     with pytest.raises(InputError, match=r"is 0 in all rows, while the path turns.* leave that"):

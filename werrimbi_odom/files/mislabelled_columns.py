@@ -42,6 +42,8 @@ SPANS_ALIKE = 2.0
 METRES, OTHERWISE = 1.25, 3.0
 """Factor within which counters go as many units as the reference goes metres, and that by which the
 robot file says otherwise."""
+METRES_OF_A_DEGREE = 1.1e5
+"""On the Earth, of latitude [m]; of longitude that times the cosine of the latitude."""
 ONE_SCALE = 1.5
 """Factor within which most chords have the drive's own ratio of both ways."""
 FAR_APART = 20.0
@@ -86,6 +88,7 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
         _other_unit_of_time(run.ticks, run.reference)
         or _rounded_times(run.ticks, run.reference)
         or _metres(run.ticks, run.reference, robot)
+        or _on_the_globe(run.ticks, run.reference, robot)
         or what_counters_hold(run.ticks, run.reference, robot.encoder_bits)
         or _degrees(run.ticks, run.reference)
         or _no_heading(run.ticks, run.reference)
@@ -218,7 +221,25 @@ def _metres(ticks: Ticks, reference: Reference, robot: Robot) -> str:
     )
 
 
-def _ways(ticks: Ticks, reference: Reference) -> tuple[Floats, Floats] | None:
+def _on_the_globe(ticks: Ticks, reference: Reference, robot: Robot) -> str:
+    ways = _ways(ticks, reference, 0.0)
+    if ways is None or not reference.has_position.all():
+        return ""
+    rolled = 0.5 * float(ways[0].sum()) * (robot.left_tick + robot.right_tick)
+    degrees = float(ways[1].sum())
+    most, least = (METRES_OF_A_DEGREE * factor for factor in (OTHERWISE, 1.0 / OTHERWISE))
+    if not least * degrees < rolled < most * degrees:
+        return ""
+    return (
+        f"x_m and y_m go {degrees:.2g} where the wheels go {rolled:.3g} m, as degrees of longitude "
+        "and latitude do: write metres east and north of the first fix (a degree of latitude is "
+        "111 km, one of longitude that times the cosine of the latitude)"
+    )
+
+
+def _ways(
+    ticks: Ticks, reference: Reference, least: float = LEAST_CHORD
+) -> tuple[Floats, Floats] | None:
     """Counts of a wheel and metres by the reference, of each chord; None if hardly any."""
     rows = np.flatnonzero(reference.has_position)
     if min(ticks.rows, rows.size) < FEWEST:
@@ -228,7 +249,7 @@ def _ways(ticks: Ticks, reference: Reference) -> tuple[Floats, Floats] | None:
     ends = _ends(place, chord)
     when = reference.time[rows[ends]]
     inside = (when >= ticks.time.min()) & (when <= ticks.time.max())
-    if np.count_nonzero(inside) <= FEWEST_CHORDS or chord < LEAST_CHORD:
+    if np.count_nonzero(inside) <= FEWEST_CHORDS or chord < least:
         return None
     stamps = np.maximum.accumulate(ticks.time)
     counts = [np.interp(when[inside], stamps, part) for part in (ticks.left, ticks.right)]
