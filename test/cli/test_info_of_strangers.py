@@ -63,7 +63,7 @@ def test_other_names_of_joints_are_no_fault_of_the_reference(
 @pytest.mark.parametrize(
     ("header", "receipt", "told"),
     [
-        (0, 0, "either clock will do (intervals of both vary by ± 0 ms)"),
+        (0, 0, "either clock will do (intervals vary by ± 0 ms)"),
         (0, 9, "believe the headers, whose intervals vary by ± 0 ms against"),
         (9, 0, "the headers are used, though their intervals vary by"),
     ],
@@ -85,6 +85,26 @@ def test_of_two_clocks_the_evener_is_to_be_believed_if_either_is(
         for row, (topic, stamp, (_, message)) in enumerate(joints(ros, run))
     ]
     assert told in werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+
+
+def test_poses_as_text_are_told_with_how_they_become_a_reference(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """A tracker whose node sends lines of text: to record again was all the advice."""
+    ros, kind = Messages(), "std_msgs/msg/String"
+    entries = [
+        each
+        for topic, stamp, message in joints(ros, run_of(ROBOT, 1, 20))
+        for each in (
+            (topic, stamp, message),
+            ("/get/vicon_pose", stamp, (kind, ros.make(kind, "robot 3380.4 2546.9 -0.027"))),
+            ("/motor_status", stamp, ros.counts(0, 0, 0)),
+        )
+    ]
+    told = werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+    assert "By name /get/vicon_pose (std_msgs/msg/String) may: written as rows of t_s" in told
+    assert "motor_status" not in told.partition("may: written")[0]
+    assert "By name" not in werrimbi("info", bag_of(tmp_path / "other")).words
 
 
 @pytest.mark.parametrize("sizes", [False, True])

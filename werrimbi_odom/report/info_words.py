@@ -10,6 +10,7 @@ from typing import Any
 
 from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS, SCAN
+from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
@@ -21,6 +22,8 @@ from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
 from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
+_WITHOUT_FORM = ("std_msgs/msg/String", *FLOATS, *ARRAYS)
+"""Types in which anything may be sent, and so a pose."""
 _WANDERS = 0.1  # reported variation of the delay from stamp to receipt [s]
 
 
@@ -104,7 +107,24 @@ def _references(held: Held) -> Iterator[str]:
     yield from _gyro_in_odometry(held)
     if held.reference is None:
         but = " but its own wheels" if held.wheels is not None else ""
-        yield f"Nothing that is read in the bag measures the robot{but}."
+        yield f"Nothing that is read in the bag measures the robot{but}.{_unread_sensors(held)}"
+
+
+def _unread_sensors(held: Held) -> str:
+    """Topics whose names tell of a sensor or of poses, of types that are not read."""
+    assert held.contents is not None
+    may = [
+        topic_in_words(each)
+        for each in held.contents.topics
+        if each.kind in _WITHOUT_FORM and names_a_measurement(each.name)
+    ]
+    if not may:
+        return ""
+    return (
+        f" By name {listed(may)} may: written as rows of t_s (when each was received), x_m, y_m "
+        "and yaw_rad into the reference.csv of a folder, --reference FOLDER gives them to compare "
+        "and diagnose."
+    )
 
 
 def _gyro_in_odometry(held: Held) -> Iterator[str]:
@@ -140,10 +160,11 @@ def _clock(name: str, stamps: Stamps) -> str:
     else:
         own, receipt = _ms(stamps.jitter), _ms(stamps.received_jitter)
         pair = f"± {own} against ± {receipt} of receipt"
-        if own == receipt:
+        if stamps.alike:
+            both = own if own == receipt else f"{own} and {receipt}"
             words = (
                 f"Stamps of {name}: the headers are used; by their evenness either clock will do "
-                f"(intervals of both vary by ± {own})"
+                f"(intervals vary by ± {both})"
             )
         elif stamps.believed == "header":
             words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"

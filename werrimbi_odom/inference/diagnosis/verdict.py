@@ -8,7 +8,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import NamedTuple
 
-from werrimbi_odom.files.mislabelled_columns import ways_of_one_scale
+from werrimbi_odom.files.compared_ways import ways_of_one_scale
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import name_of_base
 from werrimbi_odom.inference.comparison.another_drive import (
