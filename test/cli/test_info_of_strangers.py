@@ -107,6 +107,19 @@ def test_poses_as_text_are_told_with_how_they_become_a_reference(
     assert "By name" not in werrimbi("info", bag_of(tmp_path / "other")).words
 
 
+def test_of_odometry_the_drivers_sizes_are_asked_for(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    """It is turned back by them, whatever a ruler says."""
+    ros, run = Messages(), run_of(ROBOT, 1, 20)
+    own = [
+        ("/odom", stamp_of(0.1 * n), ros.odometry(stamp_of(0.1 * n), 0.02 * n, 0.0, 0.0))
+        for n in range(200)
+    ]
+    entries = sorted([*own, *gyro(ros, run)], key=lambda entry: entry[1])
+    told = werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+    assert "that its driver works with into a robot file" in told
+    assert "measure the wheels' radius" not in told
+
+
 @pytest.mark.parametrize("sizes", [False, True])
 def test_a_robot_that_stood_shows_nothing(sizes: bool, tmp_path: Path, werrimbi: Werrimbi) -> None:
     bag, robot = bag_of(tmp_path, moves=False), tmp_path / "robot.yaml"
