@@ -60,6 +60,66 @@ def test_other_names_of_joints_are_no_fault_of_the_reference(
     assert "Next: werrimbi compare" in told
 
 
+@pytest.mark.parametrize(
+    ("header", "receipt", "told"),
+    [
+        (0, 0, "either clock will do (intervals vary by ± 0 ms)"),
+        (0, 9, "believe the headers, whose intervals vary by ± 0 ms against"),
+        (9, 0, "the headers are used, though their intervals vary by"),
+    ],
+)
+def test_of_two_clocks_the_evener_is_to_be_believed_if_either_is(
+    header: int, receipt: int, told: str, tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    ros, run, late = (
+        Messages(),
+        run_of(ROBOT, 1, 20),
+        np.random.default_rng(3).integers(2, size=999),
+    )
+    entries = [
+        (
+            topic,
+            stamp + int(1e6 * receipt * late[row]),
+            ros.joints(stamp + int(1e6 * header * late[row]), JOINTS, message.position),
+        )
+        for row, (topic, stamp, (_, message)) in enumerate(joints(ros, run))
+    ]
+    assert told in werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+
+
+def test_poses_as_text_are_told_with_how_they_become_a_reference(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """A tracker whose node sends lines of text: to record again was all the advice."""
+    ros, kind = Messages(), "std_msgs/msg/String"
+    entries = [
+        each
+        for topic, stamp, message in joints(ros, run_of(ROBOT, 1, 20))
+        for each in (
+            (topic, stamp, message),
+            ("/get/vicon_pose", stamp, (kind, ros.make(kind, "robot 3380.4 2546.9 -0.027"))),
+            ("/motor_status", stamp, ros.counts(0, 0, 0)),
+        )
+    ]
+    told = werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+    assert "By name /get/vicon_pose (std_msgs/msg/String) may: written as rows of t_s" in told
+    assert "motor_status" not in told.partition("may: written")[0]
+    assert "By name" not in werrimbi("info", bag_of(tmp_path / "other")).words
+
+
+def test_of_odometry_the_drivers_sizes_are_asked_for(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    """It is turned back by them, whatever a ruler says."""
+    ros, run = Messages(), run_of(ROBOT, 1, 20)
+    own = [
+        ("/odom", stamp_of(0.1 * n), ros.odometry(stamp_of(0.1 * n), 0.02 * n, 0.0, 0.0))
+        for n in range(200)
+    ]
+    entries = sorted([*own, *gyro(ros, run)], key=lambda entry: entry[1])
+    told = werrimbi("info", ros.write(tmp_path / "bag", entries)).words
+    assert "that its driver works with into a robot file" in told
+    assert "measure the wheels' radius" not in told
+
+
 @pytest.mark.parametrize("sizes", [False, True])
 def test_a_robot_that_stood_shows_nothing(sizes: bool, tmp_path: Path, werrimbi: Werrimbi) -> None:
     bag, robot = bag_of(tmp_path, moves=False), tmp_path / "robot.yaml"

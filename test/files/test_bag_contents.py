@@ -13,6 +13,7 @@ import pytest
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Contents, contents_of
 from werrimbi_odom.files.own_odometry import why_from_wheels
+from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.simulation.lidar import Lidar
 
 MS = 10**6
@@ -88,12 +89,34 @@ def test_what_the_odometry_carries_on_comes_after_what_was_seen(tmp_path: Path, 
     assert "the wheels carry it on" not in seen.why
 
 
-def test_a_scan_that_was_moved_comes_after_the_lidars_own(tmp_path: Path, ros: Any) -> None:
+def test_a_scan_that_was_moved_is_no_reference(tmp_path: Path, ros: Any) -> None:
     lidar = Lidar()
     topics = ("/stable_scan", "/scan", "/scan_filtered")
     entries = [(topic, 1, ros.scan(MS, lidar, np.ones(lidar.beams))) for topic in topics]
     held = contents(ros.write(tmp_path / "bag", entries))
-    assert [each.name for each in held.independent] == ["/scan", "/scan_filtered", "/stable_scan"]
+    assert [each.name for each in held.independent] == ["/scan", "/scan_filtered"]
+    moved = next(each for each in held.references if each.name == "/stable_scan")
+    assert moved.why == "made of /scan by its name, and perhaps moved by the odometry"
+
+
+def test_points_in_a_frame_of_the_room_were_moved_there(tmp_path: Path, ros: Any) -> None:
+    lidar, kind = Lidar(), "sensor_msgs/msg/PointCloud2"
+    _, scan = ros.scan(MS, lidar, np.ones(lidar.beams))
+    scan.header.frame_id = "odom"
+    none = np.zeros(0, dtype=np.uint8)
+    clouds = [
+        (f"/{where}_cloud", 2, (kind, ros.make(kind, header, 1, 0, [], False, 16, 0, none, True)))
+        for where in ("map", "velodyne")
+        if (header := ros.header(1, where))
+    ]
+    entries = [("/projected", 1, ("sensor_msgs/msg/LaserScan", scan)), *clouds]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert held.independent == ()
+    moved = "its points are given in odom, where the odometry has moved them"
+    assert held.references[0].why == moved
+    of_map, of_lidar = (words for _, words in other_scans(held))
+    assert of_map.startswith("its points are given in map, where a localiser")
+    assert "pointcloud_to_laserscan makes them of it" in of_lidar
 
 
 def test_a_map_that_never_corrects_leaves_the_odometry(tmp_path: Path, ros: Any) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.model.trajectory import trajectory
@@ -204,6 +205,35 @@ def test_counters_as_floats_are_read_where_they_are_asked_for(
     run = read_run(bag, robot(), ticks_topic="/ticks")
     assert run.ticks.left.tolist() == [100, 200, 300]
     assert run.ticks.right.tolist() == [-3, -6, -9]
+
+
+def board(n: int) -> tuple[float, ...]:
+    """What a board sends at once: ms, two commands, two counters, a battery."""
+    speed = 20.0 * math.sin(0.1 * n)
+    left = 200.0 * (1.0 - math.cos(0.1 * n))
+    return 20.0 * n, round(speed), round(-speed), round(left), round(-1.5 * left), 11.93
+
+
+@pytest.mark.parametrize("kind", ["floats", "counts"])
+def test_counters_in_an_array_are_told_from_what_else_it_holds(
+    tmp_path: Path, ros: Any, robot: Any, kind: str
+) -> None:
+    rows = [board(n)[: 6 if kind == "floats" else 5] for n in range(400)]
+    entries = [("/board", 20 * n * MS, getattr(ros, kind)(*row)) for n, row in enumerate(rows)]
+    bag = ros.write(tmp_path / "bag", entries)
+    found = read_run(bag, robot())
+    assert found.ticks.left.tolist() == [row[3] for row in rows]
+    assert found.ticks.right.tolist() == [row[4] for row in rows]
+    said = " ".join(wo.info(bag).summary().split())
+    assert "Wheels: /board:3:4, counters at 50 Hz: of its values, counted from 0, number 3" in said
+    other = read_run(bag, robot(), ticks_topic="/board:4:3")
+    assert other.ticks.left.tolist() == [row[4] for row in rows]
+    with pytest.raises(InputError, match="no message has values 3 and 8, counted from 0"):
+        read_run(bag, robot(), ticks_topic="/board:3:8")
+    with pytest.raises(InputError, match="takes two places of its values, counted from 0"):
+        read_run(bag, robot(), ticks_topic="/board:3")
+    with pytest.raises(InputError, match=r"TOPIC:LEFT:RIGHT says which two of more"):
+        read_run(bag, robot(), ticks_topic="/board")
 
 
 def test_whole_counts_are_no_angles(tmp_path: Path, ros: Any, robot: Any) -> None:

@@ -13,7 +13,8 @@ import pytest
 from test.files.recorded import ROBOT, TRUE, driven
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import mislabelled_columns
-from werrimbi_odom.files.mislabelled_columns import words_about_one_clock_unit, words_about_ways
+from werrimbi_odom.files.compared_ways import words_about_ways
+from werrimbi_odom.files.mislabelled_columns import words_about_one_clock_unit
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.model.pose import wrap_all
@@ -155,6 +156,35 @@ def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
     ):
         with pytest.raises(InputError, match="clockwise"):
             refuse_wrong_columns(wrong)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("of_range", [wrap_all, lambda yaw: yaw % (2.0 * np.pi), np.unwrap])
+@pytest.mark.parametrize("places", [True, False])
+def test_a_yaw_in_degrees(
+    seed: int, of_range: Callable[[np.ndarray], np.ndarray], places: bool
+) -> None:
+    """Of most of such a drive `info` said that the robot was carried or turned by hand."""
+    run = driven(seed)
+    if not places:
+        run = seen(run, x=lambda it: it.x * np.nan, y=lambda it: it.x * np.nan)
+    refuse_wrong_columns(seen(run, yaw=lambda it: of_range(it.yaw)))
+    with pytest.raises(InputError, match=r"the reference's yaw is in degrees, and must be in rad"):
+        refuse_wrong_columns(seen(run, yaw=lambda it: np.degrees(of_range(it.yaw))))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_longitude_and_latitude_are_no_metres(seed: int) -> None:
+    """`info` said that such drives can show base and radii."""
+    run = driven(seed)
+    fixes = seen(
+        run, x=lambda it: 5.66 + it.x / 6.9e4, y=lambda it: 51.9 + it.y / 1.11e5,
+        yaw=lambda it: it.yaw * np.nan,
+    )  # fmt: skip
+    with pytest.raises(InputError, match="as degrees of longitude and latitude do: write metres"):
+        refuse_wrong_columns(fixes)
+    still = seen(run, x=lambda it: it.x * 1e-9, y=lambda it: it.y * 0.0)
+    refuse_wrong_columns(still)
 
 
 def test_a_yaw_that_was_never_measured() -> None:

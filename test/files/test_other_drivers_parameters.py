@@ -11,6 +11,7 @@ import pytest
 from werrimbi_odom.api.odom import odometry
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.robot_file_rewrite import write_robot_file
@@ -67,6 +68,23 @@ diff_drive_controller:
     odometry:
       publish_tf: true
 """
+NEWER_TURTLEBOT = """\
+/**:
+  turtlebot3_node:
+    ros__parameters:
+      enable_stamped_cmd_vel: true
+      opencr:
+        id: 200
+      wheels:
+        separation: 0.160
+        radius: 0.033
+/**:
+  diff_drive_controller:
+    ros__parameters:
+      odometry:
+        publish_tf: true
+"""
+"""One key twice, and nodes below it: ROS reads both nodes."""
 
 OWN = """\
 odom_node:
@@ -99,7 +117,7 @@ def test_a_controllers_file_is_read_and_it_is_said_what_is_not_needed(tmp_path: 
     assert "publish_rate: 50.0" in out.read_text()
 
 
-@pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT, OWN])
+@pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT, NEWER_TURTLEBOT, OWN])
 def test_without_ticks_positions_in_radians_are_read_and_counts_refused(
     tmp_path: Path, text: str
 ) -> None:
@@ -149,7 +167,22 @@ def test_turtlebots_file_is_read(tmp_path: Path) -> None:
     assert refused(path, TURTLEBOT.replace("0.033", "-1.0")).startswith(", line 5: wheel_radius")
 
 
-@pytest.mark.parametrize("text", [CONTROLLERS + TICKS, TURTLEBOT])
+def test_a_key_in_two_parts_is_one_as_to_ros(tmp_path: Path) -> None:
+    path = tmp_path / "burger.yaml"
+    path.write_text(NEWER_TURTLEBOT)
+    found = read_robot_file(path)
+    assert (found.robot.wheel_separation, found.robot.wheel_radius) == (0.16, 0.033)
+    assert found.place == ("/**", "turtlebot3_node")
+    assert found.remarks[0] == "/** is there twice; its parts are read as one"
+    assert of_controller(path).separation == 0.16
+    halves = OWN.replace("    wheel_radius: 0.05\n", "") + "odom_node:\n  ros__parameters:\n"
+    path.write_text(halves + "    wheel_radius: 0.05\n" + TICKS)
+    written = write_robot_file(read_robot_file(path), {"wheel_radius": 0.06}, tmp_path / "new.yaml")
+    assert (written.robot.wheel_separation, written.robot.wheel_radius) == (0.35, 0.06)
+    assert "duplicate key" in refused(path, halves + "    wheel_separation: 0.4\n" + TICKS)
+
+
+@pytest.mark.parametrize("text", [CONTROLLERS + TICKS, TURTLEBOT, NEWER_TURTLEBOT])
 def test_an_effect_is_added_and_all_that_is_not_ours_stays(tmp_path: Path, text: str) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(text)

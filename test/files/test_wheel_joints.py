@@ -153,11 +153,11 @@ def test_an_arm_in_a_urdf_moves_neither_base_nor_radius() -> None:
 def test_an_array_of_more_than_two_values_is_not_called_an_unread_type(
     tmp_path: Path, ros: Any
 ) -> None:
-    """The type is read, where its values are the two counters: it says so."""
+    """The type is read, where two of its values are counters: it says so."""
     array = ros.counts(0, 0, 50, 52, bits=32)
     entries = [("/encoder_status", n, array) for n in range(1, 60)]
     said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
-    assert "such a type is read only if it holds two values" in said
+    assert "if two of its values count the wheels, --ticks-topic /encoder_status:0:1" in said
     assert "no type that is read" not in said
 
 

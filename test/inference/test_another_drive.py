@@ -138,6 +138,27 @@ def test_wheels_that_stand_are_told_before_any_work() -> None:
         diagnosed(replace(run, ticks=stood))
 
 
+def straight(seed: int) -> Run:
+    """A metre along a line, begun and ended standing, with a radius that is entered nine times."""
+    random = np.random.default_rng(seed)
+    time = np.arange(0.0, 17.0, 0.1)
+    way = 0.1 * np.clip(time - 1.0, 0.0, 11.0)
+    counts = np.rint(way / (0.11 * ROBOT.left_tick))
+    along = way * np.exp(1j * (seed - 0.035))
+    place = along + 5e-4 * (random.normal(size=time.size) + 1j * random.normal(size=time.size))
+    yaw = seed + random.normal(0.0, 2e-3, way.size)
+    ticks = Ticks(time, counts, counts + np.rint(0.01 * counts))
+    reference = Reference(time, place.real, place.imag, yaw)
+    return Run(f"line_{seed}", Path(f"line_{seed}"), ticks, reference)
+
+
+def test_a_radius_nine_times_off_on_a_line_is_not_the_reference_of_another_drive() -> None:
+    words = " ".join(spoken(diagnosed(*(straight(seed) for seed in (1, 2, 3)))).split())
+    assert "nothing in common" not in words
+    assert "wheel_radius is 0.11 times what is entered" in words
+    assert "mend that in the robot file" in words
+
+
 N = 300
 
 

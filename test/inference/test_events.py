@@ -112,6 +112,21 @@ def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: D
     assert _diagnosed((silent, robot)).happened.events == ()
 
 
+@pytest.mark.parametrize(("scans", "lost"), [(True, 18.0), (True, 40.0), (False, 18.0)])
+def test_where_scans_were_lost_a_push_may_be_theirs(
+    sound: Drives, scans: bool, lost: float
+) -> None:
+    """Before a lidar is lost its matches slide: it was told as a slip of the robot."""
+    runs, robot = sound
+    pushed = _stepped(runs[0], 17.0, 8.0 * NOISE_XY)
+    assert pushed.reference is not None
+    kept = np.abs(pushed.reference.time - lost - 1.0) > 1.0
+    seen = replace(pushed.reference.chosen(kept), own_axes=scans)
+    cut = replace(pushed, reference=seen, taken_out=((lost, lost + 2.0),))
+    [event] = _diagnosed(([cut, *runs[1:]], robot)).happened.events
+    assert event.beside_lost == (scans and lost == 18.0)
+
+
 def test_a_push_of_five_times_the_noise_is_told_and_left_out(
     sound: Drives, undisturbed: Diagnosis
 ) -> None:
@@ -134,6 +149,8 @@ def test_a_push_of_five_times_the_noise_is_told_and_left_out(
         event_words(turned, robot.track, either=False)
         == "it was turned by 0.498 ± 0.057° to the left"
     )
+    beside = event_words(replace(turned, beside_lost=True), robot.track, either=False)
+    assert beside.startswith("the robot or the reference jumped by 0.498 ± 0.057° in heading (just")
     said = " ".join(events_words(replace(found.happened, kind="local_map"), robot.track))
     assert "the robot or the reference jumped by" in said
     assert "A localiser that corrects itself" in said

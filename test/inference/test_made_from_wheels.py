@@ -83,6 +83,16 @@ def test_odometry_that_goes_along_chords_is_refused_too(per_second: float) -> No
 
 
 @SEEDS
+def test_odometry_that_is_logged_in_millimetres_is_refused_by_its_headings(seed: int) -> None:
+    """A firmware's own pose in its log: a path of whole millimetres is longer than the way."""
+    run, _ = recorded(seed)
+    own = own_odometry(run, OTHER)
+    logged = Reference(own.time, own.x.round(3), own.y.round(3), own.yaw.round(5))
+    with pytest.raises(InputError, match=r"its headings agree with the wheels to .* same counts"):
+        require_independent(replace(run, reference=logged), ROBOT)
+
+
+@SEEDS
 def test_odometry_has_the_stamps_of_its_wheels_right_or_wrong(seed: int) -> None:
     """Wheels whose stamps scatter by 4 ms are put right for a measurement, and not for this."""
     run, _ = recorded(seed)

@@ -19,11 +19,12 @@ from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Wheels, contents_of
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
+from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.merged_reference import SCALE_MOST
-from werrimbi_odom.files.mislabelled_columns import without_zeros, words_about_ways
+from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
 from werrimbi_odom.files.run import Run

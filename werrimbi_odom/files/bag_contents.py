@@ -11,11 +11,12 @@ where they are compared.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from werrimbi_odom.files.array_places import counting_places
 from werrimbi_odom.files.bag import Bag, Topic
 from werrimbi_odom.files.derived_references import copies, second_hand
 from werrimbi_odom.files.driver_messages import DRIVERS
@@ -51,6 +52,8 @@ ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int1
 """The same for both wheels, as values without names."""
 FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
 """They may hold counters but usually hold commands; read on request only."""
+CLOUDS = ("sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/MultiEchoLaserScan")
+"""Types of lidars' messages that are not matched."""
 POINT = "geometry_msgs/msg/PointStamped"
 POSES = {
     ODOMETRY: "poses",
@@ -71,7 +74,8 @@ class Wheels:
     """A topic, or two, with wheel data."""
 
     name: str
-    """Value for --ticks-topic: TOPIC, LEFT,RIGHT, or /tf:PARENT:CHILD."""
+    """Value for --ticks-topic: TOPIC, LEFT,RIGHT, TOPIC:LEFT:RIGHT with two places in an array, or
+    /tf:PARENT:CHILD."""
     kind: str
     """Message type, as in `sensor_msgs/msg/JointState`."""
     messages: int
@@ -83,6 +87,12 @@ class Wheels:
     def topics(self) -> tuple[str, ...]:
         """Topics of its messages."""
         return tuple(each.partition(":")[0] for each in self.name.split(","))
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """Places of the two counters within an array, from 0, if it holds more."""
+        array = self.kind in (*ARRAYS, *FLOATS)
+        return tuple(map(int, self.name.split(":")[1:])) if array else ()
 
 
 @dataclass(frozen=True)
@@ -98,6 +108,8 @@ class Contents:
     """References, real or apparent; independent ones first."""
     edges: tuple[Edge, ...]
     """All transforms between frames."""
+    moved: Mapping[str, str] = field(default_factory=dict)
+    """Clouds of points that are given in a frame of the room, and that frame, by topic."""
 
     @property
     def independent(self) -> tuple[Measured, ...]:
@@ -122,7 +134,8 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     for message in bag.messages(names) if names else ():
         edges.take(message.topic, message.content.transforms)
     found = edges.edges()
-    looked_at = [each.name for each in bag.topics if each.kind in (JOINT_STATE, *ARRAYS, *POSES)]
+    kinds = (JOINT_STATE, *ARRAYS, *FLOATS, *POSES, *CLOUDS)
+    looked_at = [each.name for each in bag.topics if each.kind in kinds]
     firsts = bag.firsts(looked_at)
     references = [
         *_chains(found, base),
@@ -141,10 +154,7 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         for each in references
     ]
     made_of = second_hand(bag, references) if choosing else {}
-    references = [
-        replace(each, why=f"{each.why}; {made_of[each.name]}") if each.name in made_of else each
-        for each in references
-    ]
+    references = [_with_origin(each, made_of.get(each.name, "")) for each in references]
     # Scans last, since a localiser may have made poses of them; before them points without a frame,
     # which may be speeds. The sort is stable: otherwise the bag's order.
     references.sort(
@@ -156,23 +166,51 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
             each.name in made_of,
         )
     )
-    return Contents(
-        bag.path, bag.topics, tuple(_wheels(bag, firsts, found)), tuple(references), found
-    )
+    moved = {
+        each.name: where
+        for each in bag.topics
+        if each.kind in CLOUDS and _is_of_room(where := _frame_of(firsts.get(each.name)))
+    }
+    wheels = tuple(_wheels(bag, firsts, found))
+    return Contents(bag.path, bag.topics, wheels, tuple(references), found, moved)
+
+
+def _with_origin(reference: Measured, made_of: str) -> Measured:
+    """With what it is made of; a scan that others were moved for is no measurement of its own."""
+    if not made_of:
+        return reference
+    if reference.kind == SCAN:
+        return replace(reference, independent=False, why=made_of)
+    return replace(reference, why=f"{reference.why}; {made_of}")
+
+
+def moved_words(where: str) -> str:
+    """Why points that are given in a frame of the room are no measurement of their own."""
+    by = "the odometry" if is_odometry_frame(where) else "a localiser, or the odometry"
+    return f"its points are given in {where}, where {by} has moved them"
+
+
+def _frame_of(message: Any) -> str:
+    return frame(getattr(getattr(message, "header", None), "frame_id", ""))
+
+
+def _is_of_room(name: str) -> bool:
+    """Whether it is a frame that does not move with the robot, by its name."""
+    return is_odometry_frame(name) or name in ("map", "world")
 
 
 def _measured(topic: Topic, first: Any) -> Measured:
     kind = topic.kind
-    header = getattr(first, "header", None)
-    parent = frame(getattr(header, "frame_id", ""))
+    parent = _frame_of(first)
     child = frame(getattr(first, "child_frame_id", ""))
     measures: Measures = POSES[kind]  # type: ignore[assignment]
     if kind == IMU:
         parent, child, reason = "", parent, ""
         why = "a gyro of its own; its yaw rate is integrated"
     elif kind == SCAN:
-        parent, child, reason = "", parent, ""
-        why = "walls and furniture; its scans are matched with those of the last metres"
+        parent, child = "", parent
+        reason = moved_words(child) if _is_of_room(child) else ""
+        why = reason or "walls and furniture; its scans are matched with those of the last metres"
     elif kind == FIX:
         parent, child, reason = "", parent, ""
         why = "satellites"
@@ -238,10 +276,15 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
             angles = len(getattr(first, "position", ())) > 0 or not joints
             gives: Gives = "positions" if angles else "velocities"
             found.append(Wheels(topic.name, topic.kind, topic.messages, gives, joints))
-        elif topic.kind in DRIVERS or (
-            topic.kind in ARRAYS and len(getattr(firsts.get(topic.name), "data", ())) == 2
-        ):
+        elif topic.kind in DRIVERS:
             found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
+        elif topic.kind in (*ARRAYS, *FLOATS):
+            values = len(getattr(firsts.get(topic.name), "data", ()))
+            if values == 2 and topic.kind in ARRAYS:
+                found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
+            elif values > 2 and len(counting := counting_places(bag, topic.name, values)) == 2:
+                name = f"{topic.name}:{counting[0]}:{counting[1]}"
+                found.append(Wheels(name, topic.kind, topic.messages, "counts"))
         elif topic.kind in PAIRS:
             mirrored = topic.name.replace("left", "right")
             for each in bag.topics if mirrored != topic.name else ():
@@ -254,7 +297,7 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
             reason = why_from_wheels(
                 topic.name,
                 topic.kind,
-                frame(getattr(getattr(firsts.get(topic.name), "header", None), "frame_id", "")),
+                _frame_of(firsts.get(topic.name)),
                 frame(getattr(firsts.get(topic.name), "child_frame_id", "")),
             )
             if reason and "filter" not in reason:

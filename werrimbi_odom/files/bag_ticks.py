@@ -53,6 +53,7 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
     if wish is not None:
         return wished_ticks(held, wish)
     counted = [each for each in held.wheels if each.gives != "odometry"]
+    counted = [each for each in counted if not each.places] or counted
     kind = KINDS[str(robot_file.values["input_type"])]
     chosen = [each for each in counted if each.kind == kind] or counted
     joints = {name for side in ("left", "right") for name in wheel_names(robot_file, side)}
@@ -73,7 +74,7 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
 
 
 def wished_ticks(held: Contents, wish: str) -> Wheels:
-    """Find the requested source: a topic, or LEFT,RIGHT for two.
+    """Find the requested source: a topic, LEFT,RIGHT for two, or TOPIC:LEFT:RIGHT within an array.
 
     InputError if it contains no ticks; the message lists the sources.
     """
@@ -88,8 +89,17 @@ def wished_ticks(held: Contents, wish: str) -> Wheels:
         return Wheels(",".join(wished), found[0].kind, messages, "counts")
     if single and found[0].kind in PAIRS:
         raise InputError(f"{held.path}: {wish} is one wheel; --ticks-topic LEFT,RIGHT names both")
-    if single and found[0].kind in FLOATS:
+    if single and found[0].kind in (*ARRAYS, *FLOATS):
         return Wheels(wished[0], found[0].kind, found[0].messages, "counts")
+    name, *places = wished[0].split(":")
+    for topic in held.topics:
+        if topic.name == name and topic.kind in (*ARRAYS, *FLOATS) and len(wished) == 1:
+            if len(places) == 2 and all(map(str.isdecimal, places)) and places[0] != places[1]:
+                return Wheels(wished[0], topic.kind, topic.messages, "counts")
+            raise InputError(
+                f"{held.path}: --ticks-topic {name}:LEFT:RIGHT takes two places of its values, "
+                f"counted from 0, as in {name}:0:1; not {wish}"
+            )
     if single and found[0].kind == ODOMETRY:
         return Wheels(wished[0], ODOMETRY, found[0].messages, "odometry")
     raise InputError(f"{held.path}: there are no ticks in {wish}; {_listed(held.wheels)}")
@@ -163,19 +173,22 @@ class CountersCollector(_TwoCounts):
 
 
 class MultiArrays(_TwoCounts):
-    """Two counters in one message without a stamp."""
+    """Two counters in one message without a stamp: its two values, or two places of more."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
         bits = _width(robot_file, ARRAYS.get(source.kind, 0))
         super().__init__(f"{path}: {source.name}", bits)
+        self._places = source.places
         self._left_out: Counter[str] = Counter()
 
     def take(self, message: BagMessage) -> None:
         """Add a message."""
-        if len(message.content.data) != 2:
-            self._left_out["not of two values, left and right"] += 1
+        data = message.content.data
+        if len(data) <= max(self._places, default=1) or not (self._places or len(data) == 2):
+            self._left_out[f"not of {self._wanted}"] += 1
             return
-        left, right = map(float, message.content.data)
+        both = [data[place] for place in self._places or (0, 1)]
+        left, right = map(float, both)
         if not (math.isfinite(left) and math.isfinite(right)):
             self._left_out["with a value that is no number"] += 1
             return
@@ -184,11 +197,20 @@ class MultiArrays(_TwoCounts):
                 f"{self._place}: {left:.6g} and {right:.6g} are no whole numbers, and so no "
                 "counters; angles and speeds of wheels are read from a JointState"
             )
-        self._add(message.received / 1e9, *map(int, message.content.data))
+        self._add(message.received / 1e9, *map(int, both))
+
+    @property
+    def _wanted(self) -> str:
+        if not self._places:
+            return "two values, left and right"
+        return f"values {self._places[0]} and {self._places[1]}, counted from 0"
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All ticks, and the skipped messages in words."""
-        ticks = self._ticks("no message has two values, left and right")
+        ticks = self._ticks(
+            f"no message has {self._wanted}"
+            + ("" if self._places else "; --ticks-topic TOPIC:LEFT:RIGHT says which two of more")
+        )
         return ticks, left_out_words(self._left_out)
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Wheels of a robot by the parameters of its diff_drive_controller."""
+"""Wheels of a robot by the parameters of its diff_drive_controller, or of TurtleBot3's driver."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from typing import Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.first_robot import FirstRobot
+from werrimbi_odom.files.other_drivers_parameters import translated
 from werrimbi_odom.files.wheel_joints import SIDES
+from werrimbi_odom.files.yaml_text import BlocksInParts
 
 _SIZES = ("wheel_separation", "wheel_radius")
 _MULTIPLIERS = (
@@ -21,18 +23,21 @@ _MULTIPLIERS = (
 
 
 def of_controller(path: Path) -> FirstRobot:
-    """Wheels of a diff_drive_controller, from a parameter file that may contain other nodes too.
+    """Wheels as a driver's parameter file has them, which may contain other nodes too.
 
     InputError if the file is unreadable, or no node has a wheel separation and a radius.
     """
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
 
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Composer = BlocksInParts
     try:
-        content = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+        content = yaml.load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, YAMLError, RecursionError) as error:
         raise InputError(f"{path} cannot be read: {' '.join(str(error).split())[:200]}") from error
-    for block in _blocks(content):
+    for found in _blocks(content):
+        block = {**found, **translated(found)}
         sizes = [block.get(name) for name in _SIZES]
         if all(isinstance(size, int | float) and size > 0.0 for size in sizes):
             given = {

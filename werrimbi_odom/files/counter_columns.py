@@ -53,6 +53,12 @@ def what_counters_hold(ticks: Ticks, reference: Reference, bits: int) -> str:
     return words or ("" if bits else wraps_words(ticks))
 
 
+def turns_by_wheels(ticks: Ticks, reference: Reference) -> float:
+    """Correlation of the reference's turns with the difference of both counters' steps."""
+    windows = _windows(ticks, reference)
+    return 0.0 if windows is None else _related(windows.steps[1], windows.moved[1])
+
+
 class _Windows(NamedTuple):
     """Sums over windows of time; k windows."""
 

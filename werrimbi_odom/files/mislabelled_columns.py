@@ -4,7 +4,7 @@
 
 Such mistakes are made where a log is written as a run folder. No effect corrects them, and each
 makes wheels and reference look as if they had nothing in common. Degrees and millimetres are
-recognised in the set-up search, which knows how well each fits (`inference.set_up.search`).
+recognised in the set-up search too, which knows how well each fits (`inference.set_up.search`).
 """
 
 from __future__ import annotations
@@ -12,10 +12,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.counter_columns import what_counters_hold
+from werrimbi_odom.files.compared_ways import (
+    CHORD,
+    ends_of_chords,
+    words_about_globe,
+    words_about_metres,
+)
+from werrimbi_odom.files.counter_columns import (
+    HARDLY,
+    TAKES,
+    turns_by_wheels,
+    what_counters_hold,
+)
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -34,18 +44,10 @@ UNITS = ((2e6, "nanoseconds", 9), (2e3, "microseconds", 6), (0.0, "milliseconds"
 SPANS_ALIKE = 2.0
 """Factor within which the spans of both files are alike once one's times are divided."""
 
-METRES, OTHERWISE = 1.25, 3.0
-"""Factor within which counters go as many units as the reference goes metres, and that by which the
-robot file says otherwise."""
-FAR_APART = 20.0
-"""Factor between the ways by wheels and reference above which a robot file is of another unit."""
-
 SHARED, WHOLE = 0.5, 0.001
 """Share of rows at the time of the row before above which times are rounded, if they come in whole
 multiples of their smallest step, to within this share of it. Bursts of messages do not."""
 
-CHORD = 0.05
-"""Chords of the path, as a share of its extent: long against noise, short against a lap."""
 FOLLOWS, CONTRADICTS = 0.8, 0.7
 """Mean resultant length of the angle between path and yaw, above which they belong together and
 below which they do not. A path along the yaw has 1 less its scatter (0.8 at 0.67 rad). On a path
@@ -53,8 +55,12 @@ that hardly turns, both senses of turning have much."""
 TURNED = 0.9
 """Mean resultant length of the path's direction above which it hardly turned (0.46 rad)."""
 
-LEAST_CHORD, ROLLED = 0.01, 0.8
-"""Length of such chords [m], and share of them with counts, from which ways are compared."""
+MORE_THAN_A_TURN = 2.1 * np.pi
+"""Range of yaw from which it may be in degrees: wrapped, in radians, it is 2 pi at most."""
+IN_DEGREES = (
+    "the reference's yaw is in degrees, and must be in radians: convert that column (times "
+    "pi/180; of a gyro, its rates)"
+)
 
 FAR, FAR_STEPS = 0.05, 20.0
 """Distance [m], and in typical steps of the reference, beyond which a pose of zeros is none."""
@@ -64,14 +70,16 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     """Check the meaning of a run's columns by its data.
 
     InputError if the times are not in seconds or are rounded, the counters are no running, signed
-    totals, the yaw is no heading, or it turns the other way round than the path.
+    totals, the yaw is in degrees or no heading, or it turns the other way round than the path.
     """
     assert run.reference is not None
     words = (
         _other_unit_of_time(run.ticks, run.reference)
         or _rounded_times(run.ticks, run.reference)
-        or _metres(run.ticks, run.reference, robot)
+        or words_about_metres(run.ticks, run.reference, robot)
+        or words_about_globe(run.ticks, run.reference, robot)
         or what_counters_hold(run.ticks, run.reference, robot.encoder_bits)
+        or _degrees(run.ticks, run.reference)
         or _no_heading(run.ticks, run.reference)
     )
     if words:
@@ -150,62 +158,6 @@ def words_about_one_clock_unit(ticks: Ticks, reference: Reference) -> str:
     return ""
 
 
-def words_about_ways(run: Run, robot: Robot) -> str:
-    """Ways by wheels and reference that are of different units; "" if they are not.
-
-    Of a robot that rolled most of the time while it moved: one that is carried does not.
-    """
-    ways = _ways(run.ticks, run.reference) if run.reference is not None else None
-    if ways is None:
-        return ""
-    counted, seen = ways
-    rolled = 0.5 * counted * (robot.left_tick + robot.right_tick)
-    if seen / FAR_APART < rolled < FAR_APART * seen:
-        return ""
-    return (
-        f"by its wheels, with this robot file, it went {rolled:.2g} m, and by the reference "
-        f"{seen:.2g} m, {seen / counted:.2g} m for each count: look at wheel_radius and at the "
-        "counts of a turn; counters in radians have left_ticks_per_revolution: 6.283185, in "
-        "degrees 360" + ("; or x_m and y_m are in millimetres" if seen > rolled else "")
-    )
-
-
-def _metres(ticks: Ticks, reference: Reference, robot: Robot) -> str:
-    ways = _ways(ticks, reference)
-    if ways is None or all((part == np.rint(part)).all() for part in (ticks.left, ticks.right)):
-        return ""
-    counted, seen = ways
-    size = 0.5 * (robot.left_tick + robot.right_tick)
-    if not 1.0 / METRES < seen / counted < METRES or 1.0 / OTHERWISE < size < OTHERWISE:
-        return ""
-    return (
-        f"left_ticks and right_ticks go {counted:.4g} where the robot goes {seen:.4g} m: they are "
-        "metres, and no counts: write how many steps of 0.01 mm they are, as whole numbers, and "
-        "into the robot file how many of these its wheel goes in a turn (left_ticks_per_revolution "
-        "= 2 pi wheel_radius / 0.00001)"
-    )
-
-
-def _ways(ticks: Ticks, reference: Reference) -> tuple[float, float] | None:
-    """Counts of a wheel and metres by the reference, of both together; None if hardly any."""
-    rows = np.flatnonzero(reference.has_position)
-    if min(ticks.rows, rows.size) < FEWEST:
-        return None
-    place = reference.x[rows] + 1j * reference.y[rows]
-    chord = CHORD * float(np.hypot(np.ptp(place.real), np.ptp(place.imag)))
-    ends = _ends(place, chord)
-    when = reference.time[rows[ends]]
-    inside = (when >= ticks.time.min()) & (when <= ticks.time.max())
-    if np.count_nonzero(inside) <= FEWEST or chord < LEAST_CHORD:
-        return None
-    stamps = np.maximum.accumulate(ticks.time)
-    counts = [np.interp(when[inside], stamps, part) for part in (ticks.left, ticks.right)]
-    moved = np.abs(np.diff(counts, axis=1)).mean(axis=0)
-    if not np.isfinite(moved).all() or np.count_nonzero(moved) < ROLLED * moved.size:
-        return None
-    return float(moved.sum()), float(np.abs(np.diff(place[ends][inside])).sum())
-
-
 def _rounded_times(ticks: Ticks, reference: Reference) -> str:
     for name, time in (("ticks", ticks.time), ("the reference", reference.time)):
         steps = np.diff(time)
@@ -221,6 +173,16 @@ def _rounded_times(ticks: Ticks, reference: Reference) -> str:
                 "each time"
             )
     return ""
+
+
+def _degrees(ticks: Ticks, reference: Reference) -> str:
+    known = reference.yaw[reference.has_yaw]
+    if known.size < FEWEST or np.ptp(known) < MORE_THAN_A_TURN:
+        return ""
+    if turns_by_wheels(ticks, reference) > HARDLY:
+        return ""
+    in_radians = replace(reference, yaw=np.radians(reference.yaw))
+    return IN_DEGREES if turns_by_wheels(ticks, in_radians) > TAKES else ""
 
 
 def _no_heading(ticks: Ticks, reference: Reference) -> str:
@@ -264,7 +226,7 @@ def _chords(reference: Reference) -> tuple[Floats, Floats, Floats] | None:
         return None
     place = reference.x[rows] + 1j * reference.y[rows]
     extent = float(np.hypot(np.ptp(place.real), np.ptp(place.imag)))
-    ends = _ends(place, CHORD * extent)
+    ends = ends_of_chords(place, CHORD * extent)
     if ends.size <= FEWEST:
         return None
     begin, end = ends[:-1], ends[1:]
@@ -272,17 +234,6 @@ def _chords(reference: Reference) -> tuple[Floats, Floats, Floats] | None:
     middle = yaw[begin] + 0.5 * wrap_all(yaw[end] - yaw[begin])
     when = reference.time[rows]
     return np.angle(place[end] - place[begin]), middle, np.stack([when[begin], when[end]])
-
-
-def _ends(place: NDArray[np.complex128], least: float) -> NDArray[np.intp]:
-    """Rows at which a path is `least` away from the row chosen before."""
-    chosen = [0]
-    while least > 0.0:
-        far = np.abs(place[chosen[-1] :] - place[chosen[-1]]) >= least
-        if not far.any():
-            break
-        chosen.append(chosen[-1] + int(far.argmax()))
-    return np.asarray(chosen, dtype=np.intp)
 
 
 def _together(angles: Floats) -> float:

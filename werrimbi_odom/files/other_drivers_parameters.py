@@ -39,8 +39,8 @@ OF_DIFF_DRIVE = frozenset(
 
 TURTLEBOT = "wheels"
 """Block of TurtleBot3's file with the geometry."""
-OF_TURTLEBOT = frozenset(("motors", "opencr", "sensors"))
-"""Its other blocks."""
+OF_TURTLEBOT = frozenset(("enable_stamped_cmd_vel", "motors", "opencr", "sensors"))
+"""What else is in it."""
 _TURTLEBOT = {"separation": "wheel_separation", "radius": "wheel_radius"}
 
 

@@ -64,6 +64,11 @@ def names_a_sensor(topic: str) -> bool:
     return bool(_words(topic) & (SENSORS - {"gazebo"}))
 
 
+def names_a_measurement(topic: str) -> bool:
+    """Whether a topic's name contains that of a sensor, or says that it is a pose."""
+    return not is_asked_for(topic) and bool(_words(topic) & (SENSORS | {"pose", "imu", "gyro"}))
+
+
 def is_asked_for(topic: str) -> bool:
     """Whether poses of a topic are requested, or relative to such, and not measured."""
     return any(word in topic.lower() for word in NO_MEASUREMENT)

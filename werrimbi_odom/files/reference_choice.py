@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_contents import SCAN, Contents, Wheels
+from werrimbi_odom.files.bag_contents import CLOUDS, SCAN, Contents, Wheels, moved_words
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, chain, frame, is_static
 from werrimbi_odom.files.measured_topic import Measured
@@ -17,13 +17,13 @@ from werrimbi_odom.files.own_odometry import is_odometry_frame
 NONE = "none"
 """Value in place of a topic: use no reference."""
 
-_OTHER_SCANS = {
-    "sensor_msgs/msg/PointCloud2": "clouds of points; scans of one level plane are matched "
-    "(sensor_msgs/LaserScan): pointcloud_to_laserscan makes them of it",
-    "sensor_msgs/msg/MultiEchoLaserScan": "several echoes a beam; laser_proc makes a "
-    "sensor_msgs/LaserScan of the first or the strongest, which can be matched",
-}
-"""Lidar message types that are not matched, and how to convert them."""
+_OTHER_SCANS = (
+    "clouds of points; scans of one level plane are matched (sensor_msgs/LaserScan): "
+    "pointcloud_to_laserscan makes them of it",
+    "several echoes a beam; laser_proc makes a sensor_msgs/LaserScan of the first or the "
+    "strongest, which can be matched",
+)
+"""How to convert each of `CLOUDS`."""
 
 
 class Chosen(NamedTuple):
@@ -74,8 +74,11 @@ def listed(found: Sequence[Measured]) -> str:
 
 def other_scans(held: Contents) -> list[tuple[str, str]]:
     """Lidar topics that are not matched, each with its content in words."""
+    words = dict(zip(CLOUDS, _OTHER_SCANS, strict=True))
     return [
-        (each.name, _OTHER_SCANS[each.kind]) for each in held.topics if each.kind in _OTHER_SCANS
+        (each.name, moved_words(held.moved[each.name]) if each.name in held.moved else told)
+        for each in held.topics
+        if (told := words.get(each.kind))
     ]
 
 
@@ -95,7 +98,7 @@ def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -
             return Chosen(each, frames[0] if frames else "")
     for other, what in other_scans(held):
         if other == name:
-            raise InputError(f"{held.path}: {name} holds {what}")
+            raise InputError(f"{held.path}: {name} is no reference as it is: {what}")
     candidates = [each for each in there if each.independent]
     raise InputError(
         f"{held.path}: there is no reference in {name}; candidates are: "

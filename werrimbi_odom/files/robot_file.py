@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -63,8 +63,8 @@ class RobotFile:
     """Content of a robot file."""
 
     path: Path
-    node: str
-    """Top key: a node's name, or `/**` for any."""
+    place: tuple[str, ...]
+    """Keys above `ros__parameters`: namespaces, if any, and the node's name, or `/**` for any."""
     values: Mapping[str, Value]
     """All parameters; those not in the file have their defaults."""
     given: tuple[str, ...]
@@ -75,6 +75,11 @@ class RobotFile:
     """Physical effects, in order of application."""
     remarks: tuple[str, ...] = ()
     """Unused content, in words for the user."""
+
+    @property
+    def node(self) -> str:
+        """Name of the node, or `/**` for any."""
+        return self.place[-1]
 
     @property
     def robot(self) -> Robot:
@@ -120,7 +125,8 @@ def read_robot_file(path: str | Path, effects: Collection | None = None) -> Robo
 
 def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:
     """Parse the text of a robot file; see `read_robot_file`. `path` is used in error messages."""
-    node, block = _parameter_block(load(text, path), path)
+    content, in_parts = load(text, path)
+    place, block = _parameter_block(content, path)
     given: dict[str, Value] = {}
     wrong: list[tuple[int, str]] = []
     unused: list[str] = []
@@ -163,7 +169,7 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
     except InputError as error:
         wrong.append((line_of(block, "encoder_bits"), str(error)))
     told = [f"line {line}: {words}" for line, words in sorted(wrong)]
-    remarks = [*remark_on(unused), *remark_on(of_turtlebot, "TurtleBot3's driver")]
+    remarks = [*in_parts, *remark_on(unused), *remark_on(of_turtlebot, "TurtleBot3's driver")]
     if taken:
         read = " and ".join(f"{own} {raw}" for own, raw in taken.items())
         remarks.append(f"wheels is of TurtleBot3's driver; read as {read}")
@@ -178,10 +184,10 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
         if item.name not in values and item.name not in block
     )
     if missing:
-        told.append(f"{node} must also give {missing}")
+        told.append(f"{place[-1]} must also give {missing}")
     if effects is None or told:
-        place = f"{path}, " if wrong else f"{path}: "
-        raise InputError(f"{place}{'; '.join(told)}")
+        where = f"{path}, " if wrong else f"{path}: "
+        raise InputError(f"{where}{'; '.join(told)}")
     try:
         robot_of(values)
     except ValueError as error:  # a product of values is invalid, though each value is valid
@@ -192,36 +198,58 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
     found = effects.applied()
     remarks += doubtful_sizes(values)
     values_of_all = MappingProxyType(values)
-    return RobotFile(path, node, values_of_all, tuple(given), text, found, tuple(remarks))
+    return RobotFile(path, place, values_of_all, tuple(given), text, found, tuple(remarks))
 
 
-def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedMap]:
-    """Name of the node, and its parameters."""
-    node = next(iter(content), None)
-    if len(content) != 1:
-        named = [name for name in content if isinstance(name, str) and name.strip("/") == NODE]
-        named = named or [name for name in content if _tells_of_wheels(content[name])]
-        if len(named) != 1 or "/**" in content:
-            names = ", ".join(str(name) for name in content) or "none"
+def _parameter_block(content: CommentedMap, path: Path) -> tuple[tuple[str, ...], CommentedMap]:
+    """Name of the node, with the namespaces that it is written below, and its parameters."""
+    nodes = dict(_nodes(content))
+    place = next(iter(nodes), ())
+    if len(nodes) != 1:
+        named = [
+            name for name in nodes if isinstance(name[-1], str) and name[-1].strip("/") == NODE
+        ]
+        named = named or [name for name in nodes if _tells_of_wheels(nodes[name])]
+        if len(named) != 1 or ("/**",) in nodes:
+            names = ", ".join("/".join(map(str, each)) for each in nodes) or "none"
             raise InputError(
                 f"{path}: a robot file tells of one node ({NODE} or /**); here are: {names}"
             )
-        node = named[0]
-    if not isinstance(node, str) or not node:
-        raise InputError(f"{path}, line 1: the top key must be a node's name, not {node!r}")
-    line = line_of(content, node)
-    below = content[node]
-    if not isinstance(below, CommentedMap) or PARAMETER_KEY not in below:
+        place = named[0]
+    above = content
+    for name in place:
+        if not isinstance(name, str) or not name:
+            raise InputError(f"{path}, line 1: the top key must be a node's name, not {name!r}")
+        line, above = line_of(above, name), above[name]
+    if not isinstance(above, CommentedMap) or PARAMETER_KEY not in above:
         raise InputError(
-            f"{path}, line {line}: below {node} comes {PARAMETER_KEY}: and then the parameters"
+            f"{path}, line {line}: below {place[-1]} comes {PARAMETER_KEY}: and then the parameters"
         )
-    block = below[PARAMETER_KEY]
+    block = above[PARAMETER_KEY]
     if block is None:
         block = CommentedMap()
     if not isinstance(block, CommentedMap):
-        line = line_of(below, PARAMETER_KEY)
+        line = line_of(above, PARAMETER_KEY)
         raise InputError(f"{path}, line {line}: {PARAMETER_KEY} must hold lines of name: value")
-    return node, block
+    return place, block
+
+
+def _nodes(
+    content: CommentedMap, above: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], object]]:
+    """Each node with its place; below a namespace (`/robot1`, `/**`) come nodes again."""
+    for name, below in content.items():
+        within = isinstance(below, CommentedMap) and PARAMETER_KEY not in below
+        if within and any(_has_parameters(each) for each in below.values()):
+            yield from _nodes(below, (*above, name))
+        else:
+            yield (*above, name), below
+
+
+def _has_parameters(below: object) -> bool:
+    return isinstance(below, CommentedMap) and (
+        PARAMETER_KEY in below or any(map(_has_parameters, below.values()))
+    )
 
 
 def _tells_of_wheels(below: object) -> bool:

@@ -71,7 +71,7 @@ def new_text(
     for name in source.given:
         if find(name).kind == "float":  # ROS parameters are typed: 2000 is not a double
             wanted.setdefault(name, source.values[name])
-    place = (source.node, PARAMETER_KEY)
+    place = (*source.place, PARAMETER_KEY)
     for applied in effects or ():  # every value must be readable again, else nothing is written
         for item in parameters_of(applied.effect):
             name = item.name.partition(".")[2]

@@ -49,6 +49,8 @@ _LATE = 0.1
 _FEWEST = 3
 _ALIKE = 1.1
 """Largest ratio of jitters at which the header clock is still preferred."""
+_MILLISECOND = 5e-4
+"""Jitter that rounds to no millisecond [s]."""
 _EVEN = 0.02
 """Jitter, as a share of the usual interval, up to which the header clock is even enough: a
 simulation stamps to the millisecond, and what it receives is not evener for a rounding less."""
@@ -89,6 +91,14 @@ class Stamps:
         enough = _EVEN / self.rate if self.rate > 0.0 else 0.0
         alike = max(_ALIKE * self.received_jitter, enough)
         return "header" if self.jitter <= alike else "received"
+
+    @property
+    def alike(self) -> bool:
+        """Whether both clocks are as even, but for a tenth, or for less than is printed."""
+        if self.jitter is None:
+            return False
+        less, more = sorted((self.jitter, self.received_jitter))
+        return more <= max(_ALIKE * less, _MILLISECOND)
 
 
 def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:

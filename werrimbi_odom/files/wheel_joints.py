@@ -185,10 +185,11 @@ def chosen_wheels(
 ) -> tuple[Wheels | None, WheelJoints]:
     """Choose the source of wheel data, and classify its joints; the firmware's odometry is last.
 
-    InputError if the requested topic contains no ticks.
+    Before it come arrays whose counters are found by their values alone. InputError if the
+    requested topic contains no ticks.
     """
     known = ((), ()) if source is None else tuple(wheel_names(source, side) for side in SIDES)
-    able = sorted(contents.wheels, key=lambda each: each.gives == "odometry")
+    able = sorted(contents.wheels, key=lambda each: (each.gives == "odometry", bool(each.places)))
     able = able if wish is None else [wished_ticks(contents, wish)]
     found: list[tuple[Wheels, WheelJoints]] = []
     for each in able:

@@ -8,8 +8,10 @@ removals are whole lines. A flow-style block is rewritten as a whole.
 
 from __future__ import annotations
 
+import functools
 import io
 import json
+import operator
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -32,22 +34,22 @@ _WIDTH = 110
 
 def with_values(
     text: str,
-    place: tuple[str, str],
+    place: tuple[str, ...],
     values: Mapping[str, Value],
     order: Sequence[str],
     effects: Sequence[AppliedEffect] | None = None,
 ) -> str:
     """Set `values`, and exactly these effects, in the block at `place`.
 
-    `place`: key of the node, and below it that of its parameters. `values`: equal values are left
+    `place`: keys down to the block, the last but one the node's. `values`: equal values are left
     untouched. `order`: a new name is inserted after its nearest predecessor in this order.
     `effects`: default: the existing ones are kept.
     """
     text = text if text.endswith("\n") else f"{text}\n"
     yaml = round_trip()
-    given = yaml.load(text)[place[0]][place[1]]
-    above = _child(yaml.compose(io.StringIO(text)), place[0])
-    node = _child(above, place[1])
+    given = functools.reduce(operator.getitem, place, yaml.load(text))
+    above = functools.reduce(_child, place[:-1], yaml.compose(io.StringIO(text)))
+    node = _child(above, place[-1])
     if node.flow_style:
         new = {**_tree(given), **values}
         new = new if effects is None else _with_effects(new, effects)

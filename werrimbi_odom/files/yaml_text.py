@@ -10,6 +10,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.composer import Composer
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.events import (
     AliasEvent,
@@ -20,6 +21,7 @@ from ruamel.yaml.events import (
     SequenceEndEvent,
     SequenceStartEvent,
 )
+from ruamel.yaml.nodes import MappingNode, Node
 from ruamel.yaml.scalarbool import ScalarBoolean
 
 from werrimbi_odom.errors import InputError
@@ -37,17 +39,46 @@ _READ_OTHERWISE = re.compile(
 does not accept 0o, 0b or 1_000."""
 
 
+class BlocksInParts(Composer):
+    """Blocks that are there twice under one key are one, as to ROS, which goes by full names."""
+
+    def __init__(self, loader: Any = None) -> None:
+        super().__init__(loader)
+        self.joined: list[str] = []
+        """Keys of such blocks."""
+
+    def compose_mapping_node(self, anchor: Any) -> Any:
+        """Compose a block, its parts joined."""
+        node = super().compose_mapping_node(anchor)
+        node.value = self._join(node.value)
+        return node
+
+    def _join(self, pairs: list[tuple[Node, Node]]) -> list[tuple[Node, Node]]:
+        kept: list[tuple[Node, Node]] = []
+        blocks: dict[object, MappingNode] = {}
+        for key, value in pairs:
+            first = blocks.setdefault(key.value, value) if isinstance(value, MappingNode) else value
+            if first is value:
+                kept.append((key, value))
+            else:
+                self.joined.append(str(key.value))
+                first.value = self._join([*first.value, *value.value])
+        return kept
+
+
 def round_trip() -> YAML:
     """YAML reader and writer that keeps comments, order, quotes and number formats."""
     yaml = YAML(typ="rt", pure=True)
+    yaml.Composer = BlocksInParts
     yaml.preserve_quotes = True
     yaml.width = 4096
     return yaml
 
 
-def load(text: str, path: Path) -> CommentedMap:
-    """Parse a text with one mapping; its keys have line numbers (see `line_of`).
+def load(text: str, path: Path) -> tuple[CommentedMap, tuple[str, ...]]:
+    """Parse a text with one mapping, and remark on blocks in parts.
 
+    Its keys have line numbers (see `line_of`).
     InputError if the text is empty, not YAML, not a mapping, or uses features that parameter files
     do not need and attackers do: aliases, tags, deep nesting, several documents.
     """
@@ -78,7 +109,8 @@ def load(text: str, path: Path) -> CommentedMap:
         raise InputError(f"{path} is empty; config/robot.yaml is an example to start from")
     if not isinstance(content, CommentedMap):
         raise InputError(f"{path}: a robot file begins with the node's name and a colon")
-    return content
+    twice = dict.fromkeys(yaml.composer.joined)
+    return content, tuple(f"{key} is there twice; its parts are read as one" for key in twice)
 
 
 def _refuse_the_unusual(yaml: YAML, text: str, path: Path) -> None:

@@ -60,9 +60,10 @@ def event_words(event: Event, track: float, *, either: bool) -> str:
     if event.channel == "reference":
         how = "and stayed there" if event.stays else "and was right again at the next pose"
         return f"the reference jumped by {size} {how}"
-    if either:
+    if either or event.beside_lost:
         how = {"heading": "in heading"}.get(event.channel, event.channel)
-        return f"the robot or the reference jumped by {size} {how}"
+        lost = " (just by a stretch in which its scans were lost)" if event.beside_lost else ""
+        return f"the robot or the reference jumped by {size} {how}{lost}"
     slipped = _slipped(event, track)
     if slipped is not None:
         return slipped

@@ -92,6 +92,13 @@ def next_step(found: Info) -> tuple[str, str]:
         return "Record again while the robot drives.", ""
     if found.given is None and found.written is None:
         if not found.first.has_sizes:
+            if all(each.wheels is not None and each.wheels.gives == "odometry" for each in usable):
+                return (
+                    "Next: write the wheel_separation and the wheel_radius that its driver works "
+                    "with into a robot file (config/robot.yaml is one to copy), and give it with "
+                    "--robot: by them its odometry is turned back into travel of the wheels. A "
+                    "ruler tells how far they are right, and so does this."
+                ), ""
             return (
                 "Next: measure the wheels' radius and the distance between them, enter both in a "
                 "robot file (config/robot.yaml is one to copy), and give it with --robot. Or give "

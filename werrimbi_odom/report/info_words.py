@@ -10,6 +10,7 @@ from typing import Any
 
 from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS, SCAN
+from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.stamps import Stamps
@@ -21,6 +22,8 @@ from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
 from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
+_WITHOUT_FORM = ("std_msgs/msg/String", *FLOATS, *ARRAYS)
+"""Types in which anything may be sent, and so a pose."""
 _WANDERS = 0.1  # reported variation of the delay from stamp to receipt [s]
 
 
@@ -98,12 +101,30 @@ def _references(held: Held) -> Iterator[str]:
         else:
             yield f"No reference: {each.name}, {each.why}."
     yield from (
-        f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
+        f"No reference{'' if name in held.contents.moved else ' as it is'}: {name}, {what}."
+        for name, what in other_scans(held.contents)
     )
     yield from _gyro_in_odometry(held)
     if held.reference is None:
         but = " but its own wheels" if held.wheels is not None else ""
-        yield f"Nothing that is read in the bag measures the robot{but}."
+        yield f"Nothing that is read in the bag measures the robot{but}.{_unread_sensors(held)}"
+
+
+def _unread_sensors(held: Held) -> str:
+    """Topics whose names tell of a sensor or of poses, of types that are not read."""
+    assert held.contents is not None
+    may = [
+        topic_in_words(each)
+        for each in held.contents.topics
+        if each.kind in _WITHOUT_FORM and names_a_measurement(each.name)
+    ]
+    if not may:
+        return ""
+    return (
+        f" By name {listed(may)} may: written as rows of t_s (when each was received), x_m, y_m "
+        "and yaw_rad into the reference.csv of a folder, --reference FOLDER gives them to compare "
+        "and diagnose."
+    )
 
 
 def _gyro_in_odometry(held: Held) -> Iterator[str]:
@@ -137,8 +158,15 @@ def _clock(name: str, stamps: Stamps) -> str:
             f"± {_ms(stamps.received_jitter)}"
         )
     else:
-        pair = f"± {_ms(stamps.jitter)} against ± {_ms(stamps.received_jitter)} of receipt"
-        if stamps.believed == "header":
+        own, receipt = _ms(stamps.jitter), _ms(stamps.received_jitter)
+        pair = f"± {own} against ± {receipt} of receipt"
+        if stamps.alike:
+            both = own if own == receipt else f"{own} and {receipt}"
+            words = (
+                f"Stamps of {name}: the headers are used; by their evenness either clock will do "
+                f"(intervals vary by ± {both})"
+            )
+        elif stamps.believed == "header":
             words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"
         else:
             words = (
@@ -239,14 +267,13 @@ def wheels_words(held: Held) -> str:
         told = f", on the left {listed(joints.left)}, on the right {listed(joints.right)}"
     elif wheels.joints:
         told = f"; no name says which joint is a wheel: {listed(wheels.joints)}"
+    if wheels.places:
+        left, right = wheels.places
+        told = (
+            f": of its values, counted from 0, number {left} as the left wheel's and {right} as "
+            f"the right one's; --ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
+        )
     return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
-
-
-_READ_ONLY_IF = {
-    tuple(ARRAYS): "if it holds two values, the counters of the left and the right wheel",
-    tuple(PAIRS): "where each wheel has a topic (--ticks-topic LEFT,RIGHT)",
-}
-"""Types of counters that do not always tell of both wheels, and when they do."""
 
 
 def _unread(held: Held) -> str:
@@ -259,15 +286,17 @@ def _unread(held: Held) -> str:
         if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
     ]
     words = [
-        f" By name {topic_in_words(each)} may: if its two values count both wheels, --ticks-topic "
-        f"{each.name} reads them."
+        f" By name {topic_in_words(each)} may: if two of its values count the wheels, "
+        f"--ticks-topic {each.name}:0:1 reads the first two, and other numbers others."
         for each in may
-        if each.kind in FLOATS
+        if each.kind in (*ARRAYS, *FLOATS)
     ]
-    for kinds, why in _READ_ONLY_IF.items():
-        if named := [topic_in_words(each) for each in may if each.kind in kinds]:
-            words.append(f" By name {listed(named)} may, but such a type is read only {why}.")
-    read = {*FLOATS, *(kind for kinds in _READ_ONLY_IF for kind in kinds)}
+    if named := [topic_in_words(each) for each in may if each.kind in PAIRS]:
+        words.append(
+            f" By name {listed(named)} may, but such a type is read only where each wheel has a "
+            "topic (--ticks-topic LEFT,RIGHT)."
+        )
+    read = (*ARRAYS, *FLOATS, *PAIRS)
     others = [topic_in_words(each) for each in may if each.kind not in read]
     if others:
         verb = "is" if len(others) == 1 else "are"

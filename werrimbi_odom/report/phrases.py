@@ -142,6 +142,14 @@ def remark_words(remark: ReferenceRemark) -> str:
             "large as the way itself. It is the reference of another robot or another drive, its "
             "clock is far off, or its topic is not where the robot is."
         )
+    if remark.what == "scale":
+        return (
+            f"By the wheels, with this robot file, these drives are {remark.usual:.3g} m long, and "
+            f"by the reference {remark.size:.3g} m, part by part alike: wheel_radius is "
+            f"{remark.size / remark.usual:.3g} times what is entered, or a turn has "
+            f"{remark.usual / remark.size:.3g} times the counts (or the reference is not in "
+            "metres). They hardly turn, so that nothing else can be told with such sizes."
+        )
     if remark.what == "no_turn":
         shown, turned = (f"{math.degrees(each):.0f}°" for each in (remark.size, remark.usual))
         return (

@@ -4,8 +4,9 @@
 
 Odometry that is judged by odometry is always right. Most such references are recognised by name and
 frame (`Run.circle`). Here all references are tested by their distance to the wheels' path length
-between two instants. Headings refuse nothing, as those of a robot's own odometry often come from a
-gyro. A reference that differs from the wheels by less than any wheels' own noise is suspect.
+between two instants. Headings refuse only what has the counts' own rounding in them, as those of a
+robot's own odometry often come from a gyro. A reference that differs from the wheels by less than
+any wheels' own noise is suspect.
 """
 
 from __future__ import annotations
@@ -39,6 +40,9 @@ class Closeness(NamedTuple):
     turns_apart: float
     """Typical difference of the turn over such a path, after fitting both wheels and the delay
     [rad]; infinite where headings are not measured."""
+    turns_rounding: float
+    """Standard deviation of such a turn from the quantisation of the counters [rad]; 0 if they are
+    not quantised."""
 
 
 def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
@@ -56,6 +60,14 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
             f"{found.way:.2g} m, closer than their counts tell the way themselves "
             f"({_small(found.rounding)}): it was made from the same counts, and cannot judge them "
             "(--force takes it all the same)"
+        )
+    if found is not None and found.turns_apart < rules.CIRCLE_EXACT * found.turns_rounding:
+        what = run.circle or "the reference"
+        raise InputError(
+            f"{run.path}: {what}: its headings agree with the wheels to "
+            f"{1e3 * found.turns_apart:.2g} mrad in {found.way:.2g} m, closer than their counts "
+            f"tell the turn themselves ({1e3 * found.turns_rounding:.2g} mrad): it was made from "
+            "the same counts, and cannot judge them (--force takes it all the same)"
         )
     if found is not None and not found.rounding and found.apart < rules.CIRCLE_FINEST * found.way:
         what = run.circle or "the reference"
@@ -123,14 +135,19 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     # Where it is not known, the sign of the motion is taken from the wheels.
     sign = 1.0 if known else np.where(wheels.sum(axis=-1) < 0.0, -1.0, 1.0)
     best = min(float(_typical(sign * each, wheels).min()) for each in ways)
-    turned = np.inf
+    turned, apart_a_metre = np.inf, 0.0
     if turning.sum() > rules.CIRCLE_FEWEST:
         turned = float(_typical(turns[turning], wheels[:, turning]).min())
+        # The base that was entered may be off; how far both wheels roll apart for a turn is seen.
+        rolled_apart = float(np.abs(np.diff(wheels[-1][turning], axis=-1)).sum())
+        apart_a_metre = float(np.abs(turns[turning]).sum()) / max(rolled_apart, robot.left_tick)
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
     rolled = 0.5 * float(np.abs(wheels[-1]).sum())
     scale = float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 1.0
     way = float(np.median(np.abs(ways[0])))
-    return Closeness(best, way, scale * _rounding(run, robot), turned)
+    rounding = _rounding(run, robot)
+    # A way is half the sum of two readings, and wheels roll apart by their difference.
+    return Closeness(best, way, scale * rounding, turned, 2.0 * rounding * apart_a_metre)
 
 
 def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:

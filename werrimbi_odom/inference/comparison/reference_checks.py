@@ -31,12 +31,20 @@ _PAIRED = 100
 """Stretches of a drive whose pairwise slopes are used (Theil-Sen)."""
 
 What = Literal[
-    "another_drive", "no_turn", "places", "short", "sideways", "sideways_by_place", "apart", "metre"
+    "another_drive",
+    "no_turn",
+    "places",
+    "scale",
+    "short",
+    "sideways",
+    "sideways_by_place",
+    "apart",
+    "metre",
 ]
 """Kind of anomaly. another_drive: nothing in common with the wheels; no_turn: headings that do not
-change; places: only its turns; short: path shorter (or longer) in places; sideways: constant angle
-between path and heading; sideways_by_place: such an angle in places; apart: an angle that grows;
-metre: another metric scale."""
+change; places: only its turns; scale: only its way, by a factor; short: path shorter (or longer) in
+places; sideways: constant angle between path and heading; sideways_by_place: such an angle in
+places; apart: an angle that grows; metre: another metric scale."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +67,10 @@ class ReferenceRemark:
 
     what: What
     size: float
-    """short, metre: relative path length error, negative if shorter; else an angle [rad]."""
+    """short, metre: relative path length error, negative if shorter; scale: its path [m]; else an
+    angle [rad]."""
     usual: float = 0.0
-    """Value over the normal stretches; no_turn: what the wheels turned [rad]."""
+    """Value over the normal stretches; no_turn: turn by the wheels [rad]; scale: their way [m]."""
     stretches: tuple[Stretch, ...] = ()
     """Stretches concerned; empty if all."""
 

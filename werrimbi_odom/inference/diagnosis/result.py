@@ -94,7 +94,7 @@ class Diagnosis:
     @property
     def of_another_drive(self) -> bool:
         """Whether wheels and reference have at most their turns in common: there is no result."""
-        nothing = ("another_drive", "no_turn", "places")
+        nothing = ("another_drive", "no_turn", "places", "scale")
         return any(remark.what in nothing for remark in self.remarks)
 
     @property

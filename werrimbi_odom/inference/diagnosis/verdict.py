@@ -8,6 +8,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import NamedTuple
 
+from werrimbi_odom.files.compared_ways import ways_of_one_scale
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import name_of_base
 from werrimbi_odom.inference.comparison.another_drive import (
@@ -188,11 +189,16 @@ def _answer(
 
 
 def _nothing_in_common(train: PreparedRuns, given: Model) -> ReferenceRemark:
-    """What a reference has in common with the wheels at most: its turns, or not even these."""
+    """What a reference has in common with the wheels at most: its turns, its way, or neither."""
     if turns_alike(train, given):
         return ReferenceRemark("places", 0.0)
     if (turns := unturned(train, given)) is not None:
         return ReferenceRemark("no_turn", *turns)
+    ways = [ways_of_one_scale(run, given.robot) for run in train.runs]
+    if alike := [each for each in ways if each is not None]:
+        rolled, seen = (sum(each) for each in zip(*alike, strict=True))
+        if max(rolled, seen) > rules.ORDINARY * min(rolled, seen):
+            return ReferenceRemark("scale", seen, rolled)
     return ReferenceRemark("another_drive", 0.0)
 
 

@@ -18,7 +18,7 @@ from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
-from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
+from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 
@@ -56,6 +56,8 @@ class Event:
     """Whether the error stayed; else the reference was right again at the next pose."""
     p_value: float
     """P-value, corrected for all instants and shapes tested (Bonferroni)."""
+    beside_lost: bool = False
+    """Whether it is close to a stretch in which a lidar's scans could not be matched."""
 
 
 class Way(NamedTuple):
@@ -252,7 +254,14 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
         (float(runs.finish[first, 0]), float(runs.finish[first, 1])),
         not spike,
         min(steps.p_values[index] for index in group),
+        _is_beside_lost(own.record, seen),
     )
+
+
+def _is_beside_lost(record: AlignedRun, seen: float) -> bool:
+    rows = np.flatnonzero(record.gap)
+    edges = record.measured.time[np.concatenate([rows, rows + 1])]
+    return record.measured.own_axes and bool((np.abs(edges - seen) < rules.BESIDE_LOST).any())
 
 
 def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:

@@ -49,6 +49,11 @@ EVENT_ROUNDS = 2
 """Most repetitions of the search without the events. Chosen: without them the noise is smaller, so
 a few smaller ones are found; with these left out no more are."""
 
+BESIDE_LOST = 2.0
+"""Time from a stretch in which a lidar was lost, within which a step may as well be its own [s]: a
+match that slides does so before none is found, and again until the map is new. In a hall, behind a
+person, poses erred for 0.8 s before and 1.5 s after."""
+
 JOLT = 50.0
 """Acceleration that nothing gives to a robot [m/s^2]: a measurement with more jumped itself.
 Chosen: five times gravity; a push of 30 mm in 0.1 s has 6, one in a single interval at 20 Hz 24."""

@@ -28,6 +28,11 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
                 "Next: turn the robot by hand once about, from a line on the floor back onto it: "
                 "the reference's heading must turn by 360° with it.",
             ]
+        if any(remark.what == "scale" for remark in diagnosis.remarks):
+            return [
+                "Nothing more can be told of the robot from these drives.",
+                "Next: mend that in the robot file, and diagnose again.",
+            ]
         unrelated = any(remark.what == "another_drive" for remark in diagnosis.remarks)
         mend = " Give the reference of the same drive." if unrelated else ""
         return [
