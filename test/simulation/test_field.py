@@ -16,6 +16,8 @@ from rosbags.highlevel import AnyReader
 import werrimbi_odom as wo
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.simulation.bag import EPOCH
 
 ROBOT = sim.TrueRobot()
@@ -116,6 +118,18 @@ def test_the_bag_holds_what_was_seen(tmp_path: Path) -> None:
     parts = [message.transforms[0] for message in found["/tf"]]  # type: ignore[attr-defined]
     frames = {(part.header.frame_id, part.child_frame_id) for part in parts}
     assert frames == {("map", "odom"), ("odom", "base_link")}
+
+
+def test_its_scans_tell_by_their_receipt_that_their_clock_is_that_of_the_wheels(
+    tmp_path: Path,
+) -> None:
+    """Their times of receipt have a way of their own, as those of any recorder."""
+    folder = sim.write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    wo.info(folder, out=tmp_path / "robot.yaml")
+    file = read_robot_file(tmp_path / "robot.yaml")
+    reference = read_run(folder, file, reference_topic="/scan").reference
+    assert reference is not None
+    assert reference.one_rate
 
 
 def test_the_positions_of_the_localiser_are_proposed_with_the_headings_of_the_gyro(

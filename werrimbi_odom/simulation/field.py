@@ -82,6 +82,8 @@ class FieldDrive:
     lidar: Lidar
     scans: Sweeps
     """The lidar and its scans; `scans.time` has the header stamps."""
+    scans_received: Floats
+    """Times of their reception, shape (n,)."""
     truth: dict[str, object] = field(default_factory=dict)
     """Ground truth for truth.json, which is not in the bag; times in the clock of the bag."""
 
@@ -161,8 +163,19 @@ def as_in_the_field(
     odometry = _dead_reckoned(left, right, robot)
     room = around(path.x_m, path.y_m, robot_seed)
     scans = scanned(path, room, _as_it_sits(sensors.lidar, exact.mount), seed)
+    whole = scans.time + 1.0 / sensors.lidar.rate_hz
     scans = replace(scans, time=scans.time + exact.delay)
-    return FieldDrive(recording.name, wheels, imu, localiser, odometry, sensors.lidar, scans, truth)
+    return FieldDrive(
+        recording.name,
+        wheels,
+        imu,
+        localiser,
+        odometry,
+        sensors.lidar,
+        scans,
+        _received(scans.time, whole, sensors, rng),
+        truth,
+    )
 
 
 def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:
@@ -191,8 +204,15 @@ def _by_the_bag(times: Sequence[float]) -> list[float]:
 def _stamped(at: Floats, sensors: FieldSensors, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Header stamps, sorted, and times of reception."""
     stamps = np.sort(at + sensors.stamp_jitter * rng.standard_normal(at.size))
-    received = np.maximum(stamps, at) + rng.exponential(sensors.latency, at.size)
-    return stamps, np.maximum.accumulate(received)
+    return stamps, _received(stamps, at, sensors, rng)
+
+
+def _received(
+    stamps: Floats, known: Floats, sensors: FieldSensors, rng: np.random.Generator
+) -> Floats:
+    """Times of reception, in the order sent, of what was measured by `known`."""
+    received = np.maximum(stamps, known) + rng.exponential(sensors.latency, stamps.size)
+    return np.asarray(np.maximum.accumulate(received))
 
 
 def _inserted(path: TruePath, row: int, more: Floats) -> TruePath:
