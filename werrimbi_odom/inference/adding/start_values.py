@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, for_fit
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.set_up.explanation import Setting, Wired, twins_of
-from werrimbi_odom.inference.set_up.factors import (
+from werrimbi_odom.inference.set_up.misentered_values import (
     base_words,
     is_ordinary,
     metre_words,
