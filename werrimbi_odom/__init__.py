@@ -50,12 +50,12 @@ if TYPE_CHECKING:
     from werrimbi_odom.api.arrays import write_run
     from werrimbi_odom.api.calibrate import calibrate_fit, calibrate_noise
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
+    from werrimbi_odom.api.compare_diagnose_add import add, compare, diagnose
     from werrimbi_odom.api.draft import draft
     from werrimbi_odom.api.drives import read_robot, read_run
     from werrimbi_odom.api.history import history
     from werrimbi_odom.api.info import info
     from werrimbi_odom.api.odom import odom, odometry
-    from werrimbi_odom.api.verbs import add, compare, diagnose
     from werrimbi_odom.effects.library import LIBRARY as EFFECTS
     from werrimbi_odom.errors import InputError
     from werrimbi_odom.model.effect import (
@@ -72,9 +72,9 @@ _WHERE = {
     "write_run": "api.arrays",
     "odom": "api.odom",
     "odometry": "api.odom",
-    "compare": "api.verbs",
-    "diagnose": "api.verbs",
-    "add": "api.verbs",
+    "compare": "api.compare_diagnose_add",
+    "diagnose": "api.compare_diagnose_add",
+    "add": "api.compare_diagnose_add",
     "draft": "api.draft",
     "calibrate_fit": "api.calibrate",
     "history": "api.history",

@@ -235,7 +235,7 @@ def test_effects_import_the_model_and_numpy_alone() -> None:
                     "werrimbi_odom.model.",
                     "werrimbi_odom.effects.functions",
                     "werrimbi_odom.effects.shapes",
-                    "werrimbi_odom.effects.twins",
+                    "werrimbi_odom.effects.indistinguishable_pairs",
                     "werrimbi_odom.effects.wheel_force",
                 )
                 assert node.module is not None

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start_values import drives_of
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis import penalised_likelihood
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of

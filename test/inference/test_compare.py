@@ -20,7 +20,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare, judged
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.model.robot import Robot

@@ -20,7 +20,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.common_cause import alike
 from werrimbi_odom.inference.events.events import Events, at_every_pose

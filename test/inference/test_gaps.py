@@ -18,7 +18,7 @@ from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.compare import compare
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations

@@ -20,7 +20,7 @@ from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figures_of, paths
-from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration

@@ -22,7 +22,7 @@ from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.start_values import drives_of
 from werrimbi_odom.inference.comparison.judged_legs import figures_of, statistics_of
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.effect_support import able
 from werrimbi_odom.inference.diagnosis.splitting import set_aside

@@ -29,7 +29,7 @@ from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit

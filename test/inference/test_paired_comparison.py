@@ -12,7 +12,7 @@ import pytest
 from test.inference.driven import run_of
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.model.robot import Robot

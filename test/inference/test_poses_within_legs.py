@@ -15,7 +15,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import add_effects
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, finely, prepare
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import fitted
 from werrimbi_odom.inference.fitting import filtering, likelihood

@@ -13,7 +13,7 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.inference.comparison.prepared import for_fit, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import for_fit, prepare
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.matched_run import MatchedRun

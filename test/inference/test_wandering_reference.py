@@ -11,7 +11,7 @@ import pytest
 
 from test.inference.test_homogeneity import ROBOT, driven, nothing
 from test.inference.test_local_map_errors import TRUE, WALK, session
-from werrimbi_odom.api.verbs import as_judged
+from werrimbi_odom.api.compare_diagnose_add import as_judged
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings

@@ -17,7 +17,7 @@ from werrimbi_odom.model.covariance import (
     piece_covariance,
     plus,
 )
-from werrimbi_odom.model.moments import PathMoments, chained, from_covariance, piece_moments
+from werrimbi_odom.model.exact_moments import PathMoments, chained, from_covariance, piece_moments
 from werrimbi_odom.model.motion import BodyMotion, displacement
 
 Pieces = list[tuple[BodyMotion[float], PathNoise[float]]]

@@ -22,7 +22,12 @@ from werrimbi_odom.inference.calibration.any_driving import Calibration, calibra
 from werrimbi_odom.inference.calibration.noise_likelihood import design
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit, judged_by, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import (
+    PreparedRuns,
+    for_fit,
+    judged_by,
+    prepare,
+)
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving

@@ -22,9 +22,9 @@ from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.api.compare_diagnose_add import add, diagnose
 from werrimbi_odom.api.drives import Options, read_robot, read_run
 from werrimbi_odom.api.result import Result
-from werrimbi_odom.api.verbs import add, diagnose
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_writing import BagWriter
 from werrimbi_odom.files.run import Run, Ticks

@@ -34,8 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, fit, evaluate, write; return 0."""
+    from werrimbi_odom.api.compare_diagnose_add import added, effects_of, refuse_unearned
     from werrimbi_odom.api.next_command import next_command
-    from werrimbi_odom.api.verbs import added, effects_of, refuse_unearned
     from werrimbi_odom.cli.progress import share_done
 
     given = read_recordings(arguments)

@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, report; return 0."""
-    from werrimbi_odom.api.verbs import compared
+    from werrimbi_odom.api.compare_diagnose_add import compared
 
     _, result = on_recordings(arguments, "comparing", compared)
     write_and_tell(arguments, result)

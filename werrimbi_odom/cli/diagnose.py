@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.fleet is not None:
         return run_fleet(arguments)
     _ask_for_robot_and_runs(arguments)
-    from werrimbi_odom.api.verbs import diagnosed
+    from werrimbi_odom.api.compare_diagnose_add import diagnosed
 
     _, result = on_recordings(arguments, "diagnosing", diagnosed)
     write_and_tell(arguments, result)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.twins import turning_the_wrong_way
+from werrimbi_odom.effects.indistinguishable_pairs import turning_the_wrong_way
 from werrimbi_odom.model.effect import Sketch, reference_effect
 from werrimbi_odom.model.reference_view import View
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.twins import askew
+from werrimbi_odom.effects.indistinguishable_pairs import askew
 from werrimbi_odom.model.effect import Parameter, Sketch, reference_effect
 from werrimbi_odom.model.reference_view import View
 

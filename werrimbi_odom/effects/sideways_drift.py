@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.effects.twins import askew
+from werrimbi_odom.effects.indistinguishable_pairs import askew
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number

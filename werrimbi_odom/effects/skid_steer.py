@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.twins import as_a_wider_base, turning_about_another_point
+from werrimbi_odom.effects.indistinguishable_pairs import (
+    as_a_wider_base,
+    turning_about_another_point,
+)
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number

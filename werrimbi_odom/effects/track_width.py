@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.twins import own_scale, radii_over_base
+from werrimbi_odom.effects.indistinguishable_pairs import own_scale, radii_over_base
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number

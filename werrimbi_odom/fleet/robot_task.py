@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
+from werrimbi_odom.api.compare_diagnose_add import diagnosed
 from werrimbi_odom.api.drives import refuse_circles
-from werrimbi_odom.api.verbs import diagnosed
 from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, read

@@ -3,8 +3,8 @@
 """The numeric core: numpy alone; no ROS, no files, no plots. Units are SI (REP-103).
 
 Reading order: `motion` (travel to displacement), `covariance` (one piece in closed form),
-`uncertainty` and `moments` (along a path), `encoder_online` (counters to travel), `pieces_online`
-(where a piece ends), `odometer` (all of it, message by message). `encoder_recorded`,
+`uncertainty` and `exact_moments` (along a path), `encoder_online` (counters to travel),
+`swing_filter` (where a piece ends), `odometer` (all of it, message by message). `encoder_recorded`,
 `pieces_recorded` and `trajectory` do the same for a whole run at once. `robot` holds the parameters
 of a robot. `effect` defines an effect, `drive` the quantities that it may read.
 """

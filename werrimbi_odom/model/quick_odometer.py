@@ -21,11 +21,11 @@ from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pace import REMEMBERED
 from werrimbi_odom.model.pieces import OpenPiece, Piece, kind_of
-from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reading_checks import Reading
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import Marching
+from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.model.uncertainty import Uncertainty
 from werrimbi_odom.model.wiring import Wiring
 

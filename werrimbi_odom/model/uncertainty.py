@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Generic, NamedTuple
 
 from werrimbi_odom.model.covariance import CERTAIN, PathNoise, PoseCovariance, after_stretch
-from werrimbi_odom.model.moments import PathMoments, chained, from_covariance, piece_moments
+from werrimbi_odom.model.exact_moments import PathMoments, chained, from_covariance, piece_moments
 from werrimbi_odom.model.motion import BodyMotion, Number, chord_of, displacement
 from werrimbi_odom.model.robot import CovarianceOrder
 

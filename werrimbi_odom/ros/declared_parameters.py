@@ -6,10 +6,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
-from rclpy.parameter import Parameter as Given
+from rclpy.parameter import Parameter
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as robot_file
@@ -32,13 +33,18 @@ def within(
     return NodeParameter(name, default, says, unit=unit, minimum=minimum, maximum=maximum)
 
 
+def given_to(node: Node) -> dict[str, Any]:
+    """Values that a node was started with, by parameter."""
+    with node.handle:
+        return {name: item.value for name, item in node.handle.get_parameters(Parameter).items()}
+
+
 def declared(node: Node, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
     """Declare every parameter, with the values that the node was started with.
 
     InputError if any is unknown or invalid; the message names all of them.
     """
-    with node.handle:
-        given = {name: item.value for name, item in node.handle.get_parameters(Given).items()}
+    given = given_to(node)
     known = {item.name: item for item in parameters}
     wrong = [
         _unknown(name, list(known))

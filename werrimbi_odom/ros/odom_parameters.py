@@ -23,9 +23,10 @@ from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.files.other_drivers_parameters import is_of_diff_drive
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder_online import EncoderLimits
-from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.ros.counter_inputs import robot_at_counters
+from werrimbi_odom.ros.declared_parameters import given_to
 from werrimbi_odom.ros.live_odometer import rehearse
 
 CHANGEABLE = frozenset(
@@ -95,11 +96,9 @@ def declared(node: Node) -> Settings:
 
     InputError if any is missing, unknown or invalid; the message names all of them.
     """
-    with node.handle:
-        given = {name: item.value for name, item in node.handle.get_parameters(Parameter).items()}
     own = {
         name: value
-        for name, value in given.items()
+        for name, value in given_to(node).items()
         if not (name.startswith(_QOS) or node.has_parameter(name))
     }
     values, effects = settings = settings_of(own, node.get_fully_qualified_name())
@@ -183,8 +182,7 @@ def has_virtual_ticks(values: Mapping[str, Value]) -> bool:
 
 def leftover_qos_overrides(node: Node) -> list[str]:
     """Overrides of a QoS that no topic of the node uses: misspelt ones."""
-    with node.handle:
-        given = node.handle.get_parameters(Parameter)
+    given = given_to(node)
     return [name for name in given if name.startswith(_QOS) and not node.has_parameter(name)]
 
 

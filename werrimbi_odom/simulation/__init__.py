@@ -12,13 +12,13 @@ True
 
 Reading order: `robot` (the true robot), `manoeuvres` (commands), `chassis` and `engine` (the
 physics), `sensors` (measurements), `recorder` (wheel noise) and `recording` (one drive),
-`sessions` (a set of drives), `live` (driven by commands as they arrive), `field` (recorded without
-motion capture), `hidden` (hidden effects as test data).
+`sessions` (a set of drives), `live` (driven by commands as they arrive), `field_drive` (recorded
+without motion capture), `hidden` (hidden effects as test data).
 """
 
 from .engine import AxlePose, TruePath, UnstableError
-from .field import FieldDrive, FieldSensors, as_in_the_field
 from .field_bag import write_field_bag
+from .field_drive import FieldDrive, FieldSensors, as_in_the_field
 from .hidden import (
     CATALOGUE,
     Hidden,

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .bag import Messages
-from .field import FieldDrive
+from .field_drive import FieldDrive
 from .robot import TrueRobot, joints
 
 TOPICS = {

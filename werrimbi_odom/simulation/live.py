@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from .engine import PERIOD, AxlePose, DrivenRobot, Floats, TruePath
-from .field import FieldSensors, gyro_of
+from .field_drive import FieldSensors, gyro_of
 from .hidden.hidden_effect import Peculiarity
 from .lidar import Room, sweeps_at
 from .recorder import counter_zeros, motor_speeds, prepared, stream

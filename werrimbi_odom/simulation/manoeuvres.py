@@ -172,15 +172,10 @@ def arcs(
     return moves("arcs", steps, pace)
 
 
-def pivots(
-    angle: float = math.pi, *, base: float = 0.35, pace: MoveLimits | None = None
-) -> Manoeuvre:
-    """Turns about one wheel at rest, both wheels, both directions; `base` [m] is the wheel base."""
-    half = base / 2
-    steps = [
-        (along * half * angle, turn * angle) for along, turn in ((1, 1), (-1, -1), (1, -1), (-1, 1))
-    ]
-    return moves("pivots", [(float(a), float(b)) for a, b in steps], pace)
+def pivots() -> Manoeuvre:
+    """Half turns about one wheel at rest, both wheels, both directions, on a base of 0.35 m."""
+    ways = ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0))
+    return moves("pivots", [(along * 0.175 * math.pi, turn * math.pi) for along, turn in ways])
 
 
 def start_stop(

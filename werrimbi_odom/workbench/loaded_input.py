@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from werrimbi_odom.api.verbs import compared
+from werrimbi_odom.api.compare_diagnose_add import compared
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from werrimbi_odom.api.verbs import added as added_by
-from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
+from werrimbi_odom.api.compare_diagnose_add import added as added_by
+from werrimbi_odom.api.compare_diagnose_add import diagnosed as diagnosis_of
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.diagnosis.response_curve import before_after
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis

@@ -30,7 +30,7 @@ from werrimbi_odom.inference.adding.start_values import FitDrives, drives_of, wi
 from werrimbi_odom.inference.calibration_parametrisation import base_name, robot_for_cutting
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.calibration_selection import (
     FreeSizes,

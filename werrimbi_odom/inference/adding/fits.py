@@ -20,7 +20,6 @@ from werrimbi_odom.inference.adding.fitted_parameters import (
 from werrimbi_odom.inference.adding.start_values import (
     FitDrives,
     Start,
-    mistake_put_in,
     parameters_held,
     start_of_held,
     starts,
@@ -106,8 +105,8 @@ def fits_of(
                 item for item in begun.effects if item.name in also or item.name not in names
             )
             robot = replace(begun, effects=rest)
-        for effect in mended:
-            robot = mistake_put_in(robot, effect)
+        for effect in mended:  # a mistake comes before all other effects
+            robot = replace(robot, effects=(effect.using(), *robot.effects))
         start = start_of_held(drives, robot, (*also, *(effect.name for effect in mended)))
         numbers = start.numbers
         for effect in sought:

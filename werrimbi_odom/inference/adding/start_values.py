@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, for_fit
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, for_fit
 from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs
 from werrimbi_odom.inference.diagnosis.forward_selection import as_given
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
@@ -42,7 +42,7 @@ from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES
 from werrimbi_odom.inference.set_up.search import SetUp
-from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 
@@ -198,11 +198,6 @@ def start_of_held(drives: FitDrives, robot: Robot, names: tuple[str, ...]) -> St
     """A start at the values of the robot."""
     point, numbers = drives.begin(robot)
     return Start(point, names, numbers)
-
-
-def mistake_put_in(robot: Robot, effect: Effect) -> Robot:
-    """The robot with a set-up mistake corrected; it comes before all other effects."""
-    return replace(robot, effects=(AppliedEffect(effect), *robot.effects))
 
 
 def parameters_held(

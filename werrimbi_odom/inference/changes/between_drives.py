@@ -31,7 +31,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import Score, candidates, scores
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.set_up.factors import is_ordinary
+from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.model.effect import Effect, extended_by
 
 

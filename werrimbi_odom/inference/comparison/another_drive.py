@@ -11,7 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.model.pose import Floats, wrap_all
 

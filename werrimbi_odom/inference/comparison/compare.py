@@ -21,7 +21,7 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     squared_deviation,
     statistics,
 )
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, prepare
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.comparison.systematic import (

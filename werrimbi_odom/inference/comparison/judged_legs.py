@@ -18,7 +18,7 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     joined,
     statistics,
 )
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, finely, judged_by
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, jumped_in
 from werrimbi_odom.inference.comparison.residuals import Residual, residuals_of
 from werrimbi_odom.inference.distributions import fisher_survival

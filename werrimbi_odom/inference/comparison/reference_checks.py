@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.cutting import leg_ends

@@ -23,13 +23,12 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import robot_for_cutting
-from werrimbi_odom.inference.comparison.prepared import for_fit
+from werrimbi_odom.inference.comparison.prepared_runs import for_fit
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
 from werrimbi_odom.inference.diagnosis.effects_of_robot_file import outdated, rivals_of_held
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
-from werrimbi_odom.inference.diagnosis.exchange import exchanged
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
     Round,
@@ -44,6 +43,7 @@ from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
+from werrimbi_odom.inference.diagnosis.sequential_replacement import exchanged
 from werrimbi_odom.inference.diagnosis.verdict import diagnosis_of
 from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events

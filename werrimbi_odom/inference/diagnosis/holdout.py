@@ -13,7 +13,12 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns, finely, judged_by, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import (
+    PreparedRuns,
+    finely,
+    judged_by,
+    prepare,
+)
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside

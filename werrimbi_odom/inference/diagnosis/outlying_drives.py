@@ -19,7 +19,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import judged_legs
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.search import look_for_mistakes

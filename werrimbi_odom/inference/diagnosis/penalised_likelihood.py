@@ -42,7 +42,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, Directions, determined
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point, stacked
 from werrimbi_odom.inference.linear import SILENT, nuisance
-from werrimbi_odom.inference.set_up.factors import is_ordinary
+from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.comparison.another_drive import (
     unturned,
 )
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.calibration_selection import (
     FreeSizes,

@@ -16,7 +16,7 @@ import numpy as np
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import Legs
-from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.inference.diagnosis.paired_comparison import Unit, error_of, promised_of
 from werrimbi_odom.inference.distributions import chi2_survival

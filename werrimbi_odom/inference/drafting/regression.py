@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sparse regression: select a few terms out of many, with a penalty that allows for the search.
 
+The effect of a term on the innovations is summed over each leg's steps and whitened. Of all terms
+of an amount only the Gram matrix and the products with the innovations are kept.
+
 Forward selection by orthogonal least squares: each round adds the term that lowers the squared
 innovations most beside the terms already selected (Chen, Billings and Luo, Int. J. Control 50,
 1989). It starts with each of the best terms in turn, since the best single term may not be in the
@@ -11,14 +14,76 @@ addition to the usual penalty (risk inflation criterion: Foster and George, Ann.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.linear import DETERMINED
+from werrimbi_odom.inference.diagnosis.evidence import BATCH, summed_over_legs
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount, step_jacobians
+from werrimbi_odom.inference.drafting.terms import Term
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
+from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.score_tests import residual_innovations
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
+from werrimbi_odom.inference.linear import DETERMINED, SILENT
 from werrimbi_odom.model.pose import Floats
+
+
+class Sums(NamedTuple):
+    """Products of the terms of an amount that the data determine."""
+
+    terms: tuple[Term, ...]
+    square: Floats
+    """Gram matrix of the terms, (k, k): columns of unit length, with the nuisances projected
+    out."""
+    cross: Floats
+    """Products with the projected innovations, (k,)."""
+    size: Floats
+    """Lengths of the columns, (k,): the coefficient of a term is that of its unit column divided by
+    this."""
+
+
+def sums_of(
+    runs: Concatenated,
+    point: Point,
+    numbers: Sequence[FreeParameter],
+    amount: Amount,
+    terms: Sequence[Term],
+) -> Sums:
+    """Sum the errors of all terms along the path, and whiten them.
+
+    `numbers`: nuisance parameters: what they can explain is no evidence.
+    """
+    prediction = predict_all(point.model, runs)
+    frame, rest = residual_innovations(runs, point, numbers, prediction)
+    of_left, of_right = step_jacobians(runs, path_of(point.model, runs), [amount], point)
+    told = unexpected(runs, point, prediction)
+    columns = np.empty((rest.size, len(terms)))
+    each = max(1, BATCH // max(runs.run_of_step.size, 1))
+    for begin in range(0, len(terms), each):
+        some = terms[begin : begin + each]
+        values = np.stack([term.values(0) for term in some], axis=-1)
+        change = summed_over_legs(runs, values, of_left)
+        if amount.of_wheels:
+            values = np.stack([term.values(1) for term in some], axis=-1)
+            change += summed_over_legs(runs, values, of_right)
+        marks = told.marks(change)[..., : len(some)]
+        columns[:, begin : begin + len(some)] = marks.reshape(rest.size, len(some))
+    size = np.sqrt(np.sum(columns**2, axis=0))
+    unit = columns / np.where(size > SILENT, size, 1.0)
+    explained = frame.basis.T @ unit
+    square = unit.T @ unit - explained.T @ explained
+    determined = (size > SILENT) & (np.diag(square) > DETERMINED**2)
+    kept: list[int] = np.flatnonzero(determined).tolist()
+    return Sums(
+        tuple(terms[index] for index in kept),
+        square[np.ix_(kept, kept)],
+        (unit.T @ rest)[kept],
+        size[kept],
+    )
 
 
 class Selected(NamedTuple):

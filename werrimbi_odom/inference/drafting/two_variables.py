@@ -38,8 +38,7 @@ from werrimbi_odom.inference.drafting.candidate_law import (
     with_values,
 )
 from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
-from werrimbi_odom.inference.drafting.normal_equations import Sums, sums_of
-from werrimbi_odom.inference.drafting.regression import selections
+from werrimbi_odom.inference.drafting.regression import Sums, selections, sums_of
 from werrimbi_odom.inference.drafting.terms import is_of_two, terms_of
 from werrimbi_odom.inference.drafting.two_variable_law import LawOfTwo
 from werrimbi_odom.inference.drafting.variable_source import signals_of

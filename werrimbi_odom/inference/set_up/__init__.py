@@ -3,5 +3,6 @@
 """The global search for set-up mistakes, which are too large to be found from a derivative.
 
 Reading order: `search`, `clock_offset_search`, `records` (cuts that need no scale), `regression`
-(wheels, base and mount in closed form), `explanation` and `factors` (the simplest mistake).
+(wheels, base and mount in closed form), `explanation` and `misentered_values` (the simplest
+mistake).
 """

@@ -11,8 +11,8 @@ from dataclasses import replace
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.inference.calibration_parametrisation import Sizes, sizes_of
 from werrimbi_odom.inference.set_up.explanation import Setting
-from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
+from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.model.effect import AppliedEffect, view_of, wiring_of
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot

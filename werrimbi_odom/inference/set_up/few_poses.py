@@ -24,8 +24,8 @@ from werrimbi_odom.inference.set_up.explanation import (
     setting_of,
     wirings,
 )
-from werrimbi_odom.inference.set_up.factors import FACTORS
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
+from werrimbi_odom.inference.set_up.misentered_values import FACTORS
 from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, effective_track
 from werrimbi_odom.inference.set_up.regression import errors, path_swept
 from werrimbi_odom.model.pose import Floats

@@ -11,16 +11,12 @@ from dataclasses import dataclass, field, replace
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.set_up.explanation import Setting, Wired, twins_of
-from werrimbi_odom.inference.set_up.factors import (
-    base_words,
+from werrimbi_odom.inference.set_up.misentered_values import (
+    factor_words,
     is_ordinary,
-    metre_words,
-    radius_words,
-    side_words,
     simple_factor,
     skid_words,
     skids,
-    turning_words,
 )
 
 Misfit = Callable[[Setting], float]
@@ -119,7 +115,7 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
             "unequal_wheel_radii",
             {"ratio": ratio},
             simple_factor(ratio),
-            side_words(side, share, simple_factor(share)),
+            factor_words(side, share),
             (),
             1.0,
             replace(setting, left=common, right=common),
@@ -129,7 +125,7 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
     values = {"multiplier": common}
     if yaw_alone:
         if not is_ordinary(common):
-            words = turning_words(common, factor)
+            words = factor_words("turning", common)
             name, twin = "wheel_radius_scale", "track_width"
             if skids(1.0 / common):  # blame the base: distances are right
                 name, twin, values = twin, name, {"multiplier": 1.0 / common}
@@ -140,16 +136,16 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
     wider = replace(setting, base=1.0)
     of_base = simple_factor(base)
     if odd_radius and odd_base and abs(math.log(common / base)) < math.log(rules.NEAR):
-        words = metre_words(common, factor)
+        words = factor_words("metre", common)
         without = replace(smaller, base=1.0)
         yield SetUpFinding("wheel_radius_scale", values, factor, words, (), 1.0, without)
         yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, without)
         return
     if odd_radius:
-        words = radius_words(common, factor)
+        words = factor_words("radius", common)
         yield SetUpFinding("wheel_radius_scale", values, factor, words, (), 1.0, smaller)
     if odd_base:
-        words = base_words(base, of_base)
+        words = factor_words("base", base)
         yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, wider)
 
 

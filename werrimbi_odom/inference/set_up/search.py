@@ -25,7 +25,6 @@ from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
-from werrimbi_odom.inference.set_up.factors import LENGTHS, counts_words, unit_of_positions
 from werrimbi_odom.inference.set_up.few_poses import is_sparse, search_sparse
 from werrimbi_odom.inference.set_up.findings import (
     IN_DEGREES,
@@ -33,6 +32,11 @@ from werrimbi_odom.inference.set_up.findings import (
     SetUpFinding,
     as_skid_steer,
     findings_of,
+)
+from werrimbi_odom.inference.set_up.misentered_values import (
+    LENGTHS,
+    counts_words,
+    unit_of_positions,
 )
 from werrimbi_odom.inference.set_up.poses import degrees_gain, search_poses
 from werrimbi_odom.inference.set_up.positions import search_positions

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
-from werrimbi_odom.inference.set_up.factors import is_ordinary
+from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes

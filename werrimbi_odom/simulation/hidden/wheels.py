@@ -19,8 +19,7 @@ Side = Literal["left", "right"]
 
 def with_wheel(chassis: Chassis, side: Side, **changes: float) -> Chassis:
     """`chassis` with another wheel on one side."""
-    wheel: WheelPlan = replace(getattr(chassis, side), **changes)
-    return replace(chassis, left=wheel) if side == "left" else replace(chassis, right=wheel)
+    return replace(chassis, **{side: replace(getattr(chassis, side), **changes)})
 
 
 @dataclass(frozen=True)

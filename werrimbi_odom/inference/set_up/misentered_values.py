@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from werrimbi_odom.inference import rules
 
@@ -109,25 +110,9 @@ def is_ordinary(value: float) -> bool:
     return abs(math.log(value)) <= math.log(rules.ORDINARY)
 
 
-def spoken(value: float) -> str:
-    """Format a factor for reading."""
-    return f"{value:.3g}" if value >= 1.0 else f"1/{1.0 / value:.3g}"
-
-
-def radius_words(value: float, factor: str | None) -> str:
-    """Sentence about a factor on both radii."""
-    return _words("both wheels' radius", value, factor, RADIUS, "look at radius, gear and encoder")
-
-
 def skids(base: float) -> bool:
     """Whether skidding wheels can explain such an effective base, relative to the true one."""
     return rules.ORDINARY < base < rules.MOST_OF_A_SKID
-
-
-def base_words(value: float, factor: str | None) -> str:
-    """Sentence about a factor on the base."""
-    words = _words("the wheel base", value, factor, BASE, "measure it anew")
-    return f"{words}; or {_SKID}" if skids(value) else words
 
 
 def skid_words(value: float) -> str:
@@ -138,42 +123,34 @@ def skid_words(value: float) -> str:
     )
 
 
-def metre_words(value: float, factor: str | None) -> str:
-    """Sentence about a common factor on radii and base."""
-    return _words(
+_OF_A_WHEEL = "the {0} encoder's counts of a turn or its gear were entered wrongly"
+_ENTERED: dict[str, tuple[str, Mapping[str, str], str]] = {
+    "radius": ("both wheels' radius", RADIUS, "look at radius, gear and encoder"),
+    "base": ("the wheel base", BASE, "measure it anew"),
+    "metre": (
         "radius and base alike",
-        value,
-        factor,
         METRE,
         "the reference's metre, or the robot file's, is not one",
-    )
+    ),
+    "turning": ("radius over base", {}, "radius or base were entered wrongly"),
+    **{
+        side: (f"the {side} wheel's travel alone", {}, _OF_A_WHEEL.format(side))
+        for side in ("left", "right")
+    },
+}
+"""By what a factor is on: its name, known causes by factor, and what is said of other factors;
+"turning" is for a reference that measures yaw alone."""
 
 
-def side_words(side: str, value: float, factor: str | None) -> str:
-    """Sentence about a factor on one wheel."""
-    return _words(
-        f"the {side} wheel's travel alone",
-        value,
-        factor,
-        {},
-        f"the {side} encoder's counts of a turn or its gear were entered wrongly",
-    )
-
-
-def turning_words(value: float, factor: str | None) -> str:
-    """Sentence about a factor on radii over base, where only yaw was measured."""
-    skid = f"; or {_SKID}" if skids(1.0 / value) else ""
-    return _words(
-        "radius over base",
-        value,
-        factor,
-        {},
-        f"radius or base were entered wrongly{skid}; yaw alone cannot tell which: drive a taped "
-        "distance",
-    )
-
-
-def _words(what: str, value: float, factor: str | None, made_by: dict[str, str], else_: str) -> str:
+def factor_words(on: str, value: float) -> str:
+    """Sentence about a factor on `radius`, `base`, `metre`, `turning`, or on one wheel's side."""
+    what, causes, else_ = _ENTERED[on]
+    factor = simple_factor(value)
     near = f", near {factor}" if factor else ""
-    cause = made_by.get(factor or "", else_)
-    return f"{what} is {spoken(value)} times what the robot file says{near}: {cause}"
+    times = f"{value:.3g}" if value >= 1.0 else f"1/{1.0 / value:.3g}"
+    cause = causes.get(factor or "", else_)
+    words = f"{what} is {times} times what the robot file says{near}: {cause}"
+    base = {"base": value, "turning": 1.0 / value}.get(on, 1.0)
+    words += f"; or {_SKID}" if skids(base) else ""
+    tell = "; yaw alone cannot tell which: drive a taped distance" if on == "turning" else ""
+    return words + tell

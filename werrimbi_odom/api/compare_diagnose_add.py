@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.comparison.compare import Comparison
-    from werrimbi_odom.inference.comparison.prepared import PreparedRuns
+    from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
     from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
     from werrimbi_odom.model.effect import Effect
