@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from test.inference.test_homogeneity import ROBOT, driven, nothing
+from test.inference.test_homogeneity import ROBOT, driven, nothing, wanders
 from test.inference.test_local_map_errors import TRUE, WALK, session
 from werrimbi_odom.api.compare_diagnose_add import as_judged
 from werrimbi_odom.effects.lookup import find
@@ -54,6 +54,20 @@ def test_what_is_really_wrong_is_named_beside_it() -> None:
     wide = seen_by_a_localiser(replace(TRUE.entered(), wheel_separation_multiplier=1.05))
     assert wide.wander is not None
     assert wide.found == ("track_width",)
+
+
+def test_motion_capture_that_errs_alike_for_seconds_is_told() -> None:
+    """By a fifth of what a camera's map does, which is no more than the noise of its poses."""
+    drives = [
+        driven(seed, lambda time, random: 0.2 * wanders(time, random), f"drive_{seed}")
+        for seed in range(80, 86)
+    ]
+    found = diagnose(drives[:4], ROBOT, EFFECTS, holdout=drives[4:])
+    assert found.wander is not None
+    assert (found.verdict, found.found) == ("none", ())
+    assert 0.5 < found.wander.heading / 1.6e-3 < 2.0
+    assert found.left is not None
+    assert not found.left.not_white, "what was alike is told"
 
 
 @pytest.mark.parametrize("hotter", [0.0, 0.02])

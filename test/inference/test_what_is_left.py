@@ -79,17 +79,33 @@ def test_an_error_of_the_robot_is_not_the_references_noise() -> None:
     assert not as_json.json_of(found, None)["left"]["is_reference_noise"]
 
 
-def test_an_error_that_lasts_is_not_called_white() -> None:
-    """Headings that wander by half their noise over some seconds: no larger, but not white."""
+def with_headings_that_wander(share: float) -> list[Run]:
+    """By this share of their noise, alike over 8 poses."""
     random = np.random.default_rng(5)
     runs = []
     for run in runs_of(ROBOT, (1, 2, 3)):
         assert run.reference is not None
         slow = np.convolve(random.standard_normal(run.reference.time.size), np.ones(8), "same")
-        runs.append(with_headings_off(run, 0.7 * NOISE_YAW / math.sqrt(8.0) * slow))
-    left = diagnosed(runs[:2], runs[2:]).left
-    assert left is not None
-    assert left.not_white
+        runs.append(with_headings_off(run, share * NOISE_YAW / math.sqrt(8.0) * slow))
+    return runs
+
+
+def test_an_error_that_lasts_is_not_called_white() -> None:
+    """Too small to be told as a wander of the reference."""
+    runs = with_headings_that_wander(0.55)
+    found = diagnosed(runs[:2], runs[2:])
+    assert found.wander is None
+    assert found.left is not None
+    assert found.left.not_white
+
+
+def test_with_a_wander_that_is_told_what_is_left_is_white() -> None:
+    runs = with_headings_that_wander(0.7)
+    found = diagnosed(runs[:2], runs[2:])
+    assert found.wander is not None
+    assert found.left is not None
+    assert found.left.is_noise
+    assert not found.left.not_white
 
 
 def test_noise_that_is_only_assumed_is_held_against_nothing() -> None:

@@ -88,7 +88,9 @@ def diagnose(
         return found, events_beside(found.runs, found.final.point, judge)
 
     found, happened = refit_without_events(search, runs, holdout)
-    if not found.of_another_drive and error_wanders(found.runs, found.final, found.remaining):
+    nothing_left = found.verdict == "none" and found.misfit is None
+    competing = () if nothing_left else found.remaining
+    if not found.of_another_drive and error_wanders(found.runs, found.final, competing):
         on_map = replace(options, reference_kind="local_map")
         again = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
         # A reference that wanders explains all that is left; else it is the robot that errs so.

@@ -19,6 +19,7 @@ import numpy as np
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, fall_of_cost
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
+from werrimbi_odom.inference.diagnosis.what_is_left import neighbours_are_alike
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
@@ -50,13 +51,13 @@ def wander_of(variances: Variances) -> Wander:
     return Wander(*map(float, (*walk, place, heading, seconds)))
 
 
-def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependence]) -> bool:
+def error_wanders(runs: Concatenated, fit: Fitted, competing: Sequence[Dependence]) -> bool:
     """Whether a wandering reference explains what a model of everything found leaves.
 
     What a dependence on a variable explains of it is not the reference's: an effect that the
     library does not hold. Scans are left alone, as the noise of each is known from its match, and
     headings alone, whose walk is a gyro's. `fit`: the final model, with independent errors of the
-    poses. `remaining`: its evidence map.
+    poses. `competing`: cells of its evidence map; none where nothing is missing otherwise.
     """
     point = fit.point
     independent = point.options.reference_kind == "absolute"
@@ -65,15 +66,16 @@ def error_wanders(runs: Concatenated, fit: Fitted, remaining: Sequence[Dependenc
     options = replace(point.options, reference_kind="local_map")
     costs = Costs(runs, replace(point, options=options))
     some = _typical(point.variances)
-    # One pass over a few typical localisers: with a sound reference all of them are far worse.
+    # One pass over a few typical localisers: with a sound reference all of them are far worse. So
+    # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike.
     trial = costs(some) + prior_cost(costs, some)
     best = int(np.argmin(trial))
-    if trial[best] > fit.cost:
+    if trial[best] > fit.cost and not neighbours_are_alike(runs, point):
         return False
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
-    most = max((fall_of_cost(cell.gain, runs.data) for cell in remaining), default=0.0)
+    most = max((fall_of_cost(cell.gain, runs.data) for cell in competing), default=0.0)
     return chi2_survival(gain - rules.WANDER_OVER_DEPENDENCE * most, len(WALK)) < rules.VERY_SURE
 
 

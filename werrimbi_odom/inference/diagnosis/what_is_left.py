@@ -67,8 +67,7 @@ class WhatIsLeft:
     @property
     def not_white(self) -> dict[str, float]:
         """Correlations beyond chance, by channel."""
-        sure = rules.SURE_WHEN_ASKED / max(len(self.neighbours), 1)
-        return {name: it.correlation for name, it in self.neighbours.items() if it.p_value < sure}
+        return _beyond_chance(self.neighbours)
 
 
 def what_is_left(
@@ -92,6 +91,16 @@ def what_is_left(
             return None
         found.append(LeftOfLegs(error_of(quiet, unit), promised_of(quiet, unit, wheels=False)))
     return WhatIsLeft(found[0], found[1], unit, _neighbours(runs, point))
+
+
+def neighbours_are_alike(runs: Concatenated, point: Point) -> bool:
+    """Whether neighbouring legs of a fit err alike in a channel, beyond chance."""
+    return any(size > 0.0 for size in _beyond_chance(_neighbours(runs, point)).values())
+
+
+def _beyond_chance(neighbours: Mapping[str, NeighbourCorrelation]) -> dict[str, float]:
+    sure = rules.SURE_WHEN_ASKED / max(len(neighbours), 1)
+    return {name: it.correlation for name, it in neighbours.items() if it.p_value < sure}
 
 
 def _noise_is_known(prepared: PreparedRuns) -> bool:

@@ -63,5 +63,6 @@ WANDER_OVER_DEPENDENCE = 2.0
 must explain (fall of the cost), beyond chance (`VERY_SURE`). Chosen: an effect of two variables
 that the library does not hold shows about half of itself over either, and the wander of a reference
 takes up some of what is left. With seven such effects and a sound reference it took up at most 1.1
-times as much; with a slip in one half of each drive and a crab in the other 2.1 times, which leaves
-a dependence; references that wander by centimetres explain 2.2 to 12 times as much."""
+times as much, on other sets 1.4 times with a slippery spot and 2.0 times with a slide by tilt and
+payload; with a slip in one half of each drive and a crab in the other 2.1 times, which leaves a
+dependence; references that wander by centimetres explain 2.2 to 12 times as much."""
