@@ -313,8 +313,10 @@ def quantisation_variance(robot: Robot) -> Floats:
 def quantisation(robot: Robot, heading: Floats) -> Floats:
     """Quantisation covariance of a pose from one reading of both counters (uniform), (m, 3, 3).
 
-    Counts err along the path and in heading, never sideways. `heading` (m,): of the robot, in the
-    axes of the covariance [rad]; where it is NaN, the mean over all headings.
+    Counts err along the path and in heading, never sideways. So they do at a message. Between two,
+    as `between_messages` reads them, they err less: their variance is 0.74 to 0.91 of this one at
+    poses of 20 Hz and counts of 50 Hz, simulated, and this is too wide by as much. `heading` (m,):
+    of the robot, in the axes of the covariance [rad]; where it is NaN, the mean over all headings.
     """
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
     along, yaw = 0.25 * (left + right), (left + right) / robot.track**2
