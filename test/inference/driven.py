@@ -13,8 +13,9 @@ import numpy as np
 
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.calibration.recorded_square import SquareRecording
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -93,6 +94,21 @@ def run_by(
         ticks.time, ticks.left.astype(float), ticks.right.astype(float), dict(channels or {})
     )
     return Run(name, Path(name), record, reference)
+
+
+def parts(run: Run, which: str) -> Run:
+    """With positions or headings alone."""
+    reference = run.reference
+    assert reference is not None
+    nothing = np.full(reference.time.shape, np.nan)
+    lacking = {"poses": {}, "positions": {"yaw": nothing}, "yaw": {"x": nothing, "y": nothing}}
+    return replace(run, reference=replace(reference, **lacking[which]))
+
+
+def of_headings(time: Floats, yaw: Floats, kind: ReferenceKind | None = None) -> Reference:
+    """What a gyro shows."""
+    nothing = np.full(time.size, np.nan)
+    return Reference(time, nothing, nothing, yaw, kind=kind)
 
 
 def record_of(name: str, drive: Recording) -> SquareRecording:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.inference.driven import run_by, runs_of
+from test.inference.driven import of_headings, run_by, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
@@ -343,9 +343,9 @@ def test_headings_alone_are_judged_by_headings_beside_the_gyros_drift() -> None:
     runs = []
     for number, run in enumerate(runs_of(truth, (1, 2, 3, 4), 60)):
         assert run.reference is not None
-        time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
+        time = run.reference.time
         yaw = run.reference.yaw + (0.006 - 0.003 * number) * (time - time[0])
-        runs.append(replace(run, reference=replace(run.reference, x=nothing, y=nothing, yaw=yaw)))
+        runs.append(replace(run, reference=of_headings(time, yaw)))
     found = add_effects([find("track_width")], runs[:3], PLAIN, holdout=runs[3:])
     assert found.objection is None
     assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)

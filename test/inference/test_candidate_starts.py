@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_by, run_of
+from test.inference.driven import of_headings, run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.inference.test_late_clock import later
 from test.model.drives import ROBOT, read
@@ -171,9 +171,8 @@ def test_jitter_of_the_stamps_does_not_stand_in_for_a_delay() -> None:
     seen = drive.reference
     assert seen is not None
     late = seen.time - 0.05 + random.normal(0.0, 0.01, seen.time.size)
-    nowhere = np.full(seen.time.size, np.nan)
     yaw = np.interp(late, seen.time, np.unwrap(seen.yaw))
-    gyro = replace(drive, reference=replace(seen, x=nowhere, y=nowhere, yaw=yaw))
+    gyro = replace(drive, reference=of_headings(seen.time, yaw))
     runs = concatenated(match_for_fit([gyro], ROBOT, 0.25))
     before = fit_calibration(runs, ROBOT, EvaluationOptions(reference_kind="incremental"))
     assert before.point.variances.stamp[0] ** 0.5 > rules.MOST_STAMP_NOISE

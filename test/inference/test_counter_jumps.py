@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
@@ -31,8 +32,7 @@ def driven(seed: int = 1) -> np.ndarray:
 
 
 def run_of(counts: np.ndarray, time: np.ndarray = TIME) -> Run:
-    none = np.full(time.size, np.nan)
-    reference = Reference(time, none, none, np.zeros(time.size))
+    reference = of_headings(time, np.zeros(time.size))
     return Run("run", Path("run"), Ticks(time, counts[:, 0], counts[:, 1]), reference)
 
 

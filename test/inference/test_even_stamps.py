@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.even_stamps import (
@@ -95,8 +96,7 @@ def test_wheels_are_put_right_unless_one_queue_held_the_gyro_too(together: bool)
     random = np.random.default_rng(2)
     read, came = queueing(random)
     seen = np.sort((came if together else read) + random.uniform(0.0, 0.02, came.size))
-    nothing = np.full(read.size, np.nan)
-    gyro = Reference(seen, nothing, nothing, np.sin(0.2 * read))
+    gyro = of_headings(seen, np.sin(0.2 * read))
     wheels = Ticks(came, *driven(read))
     assert stamped_together(Run("queue", Path("queue"), wheels, gyro)) == together
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from test.inference.driven import run_of
+from test.inference.driven import of_headings, run_of
 from test.inference.test_held_or_carried import held
 from test.inference.test_late_clock import later
 from test.model.drives import ROBOT
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 
 TURNED = (12.4, 16.0, 16.3, 13.5, 12.9, 13.5, 13.1, 13.1, 14.0, 15.5)
@@ -25,8 +25,7 @@ def one_wheel_turns() -> Run:
     wheel = np.interp(time, np.arange(2.0, 13.0), np.cumsum([0.0, *np.radians(TURNED)]))
     counts = np.round(wheel * ROBOT.track / ROBOT.right_tick)
     yaw = np.radians(17.4) * np.maximum(time - 2.0, 0.0)
-    nothing = np.full_like(time, np.nan)
-    seen = Reference(time, nothing, nothing, yaw, kind="incremental")
+    seen = of_headings(time, yaw, "incremental")
     return replace(run_of(ROBOT, 0, 10), ticks=Ticks(time, 0.0 * counts, counts), reference=seen)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON
+from test.inference.driven import COMMON, parts
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -198,13 +198,9 @@ def _error(runs: list[Run], robot: Robot) -> float:
 
 
 def test_a_kick_of_the_heading_is_told_by_a_gyro_alone(sound: Drives) -> None:
-    def gyro(seen: Reference) -> Reference:
-        nothing = np.full(seen.time.size, np.nan)
-        return replace(seen, x=nothing, y=nothing)
-
     runs, robot = sound
-    kicked = [_measured(_stepped(runs[0], 22.0, 0.0, -5.0 * NOISE_YAW), gyro)]
-    kicked += [_measured(run, gyro) for run in runs[1:]]
+    kicked = [parts(_stepped(runs[0], 22.0, 0.0, -5.0 * NOISE_YAW), "yaw")]
+    kicked += [parts(run, "yaw") for run in runs[1:]]
     [event] = _diagnosed((kicked, robot)).happened.events
     assert (event.channel, event.unit) == ("heading", "rad")
     assert event.time == pytest.approx(22.0, abs=0.2)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from test.inference.driven import run_by
+from test.inference.driven import of_headings, run_by
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -34,8 +34,7 @@ def likeliest_by_chance(seed: int) -> float:
     seen = spin.reference
     assert seen is not None
     wandering = 0.02 * np.cumsum(random.normal(size=seen.time.size))
-    nowhere = np.full(seen.time.size, np.nan)
-    turned = replace(seen, x=nowhere, y=nowhere, yaw=seen.yaw + wandering)
+    turned = of_headings(seen.time, seen.yaw + wandering)
     runs = concatenated(match_for_fit([replace(spin, reference=turned)], ROBOT, 1.0))
     assert 8 <= runs.data < rules.NOISE_NUMBERS
     point = fit_model(runs, start_point(runs, ROBOT, GYRO), CALIBRATION).point
@@ -63,8 +62,7 @@ def test_what_was_not_fitted_is_no_surer_than_what_was() -> None:
     seen = spin.reference
     assert seen is not None
     wandering = 0.02 * np.cumsum(np.random.default_rng(2).normal(size=seen.time.size))
-    nowhere = np.full(seen.time.size, np.nan)
-    turned = replace(seen, x=nowhere, y=nowhere, yaw=seen.yaw + wandering)
+    turned = of_headings(seen.time, seen.yaw + wandering)
     options = replace(GYRO, leg=0.25)
     found = diagnose([replace(spin, reference=turned)], ROBOT, LIBRARY, options)
     assert found.runs.data < rules.NOISE_NUMBERS

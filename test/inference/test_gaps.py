@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import NOISE_XY, NOISE_YAW, run_of, runs_of
+from test.inference.driven import NOISE_XY, NOISE_YAW, parts, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -54,15 +54,6 @@ def without_ticks(run: Run, spans: tuple[tuple[float, float], ...] = SPANS) -> R
 def paused(run: Run) -> Run:
     """The run without either."""
     return silent(without_ticks(run))
-
-
-def parts(run: Run, which: str) -> Run:
-    """With positions or headings alone."""
-    reference = run.reference
-    assert reference is not None
-    nothing = np.full(reference.time.shape, np.nan)
-    lacking = {"poses": {}, "positions": {"yaw": nothing}, "yaw": {"x": nothing, "y": nothing}}
-    return replace(run, reference=replace(reference, **lacking[which]))
 
 
 @pytest.mark.parametrize("which", ["poses", "positions", "yaw"])

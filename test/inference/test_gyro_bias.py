@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -38,8 +39,7 @@ def by_gyro(speed: np.ndarray, turning: np.ndarray, base: float, bias: float, se
     turns: Robot = replace(ROBOT, wheel_separation_multiplier=base)
     truth = trajectory(turns, *ticks)
     walk = np.cumsum(np.random.default_rng(seed).normal(0.0, 2e-4, truth.yaw.size))
-    nothing = np.full_like(truth.x, np.nan)
-    reference = Reference(truth.time, nothing, nothing, truth.yaw + bias * truth.time + walk)
+    reference = of_headings(truth.time, truth.yaw + bias * truth.time + walk)
     record = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float))
     return Run(f"drive_{seed}", Path(f"drive_{seed}"), record, reference)
 

@@ -12,8 +12,7 @@ import pytest
 
 import werrimbi_odom as wo
 from test.cli.commands import ROBOT_FILE
-from test.inference.driven import NOISE_XY, NOISE_YAW, run_by, run_of
-from test.inference.test_gaps import parts
+from test.inference.driven import NOISE_XY, NOISE_YAW, of_headings, parts, run_by, run_of
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects.lookup import find
@@ -321,8 +320,7 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
     drives = (time < 15.0) | (time > 20.0)
     counts = np.cumsum(40.0 * drives)
     yaw = np.clip(time - 16.0, 0.0, 2.0) + np.random.default_rng(0).normal(0.0, 1e-3, time.size)
-    nothing = np.full(time.size, np.nan)
-    ticks, seen = Ticks(time, counts, counts), Reference(time, nothing, nothing, yaw)
+    ticks, seen = Ticks(time, counts, counts), of_headings(time, yaw)
     run = with_no_driving(Run("straight", Path("straight"), ticks, seen), ROBOT)
     is_found(run, "carried", 16.0, 18.0)
 
@@ -362,10 +360,9 @@ def test_a_robot_that_a_hand_turns_faster_than_its_wheels_could_is_found_by_a_gy
     forth = 40.0 * (time < 15.0)
     by_hand = np.where((time > 30.0) & (time < 36.0), 1.5 * np.sin(time - 30.0), 0.0)
     yaw = np.cumsum(0.05 * by_hand) + np.random.default_rng(0).normal(0.0, 1e-3, time.size)
-    nothing = np.full(time.size, np.nan)
     ticks = Ticks(time, np.cumsum(forth - spins), np.cumsum(forth + spins))
-    seen = Reference(time, nothing, nothing, yaw)
-    found = span(with_no_driving(Run("lifted", Path("lifted"), ticks, seen), ROBOT))
+    lifted = Run("lifted", Path("lifted"), ticks, of_headings(time, yaw))
+    found = span(with_no_driving(lifted, ROBOT))
     assert found[0] == pytest.approx(30.0, abs=NEAR)
     assert found[1] > 35.5
     assert found[2] == {"carried"}
@@ -426,9 +423,8 @@ def test_a_robot_that_is_stopped_for_a_moment_is_found_by_a_gyro_though_its_whee
     rate = np.where(held_back, 0.0, np.gradient(turn, time))
     stamps = np.arange(0.0, 59.7, 0.02)
     yaw = np.cumsum(0.02 * np.interp(stamps, time, rate))
-    nothing = np.full(stamps.size, np.nan)
     ticks = Ticks(time, np.cumsum(-spins), np.cumsum(spins))
-    run = Run("stopped", Path("stopped"), ticks, Reference(stamps, nothing, nothing, yaw))
+    run = Run("stopped", Path("stopped"), ticks, of_headings(stamps, yaw))
     is_found(run, "held", 33.0, 33.9)
 
 

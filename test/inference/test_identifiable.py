@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, runs_of
+from test.inference.driven import COMMON, of_headings, parts, runs_of
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
@@ -141,8 +141,7 @@ def test_the_drift_of_a_gyro_that_a_fit_knows_is_no_error_of_the_robot() -> None
     """Of a fit that holds it, it was left in the errors: far above any noise, and so *unknown*."""
     run = runs_of(NOMINAL, [4], 60)[0]
     seen = run.reference
-    nothing = np.full(seen.x.size, np.nan)
-    reference = replace(seen, x=nothing, y=nothing, yaw=seen.yaw + 0.05 * seen.time)
+    reference = of_headings(seen.time, seen.yaw + 0.05 * seen.time)
     prepared = prepare([replace(run, reference=reference)], NOMINAL)
     assert not far_above_noise(prepared, Model(NOMINAL, ({},)))
     assert not far_above_noise(prepared, Model(NOMINAL, ({YAW_DRIFT: 0.05},)))
@@ -205,8 +204,7 @@ def gyro_drive(
     yaw = np.interp(seen, time, run.reference.yaw)
     if rounding:
         yaw = rounding * np.round(yaw / rounding)
-    nothing = np.full(time[::every].size, np.nan)
-    return replace(run, reference=Reference(time[::every], nothing, nothing, yaw[::every]))
+    return replace(run, reference=of_headings(time[::every], yaw[::every]))
 
 
 def test_a_gyro_does_not_jump_at_starts_and_fast_turns() -> None:
@@ -332,8 +330,7 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
     gyros = []
     for number, run in enumerate(whole):
         assert run.reference is not None
-        time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
-        seen = Reference(time, nothing, nothing, scale * run.reference.yaw)
+        seen = of_headings(run.reference.time, scale * run.reference.yaw)
         gyros.append(replace(run, name=f"run_{number}", reference=seen))
     found = diagnose(gyros, NOMINAL, LIBRARY, EvaluationOptions(reference_kind="incremental"))
     assert (found.verdict, found.rivals) == ("ambiguous", ("track_width", "reference_scale"))
@@ -361,11 +358,7 @@ def test_an_effects_own_length_is_no_way_for_a_gyro_to_the_size_of_the_wheels(
 ) -> None:
     """The size stood first in the order, and what was hidden was called undetermined."""
     hidden = replace(NOMINAL, effects=(find(name).using(**size),))
-    gyros = []
-    for run in runs_of(hidden, range(1, 4), seconds=60):
-        assert run.reference is not None
-        nothing = np.full(run.reference.time.size, np.nan)
-        gyros.append(replace(run, reference=replace(run.reference, x=nothing, y=nothing)))
+    gyros = [parts(run, "yaw") for run in runs_of(hidden, range(1, 4), seconds=60)]
     rivals = ("reference_delay", "castor_kick", "encoder_skew")
     found = diagnose(gyros, NOMINAL, [find(each) for each in (name, *rivals)])
     assert (found.verdict, found.found) == ("named", (name,))

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -254,12 +255,11 @@ def with_gyro(seeds: range, robot: WhiteNoiseRobot, scale: float) -> list[Run]:
         run = drive(robot, way, random, sigma_xy=WHITE[0], sigma_yaw=5e-4, every=5)
         true = run.reference
         assert true is not None
-        nothing = np.full(true.time.size, np.nan)
         shown = scale * np.unwrap(true.yaw) + 2e-3 * true.time
         seen = localised(replace(run, name=f"run_{seed}"), random, jumps=1)
         assert seen.reference is not None
         shown[0] = np.nan  # the localiser is heard first
-        both, _ = merged("", seen.reference, Reference(true.time, nothing, nothing, shown))
+        both, _ = merged("", seen.reference, of_headings(true.time, shown))
         found.append(replace(seen, reference=both))
     return found
 

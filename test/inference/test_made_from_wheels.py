@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.made_from_wheels import closeness, require_independent
@@ -232,6 +233,5 @@ def test_too_little_to_tell_leaves_the_name() -> None:
 def test_a_gyro_is_no_circle() -> None:
     run, truth = recorded(8)
     assert run.reference is not None
-    none = np.full(truth[2].size, np.nan)
-    gyro = replace(run, reference=Reference(run.reference.time, none, none, truth[2]))
+    gyro = replace(run, reference=of_headings(run.reference.time, truth[2]))
     assert require_independent(gyro, ROBOT) == ""

@@ -15,8 +15,8 @@ import pytest
 
 from test.cli.commands import write_run
 from test.command_line import Werrimbi
-from test.inference.driven import COMMON, run_of, runs_of
-from test.inference.test_gaps import parts, silent, without_ticks
+from test.inference.driven import COMMON, parts, run_of, runs_of
+from test.inference.test_gaps import silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.lookup import all_effects, find

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of, runs_of
+from test.inference.driven import of_headings, parts, run_of, runs_of
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.lookup import load_file
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics
@@ -36,14 +36,6 @@ from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, strength_words
 
 
-def headings_of(run: Run) -> Run:
-    """What a gyro shows of a drive."""
-    reference = run.reference
-    assert reference is not None
-    nothing = np.full_like(reference.x, np.nan)
-    return replace(run, reference=replace(reference, x=nothing, y=nothing))
-
-
 def as_turning(robot: Robot, base: float) -> Robot:
     """A robot that turns as if its base were so many times as wide."""
     return replace(robot, wheel_separation_multiplier=base * robot.wheel_separation_multiplier)
@@ -57,7 +49,7 @@ def test_four_driven_wheels_are_no_mistake_of_entering(base: float, headings: bo
     Of headings alone it is the base that leads, so that distances stay as they are.
     """
     runs = runs_of(as_turning(ROBOT, base), [1, 2])
-    runs = [headings_of(run) for run in runs] if headings else runs
+    runs = [parts(run, "yaw") for run in runs] if headings else runs
     (finding,) = look_for_mistakes(runs, ROBOT).findings
     assert finding.effect == "track_width"
     assert finding.values["multiplier"] == pytest.approx(base, rel=0.03)
@@ -117,7 +109,7 @@ def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: f
 def test_the_rival_that_headings_alone_leave_is_told_with_the_inverse() -> None:
     """Of headings alone the radii are the base's rival: "multiplier 1 ± 6e-12" was printed."""
     runs = [
-        headings_of(run)
+        parts(run, "yaw")
         for run in runs_of(
             replace(as_turning(ROBOT, 1.95), right_wheel_radius_multiplier=1.01), [1, 2]
         )
@@ -133,7 +125,7 @@ def test_the_rival_that_headings_alone_leave_is_told_with_the_inverse() -> None:
 
 def test_a_drift_of_a_gyro_is_not_learnt_from_one_leg() -> None:
     """It took the leg's whole error: "falls from 0.00° to 0.00°"."""
-    run = headings_of(run_of(as_turning(ROBOT, 1.3), 4, 30))
+    run = parts(run_of(as_turning(ROBOT, 1.3), 4, 30), "yaw")
     assert run.reference is not None
     rows = np.flatnonzero(run.reference.time < run.reference.time[0] + 2.5)
     short = replace(run, reference=run.reference.chosen(rows))
@@ -231,8 +223,7 @@ def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
     ticks = read(as_turning(ROBOT, 1.1), rate, speed, yaw_rate)
     trembles = np.random.default_rng(1).normal(0.0, 2e-6, time.size) * (speed > 0.0)
     heading = np.cumsum(np.append(0.0, yaw_rate / rate + trembles))
-    nothing = np.full(heading.size, np.nan)
-    reference = Reference(ticks.time, nothing, nothing, heading, kind="incremental")
+    reference = of_headings(ticks.time, heading, "incremental")
     run = Run("run", Path("run"), Ticks(ticks.time, ticks.left, ticks.right, {}), reference)
     options = EvaluationOptions(reference_kind="incremental", leg=0.25)
     compared = compare((run,), ROBOT, options)

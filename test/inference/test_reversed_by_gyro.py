@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from test.model.drives import ROBOT, read
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 
 RATE = 50.0
@@ -45,9 +46,8 @@ def seen_by_gyro(
     random: np.random.Generator,
 ) -> Run:
     noise = np.cumsum(random.normal(0.0, 1e-5, time.size))
-    nothing = np.full(time.size, np.nan)
     yaw = heading + noise + 0.002 * time
-    reference = Reference(time, nothing, nothing, yaw, kind="incremental")
+    reference = of_headings(time, yaw, "incremental")
     return Run("run", Path("run"), Ticks(time, left, right), reference)
 
 
@@ -98,8 +98,7 @@ def rectangle(seed: int, sense: float) -> Run:
     bends = turned / 1.1 + random.normal(0.0, 0.02, turned.size)
     heading = np.append(0.0, np.cumsum(bends)) / RATE
     seen = np.radians(np.round(np.degrees(heading[ends])))
-    nothing = np.full(seen.size, np.nan)
-    reference = Reference(ticks.time[ends], nothing, nothing, seen, kind="incremental")
+    reference = of_headings(ticks.time[ends], seen, "incremental")
     name = f"rectangle_{seed}"
     return Run(name, Path(name), Ticks(ticks.time, ticks.left, ticks.right), reference)
 

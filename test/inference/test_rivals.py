@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.inference.driven import runs_of
-from test.inference.test_gaps import parts
+from test.inference.driven import parts, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY as ALL
 from werrimbi_odom.inference import rules

@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.inference.driven import of_headings
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.model.effect import Effect
 
@@ -52,12 +53,11 @@ def driven(random: np.random.Generator, name: str, more: float | None = None) ->
     time = np.arange(0.0, ticks.time[-1], 0.01)
     walk = np.cumsum(random.normal(0.0, 2e-5, time.size))
     yaw = np.interp(time - DELAY, ticks.time, heading) / BASE + walk
-    nothing = np.full(time.size, np.nan)
     return Run(
         name,
         Path(name),
         Ticks(ticks.time, ticks.left, ticks.right),
-        Reference(time, nothing, nothing, yaw, kind="incremental"),
+        of_headings(time, yaw, "incremental"),
     )
 
 
