@@ -22,12 +22,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from test.model.drives import ROBOT, Ticks, figure_eight, random_drive, square
 from test.plain_twin import plain_run
-from werrimbi_odom.model import swing_filter
-from werrimbi_odom.model.swing_filter import PieceTolerance
+from werrimbi_odom.model import end_of_piece
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.trajectory import trajectory
 
 TOLERANCES = ((0.001, 0.003), (0.003, 0.01), (0.01, 0.03), (0.03, 0.1))
-SETTLED = (0.01, 3.0, swing_filter.SETTLED, 30.0, 100.0)
+SETTLED = (0.01, 3.0, end_of_piece.SETTLED, 30.0, 100.0)
 SETTLING = 0.5
 """Travel of the axle's middle and the wheels about it before errors count [m]."""
 
@@ -71,7 +71,7 @@ def main() -> None:
     print()
     print(heading("settled after", drives))
     for tracks in SETTLED:
-        with patch.object(swing_filter, "SETTLED", tracks):
+        with patch.object(end_of_piece, "SETTLED", tracks):
             print(f"| {tracks:g} tracks | {row(PieceTolerance())}")
 
 

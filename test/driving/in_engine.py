@@ -13,9 +13,9 @@ from werrimbi_odom.driving.limits import Area, Limits, OdometryReading, Watch
 from werrimbi_odom.driving.plan import ManoeuvrePlan
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.simulation import LiveRobot
 
 LIMITS = Limits(0.3, 1.0, 0.5, 1.5)

@@ -20,11 +20,11 @@ from test.model.records import Record, records
 from werrimbi_odom.model import encoder_recorded, pieces_recorded, recorded_propagation
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 TOLERANCE = 1e-9

@@ -21,11 +21,11 @@ from werrimbi_odom.model import quick_odometer
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.quick_odometer import QuickEstimate, QuickOdometer
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceTolerance
 
 ELSEWHERE = Pose(3.0, -2.0, 1.0), PoseCovariance(0.1, 0.01, 0.0, 0.2, 0.0, 0.05)
 

@@ -26,11 +26,11 @@ from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose, wrap_all
 from werrimbi_odom.model.reference_measurement import Path as ShownPath
 from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 from werrimbi_odom.progress import Show, silent
 from werrimbi_odom.report.dead_reckoning_summary import Reckoning, reckoning_of

@@ -12,8 +12,8 @@ from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceTolerance
 
 TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi

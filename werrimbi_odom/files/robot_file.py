@@ -46,8 +46,8 @@ from werrimbi_odom.files.text_files import read_small_text
 from werrimbi_odom.files.yaml_text import line_of, load, plain
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceTolerance
 
 NODE = "odom_node"
 PARAMETER_KEY = "ros__parameters"

@@ -4,7 +4,7 @@
 
 Reading order: `motion` (travel to displacement), `covariance` (one piece in closed form),
 `uncertainty` and `exact_moments` (along a path), `encoder_online` (counters to travel),
-`swing_filter` (where a piece ends), `odometer` (all of it, message by message). `encoder_recorded`,
+`end_of_piece` (where a piece ends), `odometer` (all of it, message by message). `encoder_recorded`,
 `pieces_recorded` and `trajectory` do the same for a whole run at once. `robot` holds the parameters
 of a robot. `effect` defines an effect, `drive` the quantities that it may read.
 """

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from werrimbi_odom.model.covariance import PoseCovariance, twist_noise
+from werrimbi_odom.model.end_of_piece import PieceRule, PieceSums
 from werrimbi_odom.model.motion import BodyMotion, Chord, WheelTravel, mean_twist, wheels_to_body
 from werrimbi_odom.model.pace import seen
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reading_checks import CountRule, Reading, undoubted
 from werrimbi_odom.model.robot import WheelNoise
 from werrimbi_odom.model.scalar_loop import Marching, onward, sums_of
-from werrimbi_odom.model.swing_filter import PieceRule, PieceSums
 
 GOES_ON, PIECE_ENDED, IN_DOUBT = 0, 1, 2
 """Result of a message; one in doubt changes nothing."""

@@ -20,11 +20,11 @@ from werrimbi_odom.model.covariance import (
 from werrimbi_odom.model.driven_motion import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import Encoder, EncoderLimits, EncoderTally, WheelStep
+from werrimbi_odom.model.end_of_piece import PieceRule, PieceSums, PieceTolerance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, mean_twist
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceRule, PieceSums, PieceTolerance
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 _displacement = of_floats(displacement)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pieces of constant curvature (lines, arcs and spins); `swing_filter` decides where they end."""
+"""Pieces of constant curvature (lines, arcs and spins); `end_of_piece` decides where they end."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Literal
 
 from werrimbi_odom.model.compiled import of_floats
 from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.end_of_piece import PieceRule, PieceSums, extended
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.model.swing_filter import PieceRule, PieceSums, extended
 from werrimbi_odom.model.uncertainty import Uncertainty
 
 PieceKind = Literal["line", "arc", "spin"]

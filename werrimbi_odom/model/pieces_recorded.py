@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.compiled import of_floats
+from werrimbi_odom.model.end_of_piece import NOTHING, PieceRule, allowed_lead, extended, off_arc
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats, Pose
-from werrimbi_odom.model.swing_filter import NOTHING, PieceRule, allowed_lead, extended, off_arc
 
 # Steps processed together; affects only the speed.
 _FEW, _MANY = 64, 4096

@@ -16,6 +16,7 @@ from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance, TwistCovariance
 from werrimbi_odom.model.driven_motion import Channels, acts
 from werrimbi_odom.model.encoder_online import EncoderLimits, EncoderTally, WheelStep
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.message_loop import IN_DOUBT, marching_of, take, write_marching
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.odometer import Estimate, Odometer
@@ -25,7 +26,6 @@ from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reading_checks import Reading
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import Marching
-from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.model.uncertainty import Uncertainty
 from werrimbi_odom.model.wiring import Wiring
 

@@ -26,13 +26,13 @@ from werrimbi_odom.model.covariance import (
     plus,
 )
 from werrimbi_odom.model.effects_over_run import AfterEffects
+from werrimbi_odom.model.end_of_piece import NOTHING, PieceRule
 from werrimbi_odom.model.exact_moments import PathMoments
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pieces_recorded import Cut, cut
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import March, Marching, follow, march, sums_of
-from werrimbi_odom.model.swing_filter import NOTHING, PieceRule
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 
 _BLOCK = 8192  # steps per block: their arrays stay in the cache

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.covariance import PoseCovariance, after_stretch, path_noise_of
 from werrimbi_odom.model.encoder_online import Counts
+from werrimbi_odom.model.end_of_piece import NOTHING, PieceRule, PieceSums, extended
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pace import REMEMBERED, seen
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reading_checks import CountRule, Reading, undoubted
 from werrimbi_odom.model.robot import WheelNoise
-from werrimbi_odom.model.swing_filter import NOTHING, PieceRule, PieceSums, extended
 
 
 class Marching(NamedTuple):

@@ -21,12 +21,12 @@ from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits, EncoderTally
 from werrimbi_odom.model.encoder_recorded import lost_travel, wheel_steps
+from werrimbi_odom.model.end_of_piece import PieceRule, PieceTolerance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
 from werrimbi_odom.model.pieces import Piece, kind_of
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.recorded_propagation import PathInPieces, course_of
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceRule, PieceTolerance
 from werrimbi_odom.model.uncertainty import known
 
 _BLOCK = 1024  # pieces constructed together

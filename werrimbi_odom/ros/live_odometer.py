@@ -15,12 +15,12 @@ from builtin_interfaces.msg import Time as Stamp
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import Missed
-from werrimbi_odom.model.swing_filter import PieceTolerance
 
 _TURNS = ((0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.5, 2.0), (-1.0, -1.0), (100.0, 100.0))
 """Turns of the left and right wheel in one second: rest, line, spin, arc, reversal, a fast line."""

@@ -23,8 +23,8 @@ from werrimbi_odom.files.node_parameter import NodeParameter, Value
 from werrimbi_odom.files.other_drivers_parameters import is_of_diff_drive
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.swing_filter import PieceTolerance
 from werrimbi_odom.ros.counter_inputs import robot_at_counters
 from werrimbi_odom.ros.declared_parameters import given_to
 from werrimbi_odom.ros.live_odometer import rehearse

@@ -93,8 +93,10 @@ def diagnose(
     if not found.of_another_drive and error_wanders(found.runs, found.final, competing):
         on_map = replace(options, reference_kind="local_map")
         again = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
-        # A reference that wanders explains all that is left; else it is the robot that errs so.
-        if not any(cell.p_value < rules.VERY_SURE for cell in again.remaining):
+        # A reference that wanders explains all that is left, and lets nothing be named that was
+        # not; else it is the robot that errs so.
+        explained = not any(cell.p_value < rules.VERY_SURE for cell in again.remaining)
+        if explained and (again.verdict == "none" or not nothing_left):
             return replace(again, wander=wander_of(again.final.point.variances))
     return replace(found, happened=happened)
 

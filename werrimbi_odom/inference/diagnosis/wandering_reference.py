@@ -67,10 +67,11 @@ def error_wanders(runs: Concatenated, fit: Fitted, competing: Sequence[Dependenc
     costs = Costs(runs, replace(point, options=options))
     some = _typical(point.variances)
     # One pass over a few typical localisers: with a sound reference all of them are far worse. So
-    # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike.
+    # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike,
+    # as does what the library lacks, so that counts only where no dependence competes.
     trial = costs(some) + prior_cost(costs, some)
     best = int(np.argmin(trial))
-    if trial[best] > fit.cost and not neighbours_are_alike(runs, point):
+    if trial[best] > fit.cost and (competing or not neighbours_are_alike(runs, point)):
         return False
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
