@@ -25,6 +25,7 @@ from scipy.ndimage import (
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -221,7 +222,27 @@ def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
         stamps - even, rules.EVEN_WINDOW, mode="reflect"
     )  # a pause is a step in it
     off = np.clip(stamps - even - late, -period, period)
+    line = np.polyval(np.polyfit(number, late + off, 1), number)
+    if _keeps_pace(late + off - line):
+        return even + line, period
     return even + late + uniform_filter1d(off, rules.EVEN_WINDOW, mode="reflect"), period
+
+
+def _keeps_pace(off: Floats) -> bool:
+    """Whether deviations from one pace, (n,), are those of single stamps, by analysis of variance.
+
+    The means of windows then scatter as chance has it. Two clocks that drift apart, a pause and a
+    computer that was busy for seconds show there.
+    """
+    count = off.size // rules.EVEN_WINDOW
+    if count < rules.EVEN_WINDOWS:
+        return False
+    windows = off[: count * rules.EVEN_WINDOW].reshape(count, -1)
+    within = float(np.mean(np.var(windows, axis=1, ddof=1)))
+    between = rules.EVEN_WINDOW * float(np.sum(windows.mean(axis=1) ** 2)) / (count - 2)
+    spare = count * (rules.EVEN_WINDOW - 1)
+    chance = fisher_survival(between / max(within, 1e-30), count - 2, spare)
+    return chance > rules.SURE_WHEN_ASKED
 
 
 def _queued(late: Floats, period: float) -> Floats:
