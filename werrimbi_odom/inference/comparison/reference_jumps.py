@@ -30,9 +30,11 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
     if errors.shape[0] < rules.JUMP_FEWEST:
         return np.zeros_like(errors)
+    interval = max(float(np.median(np.diff(item.time))), 1e-9)
     usual = np.median(_windows(errors, rules.JUMP_NEIGHBOURS), axis=-1)
     left = errors - usual
-    around = max(rules.JUMP_NEIGHBOURS, _intervals_within(item.time, rules.JUMP_LATE))
+    late = int(min(rules.JUMP_LATE / interval, item.time.size // 4))
+    around = max(rules.JUMP_NEIGHBOURS, late)
     driven = _windows(np.abs(item.relative), around).max(axis=-1)
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
     # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
@@ -44,7 +46,7 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
         # robot turns in it, so a start looks like a jump until base and delay are right.
         share[2] = rules.JUMP_SHARE_OF_A_GYRO
     # The noise of a pose does not fall with the interval; the motion does.
-    share = share * max(1.0, rules.JUMP_SPAN / max(float(np.median(np.diff(item.time))), 1e-9))
+    share = share * max(1.0, rules.JUMP_SPAN / interval)
     least = share * (driven + np.abs(usual))
     if not np.isfinite(item.measured).any():
         least[:, 2] = np.maximum(least[:, 2], rules.JUMP_LEAST_OF_A_GYRO)
@@ -72,10 +74,6 @@ def _windows(
     """Each row and its neighbours, along a new last axis; beyond the ends, as `numpy.pad` says."""
     padded = np.pad(values, ((reach, reach), (0, 0)), mode=mode)
     return np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
-
-
-def _intervals_within(time: Floats, span: float) -> int:
-    return int(min(span / max(float(np.median(np.diff(time))), 1e-9), time.size // 4))
 
 
 def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) -> NDArray[np.bool_]:

@@ -14,6 +14,7 @@ measured path alone bound it: those hold how unevenly the robot moved, and no co
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,7 +115,7 @@ def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
     off, turned = (
         np.concatenate([[0.0], np.cumsum(part[:, 2])]) for part in (item.intervals, item.relative)
     )
-    left = sum(factor * off[first + number * span] for number, factor in enumerate(_THIRD))
+    left = _third_at(off, first, span)
     rate = np.abs(turned[last] - turned[first]) / (item.time[last] - item.time[first])
     moved = np.concatenate([[0.0], np.cumsum(np.abs(item.relative).sum(axis=1))])
     moving = moved[last] > moved[first]
@@ -134,11 +135,8 @@ def _position_differences(item: Residual, spans: Sequence[int] = _SPANS) -> Diff
         if ahead < 1:
             break
         rows = np.arange(ahead)
-        moved = sum(
-            factor * item.predicted[rows + number * span] for number, factor in enumerate(_THIRD)
-        )
-        seen_moved = sum(
-            factor * item.measured[rows + number * span] for number, factor in enumerate(_THIRD)
+        moved, seen_moved = (
+            _third_at(each, rows, span) for each in (item.predicted, item.measured)
         )
         off = item.measured_yaw[rows] - item.predicted_yaw[rows]
         if not np.isfinite(off).all():
@@ -160,11 +158,15 @@ def _heading_differences(item: Residual, spans: Sequence[int] = _SPANS) -> Diffe
         ahead = off.size - 3 * span
         if ahead < 1:
             break
-        rows = np.arange(ahead)
-        left = sum(factor * off[rows + number * span] for number, factor in enumerate(_THIRD))
+        left = _third_at(off, np.arange(ahead), span)
         reach = float(np.mean(turned)) * 3 * span
-        found[span] = (np.asarray(left)[_moving(turned, span) & np.isfinite(left)], reach)
+        found[span] = (left[_moving(turned, span) & np.isfinite(left)], reach)
     return found
+
+
+def _third_at(values: NDArray[Any], rows: NDArray[np.intp], span: int) -> NDArray[Any]:
+    """Third differences of a series over a span, from each of some rows."""
+    return np.asarray(sum(k * values[rows + n * span] for n, k in enumerate(_THIRD)))
 
 
 def _moving(driven: Floats, span: int) -> NDArray[np.bool_]:
