@@ -14,6 +14,8 @@ from werrimbi_odom.model.pose import Floats
 if TYPE_CHECKING:
     from werrimbi_odom.files.bag import Bag
 
+_MOST = 64
+"""Values of an array that are looked at; one with more is a map, a picture or a scan."""
 _RUNS_ON = 0.1
 """Largest usual step of a counter (nine tenths of them), as a share of its range. A command or a
 speed comes through its range within a few messages."""
@@ -27,6 +29,8 @@ def counting_places(bag: Bag, topic: str, values: int) -> tuple[int, ...]:
 
     `values`: how many its messages hold; others are not looked at.
     """
+    if values > _MOST:
+        return ()
     rows = [
         (message.received / 1e9, *map(float, message.content.data))
         for message in bag.messages([topic])
