@@ -81,6 +81,7 @@ def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path, lidar: Lidar = L
         np.zeros((at.size, 3)),
         lidar,
         sweeps,
+        sweeps.time + 1.0 / lidar.rate_hz,
     )
     run = folder.with_name(f"{folder.name}_true")
     run.mkdir()

@@ -89,6 +89,24 @@ def test_stamps_scatter_and_stay_in_order() -> None:
     assert 2e-3 < np.diff(seen().wheels[:, 0]).std() < 12e-3
 
 
+def test_each_message_takes_its_own_time_to_come(tmp_path: Path) -> None:
+    """Scans came a tenth of a second after their stamps, to the last digit, as in a log's bag.
+
+    Their receipt then told nothing of the lidar's clock, and a drift was asked for.
+    """
+    folder = sim.write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    waits: dict[str, list[float]] = {"/scan": [], "/imu": []}
+    with AnyReader([folder]) as reader:
+        chosen = [each for each in reader.connections if each.topic in waits]
+        for connection, received, data in reader.messages(chosen):
+            stamp = reader.deserialize(data, connection.msgtype).header.stamp  # type: ignore[attr-defined]
+            waits[connection.topic].append(received / 1e9 - stamp.sec - stamp.nanosec / 1e9)
+    turn = 1.0 / seen().lidar.rate_hz
+    assert min(waits["/scan"]) > turn - 1e-6
+    assert np.std(waits["/scan"]) == pytest.approx(8e-3, rel=0.3)
+    assert np.std(waits["/imu"]) > 5e-3
+
+
 def test_the_same_seeds_the_same_drive() -> None:
     again = sim.as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
     np.testing.assert_array_equal(again.imu, seen().imu)

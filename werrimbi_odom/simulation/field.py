@@ -82,6 +82,8 @@ class FieldDrive:
     lidar: Lidar
     scans: Sweeps
     """The lidar and its scans; `scans.time` has the header stamps."""
+    scans_received: Floats
+    """Times of reception of the scans: of a turn once it is over."""
     truth: dict[str, object] = field(default_factory=dict)
     """Ground truth for truth.json, which is not in the bag; times in the clock of the bag."""
 
@@ -160,9 +162,12 @@ def as_in_the_field(
     }
     odometry = _dead_reckoned(left, right, robot)
     room = around(path.x_m, path.y_m, robot_seed)
-    scans = scanned(path, room, _as_it_sits(sensors.lidar, exact.mount), seed)
+    lidar = sensors.lidar
+    scans = scanned(path, room, _as_it_sits(lidar, exact.mount), seed)
+    came = scans.time + 1.0 / lidar.rate_hz + rng.exponential(sensors.latency, scans.time.size)
     scans = replace(scans, time=scans.time + exact.delay)
-    return FieldDrive(recording.name, wheels, imu, localiser, odometry, sensors.lidar, scans, truth)
+    measured = wheels, imu, localiser, odometry, lidar, scans, np.maximum.accumulate(came)
+    return FieldDrive(recording.name, *measured, truth)
 
 
 def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:

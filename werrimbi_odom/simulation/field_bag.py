@@ -92,8 +92,9 @@ def write_field_bag(
     if mounting:
         sits = transform(first, "base_link", LIDAR_FRAME, np.array(lidar.mount))
         messages.append((first, "/tf_static", sits))
-    for stamp, ranges in zip(drive.scans.time, drive.scans.ranges, strict=True):
-        messages.append((stamp + 1.0 / lidar.rate_hz, "/scan", scan(stamp, ranges)))
+    scans = zip(drive.scans.time, drive.scans_received, drive.scans.ranges, strict=True)
+    for stamp, received, ranges in scans:
+        messages.append((received, "/scan", scan(stamp, ranges)))
     for (stamp, received, left, right), pose in zip(drive.wheels, drive.odometry, strict=True):
         angles = np.repeat([left, right], [len(each) for each in sides])
         messages.append((received, "/joint_states", ros.joints(stamp, names, angles)))
