@@ -135,19 +135,20 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     # Where it is not known, the sign of the motion is taken from the wheels.
     sign = 1.0 if known else np.where(wheels.sum(axis=-1) < 0.0, -1.0, 1.0)
     best = min(float(_typical(sign * each, wheels).min()) for each in ways)
-    turned, apart_a_metre = np.inf, 0.0
+    turned, turn_a_metre = np.inf, 0.0
     if turning.sum() > rules.CIRCLE_FEWEST:
         turned = float(_typical(turns[turning], wheels[:, turning]).min())
         # The base that was entered may be off; how far both wheels roll apart for a turn is seen.
-        rolled_apart = float(np.abs(np.diff(wheels[-1][turning], axis=-1)).sum())
-        apart_a_metre = float(np.abs(turns[turning]).sum()) / max(rolled_apart, robot.left_tick)
+        rolled_apart = float(np.abs(np.diff(wheels[-1][turning], axis=-1)).mean())
+        if rolled_apart > max(ticks):  # else it drives straight, and rounding is all there is
+            turn_a_metre = float(np.abs(turns[turning]).mean()) / rolled_apart
     # A count is as long as the reference says: the radius that was entered may be 1000 times off.
     rolled = 0.5 * float(np.abs(wheels[-1]).sum())
     scale = float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 1.0
     way = float(np.median(np.abs(ways[0])))
     rounding = _rounding(run, robot)
     # A way is half the sum of two readings, and wheels roll apart by their difference.
-    return Closeness(best, way, scale * rounding, turned, 2.0 * rounding * apart_a_metre)
+    return Closeness(best, way, scale * rounding, turned, 2.0 * rounding * turn_a_metre)
 
 
 def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:
