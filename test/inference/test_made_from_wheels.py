@@ -113,6 +113,23 @@ def test_what_was_measured_is_never_refused(seed: int, noise: float) -> None:
 
 
 @SEEDS
+@pytest.mark.parametrize("counts_apart", [0.0, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize("per_turn", [64.0, 4096.0])
+def test_a_straight_drive_is_never_refused(seed: int, counts_apart: float, per_turn: float) -> None:
+    """Its headings are noise, and what its wheels roll apart is rounding, or a few counts."""
+    random = np.random.default_rng(seed)
+    robot = replace(ROBOT, left_ticks_per_revolution=per_turn, right_ticks_per_revolution=per_turn)
+    time = np.arange(0.0, 40.0, 0.05)
+    rolled = 0.3 * time / robot.left_tick
+    # Apart by some counts in each stretch of a few tens of centimetres, to and fro.
+    apart = counts_apart * np.sin(2.0 * np.pi * 0.3 * time / 0.5)
+    counts = [np.rint(each).astype(np.int64) for each in (rolled - apart, rolled + apart)]
+    place = np.stack([0.3 * time, np.zeros_like(time)]) + random.normal(0.0, 1e-3, (2, time.size))
+    seen = Reference(time, *place, random.normal(0.0, 2e-3, time.size))
+    require_independent(Run("run", Path("run"), Ticks(time, *counts), seen), robot)
+
+
+@SEEDS
 def test_what_is_closer_than_wheels_roll_is_suspect_and_not_refused(seed: int) -> None:
     """Way and turns between the poses of a filter, turned back into two wheels, judged by it."""
     time, left, right, *_ = driven(seed)
