@@ -52,8 +52,13 @@ ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int1
 """The same for both wheels, as values without names."""
 FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
 """They may hold counters but usually hold commands; read on request only."""
-CLOUDS = ("sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/MultiEchoLaserScan")
-"""Types of lidars' messages that are not matched."""
+CLOUDS = {
+    "sensor_msgs/msg/PointCloud2": "clouds of points; scans of one level plane are matched "
+    "(sensor_msgs/LaserScan): pointcloud_to_laserscan makes them of it",
+    "sensor_msgs/msg/MultiEchoLaserScan": "several echoes a beam; laser_proc makes a "
+    "sensor_msgs/LaserScan of the first or the strongest, which can be matched",
+}
+"""Lidar message types that are not matched, and how to convert them."""
 POINT = "geometry_msgs/msg/PointStamped"
 POSES = {
     ODOMETRY: "poses",

@@ -57,7 +57,7 @@ TURNED = 0.9
 
 MORE_THAN_A_TURN = 2.1 * np.pi
 """Range of yaw from which it may be in degrees: wrapped, in radians, it is 2 pi at most."""
-IN_DEGREES = (
+YAW_IN_DEGREES = (
     "the reference's yaw is in degrees, and must be in radians: convert that column (times "
     "pi/180; of a gyro, its rates)"
 )
@@ -182,7 +182,7 @@ def _degrees(ticks: Ticks, reference: Reference) -> str:
     if turns_by_wheels(ticks, reference) > HARDLY:
         return ""
     in_radians = replace(reference, yaw=np.radians(reference.yaw))
-    return IN_DEGREES if turns_by_wheels(ticks, in_radians) > TAKES else ""
+    return YAW_IN_DEGREES if turns_by_wheels(ticks, in_radians) > TAKES else ""
 
 
 def _no_heading(ticks: Ticks, reference: Reference) -> str:

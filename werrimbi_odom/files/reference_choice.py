@@ -17,14 +17,6 @@ from werrimbi_odom.files.own_odometry import is_odometry_frame
 NONE = "none"
 """Value in place of a topic: use no reference."""
 
-_OTHER_SCANS = (
-    "clouds of points; scans of one level plane are matched (sensor_msgs/LaserScan): "
-    "pointcloud_to_laserscan makes them of it",
-    "several echoes a beam; laser_proc makes a sensor_msgs/LaserScan of the first or the "
-    "strongest, which can be matched",
-)
-"""How to convert each of `CLOUDS`."""
-
 
 class Chosen(NamedTuple):
     """The reference of a run."""
@@ -74,11 +66,10 @@ def listed(found: Sequence[Measured]) -> str:
 
 def other_scans(held: Contents) -> list[tuple[str, str]]:
     """Lidar topics that are not matched, each with its content in words."""
-    words = dict(zip(CLOUDS, _OTHER_SCANS, strict=True))
     return [
         (each.name, moved_words(held.moved[each.name]) if each.name in held.moved else told)
         for each in held.topics
-        if (told := words.get(each.kind))
+        if (told := CLOUDS.get(each.kind))
     ]
 
 

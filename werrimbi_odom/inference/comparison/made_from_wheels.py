@@ -53,29 +53,10 @@ def require_independent(run: Run, robot: Robot, limits: EncoderLimits | None = N
     InputError if it is computed from the wheels.
     """
     found = None if run.reference is None else closeness(run, robot, limits)
-    if found is not None and found.apart < rules.CIRCLE_EXACT * found.rounding:
+    if found is not None and (closer := _closer_than_measured(found)):
         what = run.circle or "the reference"
         raise InputError(
-            f"{run.path}: {what}: it agrees with the wheels to {_small(found.apart)} in "
-            f"{found.way:.2g} m, closer than their counts tell the way themselves "
-            f"({_small(found.rounding)}): it was made from the same counts, and cannot judge them "
-            "(--force takes it all the same)"
-        )
-    if found is not None and found.turns_apart < rules.CIRCLE_EXACT * found.turns_rounding:
-        what = run.circle or "the reference"
-        raise InputError(
-            f"{run.path}: {what}: its headings agree with the wheels to "
-            f"{1e3 * found.turns_apart:.2g} mrad in {found.way:.2g} m, closer than their counts "
-            f"tell the turn themselves ({1e3 * found.turns_rounding:.2g} mrad): it was made from "
-            "the same counts, and cannot judge them (--force takes it all the same)"
-        )
-    if found is not None and not found.rounding and found.apart < rules.CIRCLE_FINEST * found.way:
-        what = run.circle or "the reference"
-        raise InputError(
-            f"{run.path}: {what}: it agrees with the wheels to {_small(found.apart)} in "
-            f"{found.way:.2g} m, closer than anything measures: it was made from the same angles "
-            "(or is a simulator's pose without noise), and cannot judge them (--force takes it all "
-            "the same)"
+            f"{run.path}: {what}: {closer}, and cannot judge them (--force takes it all the same)"
         )
     if not run.circle:
         return _words_about_closeness(run, robot, found)
@@ -112,6 +93,28 @@ def _words_about_closeness(run: Run, robot: Robot, found: Closeness | None) -> s
         "or both from one filter (or it is a simulator's robot without noise); then it shows none "
         "of their errors"
     )
+
+
+def _closer_than_measured(found: Closeness) -> str:
+    """How a reference agrees with the wheels more closely than any measurement; "" if not."""
+    within = f"in {found.way:.2g} m, closer than"
+    if found.apart < rules.CIRCLE_EXACT * found.rounding:
+        return (
+            f"it agrees with the wheels to {_small(found.apart)} {within} their counts tell the "
+            f"way themselves ({_small(found.rounding)}): it was made from the same counts"
+        )
+    if found.turns_apart < rules.CIRCLE_EXACT * found.turns_rounding:
+        return (
+            f"its headings agree with the wheels to {1e3 * found.turns_apart:.2g} mrad {within} "
+            f"their counts tell the turn themselves ({1e3 * found.turns_rounding:.2g} mrad): it "
+            "was made from the same counts"
+        )
+    if not found.rounding and found.apart < rules.CIRCLE_FINEST * found.way:
+        return (
+            f"it agrees with the wheels to {_small(found.apart)} {within} anything measures: it "
+            "was made from the same angles (or is a simulator's pose without noise)"
+        )
+    return ""
 
 
 def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Closeness | None:

@@ -17,7 +17,7 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.mislabelled_columns import IN_DEGREES as IN_DEGREES_WORDS
+from werrimbi_odom.files.mislabelled_columns import YAW_IN_DEGREES
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
@@ -245,9 +245,7 @@ def _with_counts(found: Sequence[SetUpFinding], robot: Robot) -> list[SetUpFindi
 
 
 def _in_degrees(gain: float) -> SetUpFinding:
-    return SetUpFinding(
-        IN_DEGREES, {}, "180/pi", f"{IN_DEGREES_WORDS}, and diagnose again", (), gain
-    )
+    return SetUpFinding(IN_DEGREES, {}, "180/pi", f"{YAW_IN_DEGREES}, and diagnose again", (), gain)
 
 
 def _late(lag: float, gain: float) -> SetUpFinding:
