@@ -148,7 +148,46 @@ def test_without_a_reference_it_says_so(tmp_path: Path, werrimbi: Werrimbi) -> N
     bag, _ = bag_of(tmp_path, measured=False)
     printed = werrimbi("info", bag).words
     assert "Nothing that is read in the bag measures the robot but its own wheels" in printed
-    assert "Record again with something that measures the robot" in printed
+    assert "If another recording measured these drives" in printed
+    assert "record again with something that measures the robot" in printed
+
+
+@pytest.mark.parametrize("kind", ["bag", "table"])
+def test_a_reference_in_another_recording_is_looked_at_and_kept_in_the_command(
+    kind: str, tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """Motion capture of another computer: its bag, which holds another body too, or a table."""
+    bag, _ = bag_of(tmp_path, measured=False)
+    ros, other = Messages(), tmp_path / "mocap"
+    seen = [(at, pose) for _, at, pose in poses(ros, held(run_of(ROBOT, 1, 40), 20.0, 26.0)[0])]
+    if kind == "bag":
+        ros.write(other, [(f"/vrpn/{name}/pose", *each) for each in seen for name in ("a", "b")])
+        told = f"Reference /vrpn/a/pose in {other}: poses (poses in map, of a sensor"
+    else:
+        other.mkdir()
+        rows = (
+            f"{1e-9 * at},{p.pose.position.x},{p.pose.position.y},"
+            f"{2.0 * np.arctan2(p.pose.orientation.z, p.pose.orientation.w)}"
+            for at, (_, p) in seen
+        )
+        (other / "reference.csv").write_text("\n".join(["t_s,x_m,y_m,yaw_rad", *rows]) + "\n")
+        told = f"Reference: {other / 'reference.csv'}, poses."
+    robot, judged = tmp_path / "robot.yaml", tmp_path / "compare.json"
+    for words in (("--reference", other), ("--reference", other, "--out", robot)):
+        said = werrimbi("info", bag, *words, "--json", judged)
+        assert told in said.words
+        assert "Nothing that is read in the bag measures" not in said.words
+        assert "the wheels turned and the robot did not" in said.words
+        taken = [
+            each
+            for each in json.loads(judged.read_text())["runs"][0]["references"]
+            if each["taken"]
+        ]
+        assert [each["run"] for each in taken] == [str(other)]
+        command = next(line for line in said.out.splitlines() if "    werri" in line)
+        assert f"--reference {other}" in command
+    assert werrimbi(*shlex.split(command)[1:], "--json", judged)
+    assert json.loads(judged.read_text())["legs"]["count"] > 20
 
 
 def one_drive(*spaces: str, wheels_late: int = 0) -> list[tuple[str, int, object]]:

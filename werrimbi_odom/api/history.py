@@ -26,7 +26,7 @@ from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
-from werrimbi_odom.files.recordings import DriveOptions, gathered, refuse_twice
+from werrimbi_odom.files.recordings import DriveOptions, gathered, reference_of_each, refuse_twice
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
@@ -156,11 +156,7 @@ def _looked_at(run: Run | Path, robot: RobotFile, how: DriveOptions) -> Dated:
 def _tasks(
     paths: Sequence[Path], robot: RobotFile, how: DriveOptions, cache: str | Path | None
 ) -> list[DriveTask]:
-    references: Sequence[Path | None] = how.references or [None] * len(paths)
-    if len(references) != len(paths):
-        raise InputError(
-            f"{len(references)} times --reference for {len(paths)} runs: give it once for each RUN"
-        )
+    references = reference_of_each(paths, how.references)
     folder = None if cache is None else Path(cache)
     with suppress(OSError):
         if folder is not None:

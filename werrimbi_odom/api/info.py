@@ -26,9 +26,12 @@ from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.merged_reference import SCALE_MOST
 from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import bag_at, read_run
+from werrimbi_odom.files.recordings import reference_of_each
+from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_poses
+from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.files.urdf_wheels import of_urdf
@@ -57,6 +60,7 @@ def info(
     out: str | Path | None = None,
     ticks_topic: str | None = None,
     reference_topic: str | None = None,
+    references: Sequence[str | Path] = (),
     force: bool = False,
 ) -> Result[Info]:
     """Contents of recordings, what they allow, and the next command.
@@ -71,6 +75,8 @@ def info(
         Path for a first robot file.
     ticks_topic, reference_topic
         Topics to use; default: the most suitable ones.
+    references
+        Separate reference of each run: other bags, or folders with reference.csv.
     force
         Whether `out` may be overwritten.
 
@@ -80,7 +86,9 @@ def info(
         If a recording is unreadable, or a robot file cannot be written.
     """
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
-    found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
+    others = reference_of_each(paths, [Path(each) for each in references])
+    file = None if robot is None else Path(robot)
+    found = _look(paths, others, file, ticks_topic, reference_topic)
     if out is not None:
         found = replace(found, written=_write(found, Path(out), force))
     return Result(
@@ -89,7 +97,11 @@ def info(
 
 
 def _look(
-    paths: Sequence[Path], robot: Path | None, ticks_topic: str | None, reference_topic: str | None
+    paths: Sequence[Path],
+    others: Sequence[Path | None],
+    robot: Path | None,
+    ticks_topic: str | None,
+    reference_topic: str | None,
 ) -> Info:
     source, first = None, FirstRobot()
     if robot is not None:
@@ -104,8 +116,8 @@ def _look(
             with suppress(InputError):  # a controller's file, from which a robot file is made
                 source, first = None, of_controller(robot)
     held = []
-    for path in paths:
-        one, first = _held(path, source, first, ticks_topic, reference_topic)
+    for path, other in zip(paths, others, strict=True):
+        one, first = _held(path, other, source, first, ticks_topic, reference_topic)
         held.append(one)
     title = f"A first robot file, from {paths[0].name}: check base and radius with a ruler"
     sizes = source is not None or first.has_sizes
@@ -115,20 +127,29 @@ def _look(
 
 def _held(
     path: Path,
+    other: Path | None,
     source: RobotFile | None,
     first: FirstRobot,
     ticks_topic: str | None,
     reference_topic: str | None,
 ) -> tuple[Held, FirstRobot]:
     bag = bag_at(path)
+    separate = None if other is None else _separate(other, source, reference_topic)
     if bag is None:
-        run = read_run(path, source or robot_file_of(first))
-        return _judged(Held(path, None, None, None, {}, run, ""), source, first), first
+        topic = separate.name if separate is not None else None
+        file = source or robot_file_of(first)
+        run = read_run(path, file, reference=other, reference_topic=topic)
+        held = Held(path, None, None, separate, {}, run, "", other=other)
+        return _judged(held, source, first), first
     held, first = _of_bag(path, bag, source, first, ticks_topic, reference_topic)
+    if other is not None:
+        held = replace(held, reference=separate, beside=None, other=other)
     try:
         if held.wheels is None:
             raise InputError("nothing in it tells how the wheels turned")
-        reference = reference_topic or (held.reference.name if held.reference else "none")
+        reference = reference_topic or (held.reference.name if held.reference else None)
+        if other is None:
+            reference = reference or NONE
         if source is None:
             first = _with_ticks(path, held.wheels, first)
         file, topic = source or robot_file_of(first), held.wheels.name
@@ -138,7 +159,7 @@ def _held(
             if not judged.problem:
                 return judged, first
         held = replace(held, beside=None)
-        run = read_run(path, file, ticks_topic=topic, reference_topic=reference)
+        run = read_run(path, file, ticks_topic=topic, reference_topic=reference, reference=other)
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first
@@ -211,6 +232,16 @@ def _of_bag(
         stamps = stamps_of(opened, sorted(topics))
     held = Held(path, contents, wheels, reference, stamps, None, "", joints, beside=beside)
     return held, first
+
+
+def _separate(other: Path, source: RobotFile | None, wish: str | None) -> Measured | None:
+    """The reference in a recording of its own; None for a folder with reference.csv."""
+    bag = bag_at(other, REFERENCE)
+    if bag is None:
+        return None
+    base = "" if source is None else str(source.values["base_frame_id"])
+    with opened_bag(bag) as opened:
+        return _best(contents_of(opened, base).references, wish)
 
 
 def _topics(each: Wheels | Measured) -> list[str]:

@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     declare(parser, "--out", required=False, help="first robot file to write")
     for what, topic in (("wheels", "--ticks-topic"), ("reference", "--reference-topic")):
         declare(parser, topic, help=f"topic of the {what}, if not the one that is chosen")
-    declare(parser, "--json", "--force")
+    declare(parser, "--reference", "--json", "--force")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -43,6 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
         robot=arguments.robot,
         ticks_topic=arguments.ticks_topic,
         reference_topic=arguments.reference_topic,
+        references=arguments.reference,
         force=arguments.force,
     )
     try:

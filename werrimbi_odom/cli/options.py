@@ -43,6 +43,10 @@ def _file(says: str, metavar: str = "F", **more: Any) -> dict[str, Any]:
 
 _RUNS = "recorded drives: run folders or bags"
 _TICKS = "topic of the wheels, in a bag with several; LEFT,RIGHT where each wheel has its own"
+_REFERENCE = (
+    "bag, or folder with reference.csv, that holds the reference of a drive whose RUN does not; "
+    "once for each RUN"
+)
 _EFFECTS = "file with effects of your own, to try them; may be given again"
 
 OPTIONS: dict[str, dict[str, Any]] = {
@@ -50,6 +54,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--robot": _file("robot file", "R", required=True),
     "--ticks-topic": {"metavar": "T", "help": _TICKS},
     "--reference-topic": {"metavar": "T"},
+    "--reference": _file(_REFERENCE, "RUN", action="append", default=[]),
     "--effects": _file(_EFFECTS, "FILE", action="append", default=[]),
     "--out": _file("robot file to write", "NEW", required=True),
     "--json": _file("write the numbers to this file, as JSON"),
@@ -120,15 +125,8 @@ def add_recording_arguments(
         "Given twice, for poses and for a gyro: the positions of the one with the headings of the "
         "other",
     )
-    parser.add_argument(
-        "--reference",
-        metavar="RUN",
-        action="append",
-        default=[],
-        type=Path,
-        help="bag, or folder with reference.csv, that holds the reference of a drive whose RUN "
-        f"does not; once for each RUN{', then once for each of --holdout' if holdout else ''}",
-    )
+    words = ", then once for each of --holdout" if holdout else ""
+    declare(parser, "--reference", help=f"{OPTIONS['--reference']['help']}{words}")
     words = f"{force}{'; ' if force else ''}take a reference although it is made from the wheels"
     declare(parser, "--force", help=words)
     declare(parser, "--effects", "--json", *(["--report"] if report else []))

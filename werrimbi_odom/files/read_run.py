@@ -97,12 +97,12 @@ def read_run(
     )
 
 
-def bag_at(path: Path) -> Path | None:
-    """The bag of a run; None for a folder with ticks.csv.
+def bag_at(path: Path, table: str = TICKS) -> Path | None:
+    """The bag of a run; None for a folder with `table`.
 
     InputError if there is no run at `path`.
     """
-    found: Path | None = _of_kind(path, lambda folder: None, lambda bag: bag, TICKS)
+    found: Path | None = _of_kind(path, lambda folder: None, lambda bag: bag, table)
     return found
 
 

@@ -129,12 +129,7 @@ def gathered(
     InputError if an input is not usable, or a drive is given twice.
     """
     drives = [*runs, *holdout]
-    references: Sequence[Path | None] = how.references or [None] * len(drives)
-    if len(references) != len(drives):
-        raise InputError(
-            f"{len(references)} times --reference for {len(drives)} runs: give it once for each "
-            "RUN, then for each of --holdout, in their order"
-        )
+    references = reference_of_each(drives, how.references)
     refuse_twice(drive for drive in drives if isinstance(drive, Path))
     found: list[Run] = []
     for number, drive in enumerate(drives):
@@ -155,6 +150,21 @@ def gathered(
         found = [without_held_poses(run, source.robot) for run in found]
     count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
+
+
+def reference_of_each(
+    drives: Sequence[Run | Path], references: Sequence[Path]
+) -> Sequence[Path | None]:
+    """The separate reference of each drive; None where they contain theirs.
+
+    InputError if there are not as many as drives.
+    """
+    if references and len(references) != len(drives):
+        raise InputError(
+            f"{len(references)} times --reference for {len(drives)} runs: give it once for each "
+            "RUN, then for each of --holdout, in their order"
+        )
+    return references or [None] * len(drives)
 
 
 def _with_one_scale(runs: Sequence[Run], fitted: int) -> list[Run]:

@@ -34,7 +34,10 @@ def refuse_unjudgeable(run: Run, robot: Robot) -> None:
     back in time, or a column holds something else than its name says.
     """
     if run.reference is None:
-        raise InputError(f"{run.path}: there is no reference to compare with {run.no_reference}")
+        raise InputError(
+            f"{run.path}: there is no reference to compare with {run.no_reference}; --reference "
+            "gives another recording that holds it"
+        )
     _refuse_reversed(run, "the ticks go", run.ticks.time)
     _refuse_reversed(run, "the reference goes", run.reference.time)
     _refuse_back(run)

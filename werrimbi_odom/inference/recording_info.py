@@ -31,7 +31,7 @@ class Held:
     """Topics of a bag; None for a folder."""
     wheels: Wheels | None
     reference: Measured | None
-    """Topic proposed as the reference of a bag."""
+    """Topic proposed as the reference, in the bag or in `other`."""
     stamps: dict[str, Stamps]
     run: Run | None
     """The run as read with these topics; None if it cannot be read."""
@@ -54,6 +54,9 @@ class Held:
     """Rate of the headings at rest, which is removed (`legs.gyro_bias`) [rad/s]."""
     beside: Measured | None = None
     """Gyro whose headings are taken with the positions of `reference`, a localiser."""
+
+    other: Path | None = None
+    """Recording that holds the reference, if it is not `path`."""
 
     @property
     def topics(self) -> list[str]:

@@ -11,6 +11,7 @@ from dataclasses import asdict
 from typing import Any
 
 from werrimbi_odom.files.bag_contents import SCAN
+from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
@@ -56,13 +57,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
             for each in (contents.wheels if contents is not None else ())
         ],
         "wheel_joints": picked(held.joints, "left right no_wheels:others"),
-        "references": [
-            picked(each, "topic:name type:kind measures independent why messages")
-            | {"taken": each.name in held.topics}
-            for each in contents.references
-        ]
-        if contents is not None
-        else [{"topic": "reference.csv", "measures": measures_of(held), "taken": True}],
+        "references": _references(held),
         "stamps": {
             name: asdict(each) | {"believed": each.believed} for name, each in held.stamps.items()
         },
@@ -79,15 +74,33 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
     }
 
 
+def _references(held: Held) -> list[dict[str, Any]]:
+    """Those of the recording, then what another one holds, with that one's path."""
+    names = "topic:name type:kind measures independent why messages"
+    taken = held.topics if held.other is None else []
+    known = held.contents.references if held.contents is not None else ()
+    found = [picked(each, names) | {"taken": each.name in taken} for each in known]
+    where = {} if held.other is None else {"run": str(held.other)}
+    if held.other is not None and held.reference is not None:
+        found.append(picked(held.reference, names) | {"taken": True} | where)
+    elif held.other is not None or held.contents is None:
+        table = {"topic": REFERENCE, "measures": measures_of(held), "taken": True}
+        found.append(table | where)
+    return found
+
+
 def next_step(found: Info) -> tuple[str, str]:
     """The next step, and its command; "" if there is none."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     if not usable:
         return _otherwise(found)
     if any(measures_of(each) == "nothing" for each in usable):
-        again = "Record again with something that measures the robot beside its wheels"
-        how = "an IMU's gyro shows its turning, a localiser or a scan matcher its poses"
-        return f"{again}: {how}.", ""
+        return (
+            "If another recording measured these drives (a tracker's bag, or poses as the "
+            "reference.csv of a folder), give it with --reference, to info, compare and diagnose "
+            "alike. If none did, record again with something that measures the robot beside its "
+            "wheels: an IMU's gyro shows its turning, a localiser or a scan matcher its poses."
+        ), ""
     if not any(drove(each, found.sizes) for each in usable):
         return "Record again while the robot drives.", ""
     if found.given is None and found.written is None:
@@ -170,11 +183,18 @@ def _names_to_write(held: Held, found: Info) -> str:
 def _asked(usable: Sequence[Held]) -> list[str]:
     """The option for a reference that would not be taken by itself."""
     for held in usable:
-        if held.contents is None or held.reference is None:
+        if held.reference is None:
             continue
-        if held.reference in held.contents.preferred[1:]:
+        known = () if held.contents is None else held.contents.preferred
+        if held.other is not None or held.reference in known[1:]:
             return ["--reference-topic", held.reference.name]
     return []
+
+
+def _others(usable: Sequence[Held]) -> list[str]:
+    """The recordings that hold the references, each with its option."""
+    others = [str(each.other) for each in usable if each.other is not None]
+    return [word for other in others for word in ("--reference", other)]
 
 
 def command_of(found: Info) -> str:
@@ -185,14 +205,18 @@ def command_of(found: Info) -> str:
     if robot is None:
         given = [] if found.parameters is None else ["--robot", str(found.parameters)]
         return shlex.join(
-            ["werrimbi", "info", *paths, *given, *_asked(usable), "--out", "robot.yaml"]
+            [
+                *("werrimbi", "info", *paths, *given, *_asked(usable)),
+                *(*_others(usable), "--out", "robot.yaml"),
+            ]
         )
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]
     held = usable[0]
-    if held.contents is not None and held.wheels is not None and held.reference is not None:
-        topics = held.topics if all(each.beside for each in usable) else held.topics[:1]
+    if held.wheels is not None:
         words += ["--ticks-topic", held.wheels.name]
+    if held.reference is not None:
+        topics = held.topics if all(each.beside for each in usable) else held.topics[:1]
         words += [word for topic in topics for word in ("--reference-topic", topic)]
-    return shlex.join([*words, *paths])
+    return shlex.join([*words, *_others(usable), *paths])

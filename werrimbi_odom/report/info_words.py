@@ -13,6 +13,7 @@ from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS, SCAN
 from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.run_checks import words_about_held
+from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
@@ -42,9 +43,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield from _stamps(held)
     else:
         yield "Wheels: ticks.csv, counters."
-        measures = measures_of(held)
-        if measures != "nothing":
-            yield f"Reference: reference.csv, {_MEASURES[measures]}."
+    yield from _of_another_file(held)
     if held.restamped:
         yield (
             "The counts show that the wheels' counters were read at even intervals, and stamped as "
@@ -105,9 +104,23 @@ def _references(held: Held) -> Iterator[str]:
         for name, what in other_scans(held.contents)
     )
     yield from _gyro_in_odometry(held)
-    if held.reference is None:
+    if held.reference is None and held.other is None:
         but = " but its own wheels" if held.wheels is not None else ""
         yield f"Nothing that is read in the bag measures the robot{but}.{_unread_sensors(held)}"
+
+
+def _of_another_file(held: Held) -> Iterator[str]:
+    """The reference that is no topic of the recording itself."""
+    measures, topic = measures_of(held), held.reference
+    if held.other is not None and topic is not None:
+        taken = "" if held.problem else " It is taken."
+        yield (
+            f"Reference {topic.name} in {held.other}: {_MEASURES[topic.measures]} ({topic.why})."
+            f"{taken}"
+        )
+    elif topic is None and measures != "nothing":
+        table = REFERENCE if held.other is None else held.other / REFERENCE
+        yield f"Reference: {table}, {_MEASURES[measures]}."
 
 
 def _unread_sensors(held: Held) -> str:
@@ -122,8 +135,8 @@ def _unread_sensors(held: Held) -> str:
         return ""
     return (
         f" By name {listed(may)} may: written as rows of t_s (when each was received), x_m, y_m "
-        "and yaw_rad into the reference.csv of a folder, --reference FOLDER gives them to compare "
-        "and diagnose."
+        "and yaw_rad into the reference.csv of a folder, --reference FOLDER gives them to info, "
+        "compare and diagnose."
     )
 
 
