@@ -78,7 +78,7 @@ class Messages:
     def floats(self, *values: float) -> tuple[str, Any]:
         kind = "std_msgs/msg/Float64MultiArray"
         layout = self.make("std_msgs/msg/MultiArrayLayout", [], 0)
-        return kind, self.make(kind, layout, np.array(values))
+        return kind, self.make(kind, layout, np.array(values, dtype=np.float64))
 
     def encoder(self, nanoseconds: int, count: int) -> tuple[str, Any]:
         kind = "duckietown_msgs/msg/WheelEncoderStamped"

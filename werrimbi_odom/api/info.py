@@ -21,6 +21,7 @@ from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
 from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
 from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.merged_reference import SCALE_MOST
@@ -48,6 +49,8 @@ from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.motion_states import driven
 from werrimbi_odom.inference.recording_info import Held, Info
+from werrimbi_odom.inference.set_up.corrected_robot import with_findings
+from werrimbi_odom.inference.set_up.search import knows_left, mistakes_without_sizes
 from werrimbi_odom.report.info import document_of, info_json
 
 DESCRIPTION = "/robot_description"
@@ -303,13 +306,18 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
                 recorded = without_held_poses(recorded, robot)
         run = with_no_driving(recorded, robot, limits)
         counters = counters_of(run, robot, limits)
-        found = driven(counters, robot, run.no_driving or ())
+        how = EvaluationOptions(limits=limits)
+        mistakes = mistakes_without_sizes(run, robot, how)
+        without_names = held.wheels is not None and held.wheels.of_array
+        confirmed = without_names and not mistakes and knows_left(run, robot, how)
+        wired, _ = with_findings(robot, mistakes, None)
+        found = driven(counters, wired, run.no_driving or ())
         record = record_of(run, robot, limits) if run.reference is not None else None
     except InputError as error:
         return replace(held, problem=str(error))
     seen = None
     if record is not None:
-        seen = driven(counters, robot, run.no_driving or (), unmeasured(record))
+        seen = driven(counters, wired, run.no_driving or (), unmeasured(record))
     scans = bias = 0.0
     if recorded.reference is not None and run.reference is not None:
         given, used = recorded.reference, run.reference
@@ -320,6 +328,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     return replace(
         held,
         run=run,
+        mistakes=mistakes,
+        confirmed=confirmed,
         driven=found,
         seen=seen,
         left_out=() if record is None else record.left_out,

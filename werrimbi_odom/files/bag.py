@@ -21,6 +21,8 @@ from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
 
 ROS1 = ".bag"
 SUFFIXES = (".mcap", ".db3", ROS1)
+_STRETCH = 100
+"""Messages in a row of a sample, for differences from each to the next."""
 _BEGIN = (b"\x89MCAP0", b"SQLite format 3", b"#ROSBAG V")
 
 
@@ -68,6 +70,20 @@ class Bag:
             for raw in self._raw(topics):
                 yield BagMessage(raw.topic, raw.received, self._read(raw))
         except Exception as error:  # a damaged bag may raise anything, from struct to zstd
+            raise _unreadable(self.path, error) from error
+
+    def sampled(self, topic: str, most: int) -> Iterator[BagMessage]:
+        """Yield the messages of a topic, or about `most` in stretches spread over all of the bag.
+
+        Others are not deserialised, which takes most of the time. InputError as in `messages`.
+        """
+        count = sum(each.messages for each in self.topics if each.name == topic)
+        every = max(1, count // most)
+        try:
+            for number, raw in enumerate(self._raw([topic])):
+                if number // _STRETCH % every == 0:
+                    yield BagMessage(raw.topic, raw.received, self._read(raw))
+        except Exception as error:  # as above
             raise _unreadable(self.path, error) from error
 
     def _read(self, raw: Raw) -> Any:

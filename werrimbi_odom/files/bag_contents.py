@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from werrimbi_odom.files.array_places import counting_places
+from werrimbi_odom.files.array_places import Sides, counting_sides
 from werrimbi_odom.files.bag import Bag, Topic
 from werrimbi_odom.files.derived_references import copies, second_hand
 from werrimbi_odom.files.driver_messages import DRIVERS
@@ -87,6 +87,8 @@ class Wheels:
     gives: Gives
     joints: tuple[str, ...] = ()
     """Names of the joints in a JointState."""
+    like: Sides = ((), ())
+    """Places in an array of further counters that run with the left, and with the right one."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -94,10 +96,22 @@ class Wheels:
         return tuple(each.partition(":")[0] for each in self.name.split(","))
 
     @property
+    def of_array(self) -> bool:
+        """Whether they are values of an array, which have no names."""
+        return self.kind in (*ARRAYS, *FLOATS)
+
+    @property
     def places(self) -> tuple[int, ...]:
         """Places of the two counters within an array, from 0, if it holds more."""
-        array = self.kind in (*ARRAYS, *FLOATS)
-        return tuple(map(int, self.name.split(":")[1:])) if array else ()
+        return tuple(map(int, self.name.split(":")[1:])) if self.of_array else ()
+
+    @property
+    def exchanged(self) -> str:
+        """The name with left and right exchanged; "" where no option does that."""
+        if self.kind in PAIRS:
+            return ",".join(reversed(self.name.split(",")))
+        left, right = self.places or (0, 1)
+        return f"{self.topics[0]}:{right}:{left}" if self.of_array else ""
 
 
 @dataclass(frozen=True)
@@ -287,9 +301,10 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
             values = len(getattr(firsts.get(topic.name), "data", ()))
             if values == 2 and topic.kind in ARRAYS:
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
-            elif values > 2 and len(counting := counting_places(bag, topic.name, values)) == 2:
-                name = f"{topic.name}:{counting[0]}:{counting[1]}"
-                found.append(Wheels(name, topic.kind, topic.messages, "counts"))
+            elif values > 1 and (sides := counting_sides(bag, topic.name, values)) is not None:
+                name = f"{topic.name}:{sides[0][0]}:{sides[1][0]}"
+                like = (sides[0][1:], sides[1][1:])
+                found.append(Wheels(name, topic.kind, topic.messages, "counts", like=like))
         elif topic.kind in PAIRS:
             mirrored = topic.name.replace("left", "right")
             for each in bag.topics if mirrored != topic.name else ():

@@ -20,6 +20,7 @@ from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
+from werrimbi_odom.inference.set_up.findings import SetUpFinding
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,10 @@ class Held:
     at_fault: Literal["", "wheels", "names"] = ""
     """Set if `problem` is one of the wheels, which no other reference mends: the wheels themselves,
     or the names that the robot file gives to their joints."""
+    mistakes: tuple[SetUpFinding, ...] = ()
+    """Mistakes of wiring and mount that the reference shows; `driven` has them put right."""
+    confirmed: bool = False
+    """Whether the reference confirms which counter of an array is left."""
     driven: DrivenAmount | None = None
     seen: DrivenAmount | None = None
     """What of that the reference measured; None where there is none."""

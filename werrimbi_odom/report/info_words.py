@@ -18,6 +18,8 @@ from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of, unseen_much
+from werrimbi_odom.inference.set_up.findings import WIRING_WORDS
+from werrimbi_odom.inference.set_up.search import SWAPPED
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
 from werrimbi_odom.report.phrases import left_out_words
@@ -44,6 +46,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     else:
         yield "Wheels: ticks.csv, counters."
     yield from _of_another_file(held)
+    yield from _mistakes(held)
     if held.restamped:
         yield (
             "The counts show that the wheels' counters were read at even intervals, and stamped as "
@@ -107,6 +110,15 @@ def _references(held: Held) -> Iterator[str]:
     if held.reference is None and held.other is None:
         but = " but its own wheels" if held.wheels is not None else ""
         yield f"Nothing that is read in the bag measures the robot{but}.{_unread_sensors(held)}"
+
+
+def _mistakes(held: Held) -> Iterator[str]:
+    """What the reference shows to be set up wrongly."""
+    for each in held.mistakes:
+        mend = ""
+        if each.effect == SWAPPED and held.wheels is not None and held.wheels.exchanged:
+            mend = f" If it is the counters, --ticks-topic {held.wheels.exchanged} exchanges them."
+        yield f"Set up wrongly, as the reference shows: {each.words}.{mend}"
 
 
 def _of_another_file(held: Held) -> Iterator[str]:
@@ -248,7 +260,9 @@ def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
     way = ""
     if sizes and "drove" in times:
         turned = math.degrees(drive.turned)
-        way = f" By its wheels it went {drive.way:.1f} m and turned {turned:.0f}°"
+        wired = any(each.effect in WIRING_WORDS for each in held.mistakes)
+        right = ", with that put right," if wired else ""
+        way = f" By its wheels{right} it went {drive.way:.1f} m and turned {turned:.0f}°"
         times_told = "once" if drive.reversals == 1 else f"{drive.reversals} times"
         way += f", and changed its direction {times_told}." if drive.reversals else "."
         if held.seen is not None and unseen_much(held):
@@ -280,13 +294,26 @@ def wheels_words(held: Held) -> str:
         told = f", on the left {listed(joints.left)}, on the right {listed(joints.right)}"
     elif wheels.joints:
         told = f"; no name says which joint is a wheel: {listed(wheels.joints)}"
-    if wheels.places:
-        left, right = wheels.places
+    if wheels.of_array:
+        places = zip(wheels.places or (0, 1), wheels.like, strict=True)
+        left, right = (
+            f"number {place}" + (f" ({listed(tuple(map(str, like)))} alike)" if like else "")
+            for place, like in places
+        )
         told = (
-            f": of its values, counted from 0, number {left} as the left wheel's and {right} as "
-            f"the right one's; --ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
+            f": of its values, counted from 0, {left} as the left wheel's and {right} as the "
+            f"right one's, {_which_is_left(held)}; "
+            f"--ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
         )
     return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
+
+
+def _which_is_left(held: Held) -> str:
+    if held.mistakes:
+        return "in their order"
+    if held.confirmed:
+        return "which the reference's turns confirm"
+    return "in their order, as nothing shows which is left"
 
 
 def _unread(held: Held) -> str:

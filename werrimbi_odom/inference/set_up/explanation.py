@@ -48,6 +48,11 @@ class Wired:
     """Remaining mounting angle [rad]; 0 where not identifiable."""
 
     @property
+    def of_wheels(self) -> bool:
+        """Whether a counter is wired wrongly."""
+        return self.swapped or self.left_reversed or self.right_reversed
+
+    @property
     def mistakes(self) -> float:
         """Cost of the mistakes: -log10 of their prior frequency (`rules.set_up`)."""
         both = self.left_reversed and self.right_reversed

@@ -79,10 +79,17 @@ def _proposals(setting: Setting, ways: list[Wired], yaw_alone: bool) -> Iterator
     yaw = setting.wired.yaw
     if abs(yaw) > rules.ASKEW:
         without = replace(setting, wired=replace(setting.wired, yaw=0.0))
+        degrees = round(math.degrees(yaw))
+        degrees = 180 if degrees == -180 else degrees
         words = (
-            f"the reference's forward axis is turned by {math.degrees(yaw):.0f}° against the "
+            f"the reference's forward axis is turned by {degrees}° against the "
             "robot's: its marker or laser is mounted otherwise than was entered"
         )
+        if abs(yaw) > math.pi - rules.ASKEW and not setting.wired.of_wheels:
+            words += (
+                ", or what the counters take for ahead is its rear (both exchanged, both with the "
+                "wrong sign)"
+            )
         twins = (*find("reference_yaw_offset").twins, *twins_of("reference_yaw_offset", ways))
         yield SetUpFinding("reference_yaw_offset", {"angle": yaw}, None, words, twins, 1.0, without)
 
@@ -99,6 +106,8 @@ def _wiring(setting: Setting, ways: list[Wired]) -> Iterator[SetUpFinding]:
             right = replace(wired, **{mark: False})
             twins = twins_of(name, ways)
             words = WIRING_WORDS[name]
+            if wired.swapped and name != "wheels_swapped":
+                words += ", once both are exchanged"
             if "reference_mirrored" in twins:
                 words += "; or the reference's frame is left-handed (y down; a lidar upside down)"
             yield SetUpFinding(name, {}, None, words, twins, 1.0, replace(setting, wired=right))

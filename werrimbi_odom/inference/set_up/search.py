@@ -53,6 +53,7 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 DELAY, RADIUS = "reference_delay", "wheel_radius_scale"
+SWAPPED, MOUNT = "wheels_swapped", "reference_yaw_offset"
 IN_UNIT = (
     "the reference's positions are in {unit}, and x_m and y_m mean metres: convert these columns "
     "(divide by {size:.6g}) and diagnose again"
@@ -171,6 +172,24 @@ def look_for_mistakes(
             f"{of_a_gyro if measured == 'heading' else 'metres'}?"
         ) from error
     return SetUp(findings, mended)
+
+
+def mistakes_without_sizes(
+    run: Run, robot: Robot, options: EvaluationOptions
+) -> tuple[SetUpFinding, ...]:
+    """Mistakes of wiring and mount alone, for a robot whose sizes need not be known."""
+    try:
+        findings = look_for_mistakes([run], robot, options).findings
+    except InputError:  # nothing in common, by sizes that may be mere placeholders
+        return ()
+    return tuple(each for each in findings if each.effect in (*WIRING_WORDS, MOUNT))
+
+
+def knows_left(run: Run, robot: Robot, options: EvaluationOptions) -> bool:
+    """Whether a run shows which counter is left: exchanged ones would be a mistake."""
+    exchanged, _ = with_findings(robot, [SetUpFinding(SWAPPED, {}, None, "")], None)
+    found = mistakes_without_sizes(run, exchanged, options)
+    return any(each.effect == SWAPPED for each in found)
 
 
 def _search_headings(
