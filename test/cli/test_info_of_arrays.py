@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import Run
 DRIVEN = "By its wheels, with that put right, it went"
 EXCHANGED = "left and right counters are exchanged"
 LEFT_BACK, RIGHT_BACK = (f"the {side} counter has the wrong sign" for side in ("left", "right"))
-ASTERN = "the reference's forward axis is turned by 180°"
+ASTERN = "180° against the robot's"
 Order = Callable[[int, int], tuple[int, ...]]
 
 

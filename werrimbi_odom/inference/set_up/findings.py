@@ -79,10 +79,8 @@ def _proposals(setting: Setting, ways: list[Wired], yaw_alone: bool) -> Iterator
     yaw = setting.wired.yaw
     if abs(yaw) > rules.ASKEW:
         without = replace(setting, wired=replace(setting.wired, yaw=0.0))
-        degrees = round(math.degrees(yaw))
-        degrees = 180 if degrees == -180 else degrees
         words = (
-            f"the reference's forward axis is turned by {degrees}° against the "
+            f"the reference's forward axis is turned by {math.degrees(yaw):.0f}° against the "
             "robot's: its marker or laser is mounted otherwise than was entered"
         )
         if abs(yaw) > math.pi - rules.ASKEW and not setting.wired.of_wheels:
