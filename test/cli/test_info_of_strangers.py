@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.cli.commands import write_run
+import werrimbi_odom as wo
+from test.cli.commands import PLAIN, ROBOT_FILE, write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import JOINTS, gyro, joints, poses, stamp_of
@@ -128,6 +129,31 @@ def test_a_robot_that_stood_shows_nothing(sizes: bool, tmp_path: Path, werrimbi:
     assert "It cannot show anything: the robot hardly moved." in told
     assert "It can show" not in told
     assert told.endswith("Record again while the robot drives.")
+
+
+def test_a_filter_s_poses_as_wheels_have_no_counts_and_no_radius_of_the_file(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """They cancel: what is turned back by the file's sizes does not depend on them."""
+    ros, run = Messages(), run_of(PLAIN, 1, 60)
+    entries = list(poses(ros, run))
+    larger = replace(PLAIN, wheel_radius=1.6 * PLAIN.wheel_radius)
+    fused = wo.odometry(larger, run.ticks.time, run.ticks.left, run.ticks.right)
+    for time, *pose in zip(run.ticks.time, fused.x, fused.y, fused.yaw, strict=True):
+        at = stamp_of(time)
+        entries.append(("/odometry/filtered", at, ros.odometry(at, *pose)))
+    bag = ros.write(tmp_path / "bag", sorted(entries, key=lambda each: each[1]))
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(ROBOT_FILE)
+    option = ("--ticks-topic", "/odometry/filtered")
+    said = werrimbi("info", bag).words
+    assert f"{' '.join(option)} takes a filter's poses in their stead" in said
+    assert "a filter's poses, turned back" in werrimbi("info", bag, *option).words
+    told = werrimbi("diagnose", bag, "--robot", robot, *option)
+    assert "turned back from poses of odometry" in told.err
+    assert "is 1/1.6 times what its odometry was made with" in told.words
+    for untrue in ("what the robot file says", "counts by these drives", "ticks_per_revolution"):
+        assert untrue not in told.words
 
 
 def test_what_compare_refuses_info_does_not_offer(tmp_path: Path, werrimbi: Werrimbi) -> None:

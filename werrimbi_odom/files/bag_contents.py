@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from werrimbi_odom.files.array_places import Sides, counting_sides
 from werrimbi_odom.files.bag import Bag, Topic
@@ -27,13 +27,12 @@ from werrimbi_odom.files.own_odometry import (
     ODOMETRY,
     is_asked_for,
     is_base,
+    is_filtered,
     is_odometry_frame,
     is_unfiltered,
     why_from_wheels,
 )
-
-Gives = Literal["counts", "positions", "velocities", "odometry"]
-"""Kinds of wheel data: counters, joint angles, joint speeds only, or the firmware's own poses."""
+from werrimbi_odom.files.run import Gives
 
 IMU = "sensor_msgs/msg/Imu"
 SCAN = "sensor_msgs/msg/LaserScan"
@@ -320,7 +319,7 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
                 _frame_of(firsts.get(topic.name)),
                 frame(getattr(firsts.get(topic.name), "child_frame_id", "")),
             )
-            if reason and "filter" not in reason:
+            if reason and not is_filtered(topic.name):
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "odometry"))
     if not any(each.gives == "odometry" for each in found):
         # Bags for a SLAM hold scans and transforms alone.

@@ -17,15 +17,11 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of
 from werrimbi_odom.files.parameters import WHOLE_COUNTS
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Ticks, counts_of, integrated
+from werrimbi_odom.files.run import WORKED_OUT, Ticks, counts_of, integrated
 from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
-INTEGRATED = (
-    "there are no wheel angles, only speeds: they are integrated (trapezia), which loses what the "
-    "wheels did between two messages"
-)
 _WINDOW = 0.5
 """Time over which wheels of a side are compared [s]: long against play and late messages, short
 against a manoeuvre."""
@@ -76,7 +72,7 @@ class JointsCollector:
         if self._speeds_tell(positions):
             time, speeds = self._speeds.arrays(len(self._wheels))
             known = np.where(np.isfinite(speeds), speeds, 0.0)
-            positions, words = integrated(time, known), [*words, INTEGRATED]
+            positions, words = integrated(time, known), [*words, WORKED_OUT["velocities"]]
         elif not time.size:
             raise InputError(f"{self._place}: {self._why_none()}")
         elif self._file.values["position_unit"] == "radians" and _begin_anew(positions):

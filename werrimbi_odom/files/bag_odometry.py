@@ -19,14 +19,9 @@ from werrimbi_odom.files.bag_reference import planar
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Ticks, integrated
+from werrimbi_odom.files.run import WORKED_OUT, Ticks, integrated
 from werrimbi_odom.model.pose import Floats
 
-TOLD = (
-    "the wheels' travel is turned back from the poses of the robot's own odometry, by wheel_radius "
-    "and wheel_separation of the robot file without their multipliers: these must be what the "
-    "driver itself works with; where it takes its heading from a gyro, so does this"
-)
 _WINDOW = 0.5
 """Time of a step of the path that is asked whether it goes sideways [s]: far above rounding."""
 _FEWEST = 10
@@ -133,7 +128,7 @@ class OdometryTurnedBack:
         time = np.array(self._time)
         x, y, yaw = np.array(self._poses).reshape(-1, 3).T
         speed, rate = np.array(self._twists).reshape(-1, 2).T
-        words = [TOLD]
+        words = [WORKED_OUT["odometry"]]
         if not np.isfinite(x + y + yaw).any():
             raise InputError(f"{self._place}: no message holds a finite pose")
         if not (np.ptp(x[np.isfinite(x)]) or np.ptp(y[np.isfinite(y)])) and np.any(speed):

@@ -44,7 +44,7 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     """
     if _words(topic, parent, child) & SENSORS:
         return ""
-    if any(word in topic.lower().replace("unfiltered", "") for word in FILTERS):
+    if is_filtered(topic):
         return "a filter's output, which fuses the wheels"
     frames = f"{parent} -> {child}" if parent and child else (parent or child)
     if is_odometry_frame(parent) and (is_base(child) or not child):
@@ -52,6 +52,11 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     if kind == ODOMETRY and not parent:
         return "odometry of no sensor that is named, made from the wheels"
     return ""
+
+
+def is_filtered(topic: str) -> bool:
+    """Whether a topic's name says that its odometry is a filter's, which fuses other sensors."""
+    return any(word in topic.lower().replace("unfiltered", "") for word in FILTERS)
 
 
 def is_unfiltered(topic: str) -> bool:

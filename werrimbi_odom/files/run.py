@@ -22,6 +22,17 @@ ReferenceKind = Literal["absolute", "incremental", "local_map"]
 """absolute: independent noise per pose (motion capture); incremental: each pose relative to the
 last, so that noise accumulates (a gyro); local_map: absolute with an additional slowly drifting
 error (a localiser)."""
+Gives = Literal["counts", "positions", "velocities", "odometry"]
+"""Kinds of wheel data: counters, joint angles, joint speeds only, or the firmware's own poses."""
+WORKED_OUT: dict[Gives, str] = {
+    "velocities": "there are no wheel angles, only speeds: they are integrated (trapezia), which "
+    "loses what the wheels did between two messages",
+    "odometry": "the wheels' travel is turned back from poses of odometry, by wheel_radius and "
+    "wheel_separation of the robot file without their multipliers: these must be what the driver "
+    "itself works with; what else it is made of is judged with the wheels, as the gyro that it "
+    "takes its heading from, or all that a filter fuses",
+}
+"""What is said of wheels that nothing counted."""
 Made = TypeVar("Made")
 
 
@@ -176,6 +187,8 @@ class Run:
     circle: str = ""
     """If the reference is computed from the wheels, by name and frames: what it is, why, and the
     alternatives."""
+    wheels_from: Gives = "counts"
+    """What the counts are worked out from."""
     held_poses: int = 0
     """Number of reference poses removed by `run_checks.without_held_poses`."""
     no_driving: tuple[NoDriving, ...] | None = None

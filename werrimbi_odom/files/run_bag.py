@@ -80,6 +80,7 @@ def read_run_bag(
         damage=(*bag.damage, *found.damage, *clocks),
         no_reference=lacking,
         circle=found.circle,
+        wheels_from=source.gives,
         taken_out=found.taken_out,
     )
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns, words_about_one_clock_unit
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import WORKED_OUT, Reference, Run, Ticks
 from werrimbi_odom.model.encoder_online import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -48,7 +48,7 @@ def refuse_unjudgeable(run: Run, robot: Robot) -> None:
 
 
 def words_about(runs: Sequence[Run]) -> list[str]:
-    """Data that were left out of some runs, one line each."""
+    """What was left out of some runs, or worked out from something else, one line each."""
     found = [f"{run.path}: {words}" for run in runs for words in run.damage]
     for run in runs:
         lost = ~(np.isfinite(run.ticks.left) & np.isfinite(run.ticks.right))
@@ -58,6 +58,9 @@ def words_about(runs: Sequence[Run]) -> list[str]:
                 f"{run.path}: {int(lost.sum())} of {run.ticks.rows} rows of ticks are not finite, "
                 f"the first at t_s {first:.10g}; they are left out"
             )
+    for gives, words in WORKED_OUT.items():
+        if some := [run for run in runs if run.wheels_from == gives]:
+            found.append(f"{_these(some)}: {words}")
     held = words_about_held(runs)
     return found if held is None else [*found, held]
 
@@ -146,6 +149,10 @@ def without_held_poses(run: Run, robot: Robot) -> Run:
     return replace(run, reference=run.reference.chosen(~held), held_poses=int(held.sum()))
 
 
+def _these(runs: Sequence[Run]) -> str:
+    return f"{runs[0].path}{'' if len(runs) == 1 else f' and {len(runs) - 1} more'}"
+
+
 def words_about_held(runs: Sequence[Run]) -> str | None:
     """Description of the removed poses; None if there are none."""
     some = [run for run in runs if run.held_poses]
@@ -154,7 +161,7 @@ def words_about_held(runs: Sequence[Run]) -> str | None:
     count = sum(run.held_poses for run in some)
     there = sum(0 if run.reference is None else run.reference.time.size for run in some)
     return (
-        f"{some[0].path}{'' if len(some) == 1 else f' and {len(some) - 1} more'}: {count} of "
+        f"{_these(some)}: {count} of "
         f"{count + there} reference poses repeat the one before to the last digit, in position or "
         "heading, while the wheels turn; they are taken for held, not measured, and left out"
     )

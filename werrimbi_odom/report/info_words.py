@@ -10,7 +10,7 @@ from typing import Any
 
 from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS, SCAN
-from werrimbi_odom.files.own_odometry import names_a_measurement
+from werrimbi_odom.files.own_odometry import ODOMETRY, is_filtered, names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.run_folder import REFERENCE
@@ -277,6 +277,7 @@ _GIVES = {
     "velocities": "speeds of the wheels, which are integrated",
     "odometry": "the robot's own odometry, turned back into travel of its wheels",
 }
+_OF_FILTER = "a filter's poses, turned back into travel of wheels, and of all that it fuses"
 _OF_WHEELS = ("wheel", "encoder", "tick", "motor", "odom", "joint")
 WITHOUT_WHEELS = (
     "Record how the wheels turned as well: /joint_states with their angles, the driver's counters "
@@ -305,7 +306,8 @@ def wheels_words(held: Held) -> str:
             f"right one's, {_which_is_left(held)}; "
             f"--ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
         )
-    return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
+    gives = _OF_FILTER if is_filtered(wheels.name) else _GIVES[wheels.gives]
+    return f"Wheels: {wheels.name}, {gives}{rate_words(held, wheels.name)}{told}."
 
 
 def _which_is_left(held: Held) -> str:
@@ -336,6 +338,12 @@ def _unread(held: Held) -> str:
             f" By name {listed(named)} may, but such a type is read only where each wheel has a "
             "topic (--ticks-topic LEFT,RIGHT)."
         )
+    for each in held.contents.topics:
+        if each.kind == ODOMETRY and is_filtered(each.name):
+            words.append(
+                f" --ticks-topic {each.name} takes a filter's poses in their stead, and judges "
+                "all that it fuses with the wheels."
+            )
     read = (*ARRAYS, *FLOATS, *PAIRS)
     others = [topic_in_words(each) for each in may if each.kind not in read]
     if others:

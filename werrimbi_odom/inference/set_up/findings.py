@@ -12,12 +12,19 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.set_up.explanation import Setting, Wired, twins_of
 from werrimbi_odom.inference.set_up.misentered_values import (
+    ENTERED,
     factor_words,
     is_ordinary,
     simple_factor,
     skid_words,
     skids,
 )
+
+_OF_ODOMETRY = {
+    "wheels_swapped": "its odometry turns the other way, as if left and right were exchanged",
+    "left_wheel_reversed": "its odometry is as if the left wheel were counted backwards",
+    "right_wheel_reversed": "its odometry is as if the right wheel were counted backwards",
+}
 
 Misfit = Callable[[Setting], float]
 """Typical error of a set-up, relative to the best one."""
@@ -154,6 +161,19 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
     if odd_base:
         words = factor_words("base", base)
         yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, wider)
+
+
+def of_odometry(finding: SetUpFinding) -> SetUpFinding:
+    """Replace words about counters and the robot file, where the wheels are made of odometry.
+
+    Its travel is turned back by the file's sizes, so these cancel.
+    """
+    words = finding.words.replace(ENTERED, "what its odometry was made with")
+    if finding.effect == "track_width" or "track_width" in finding.twins:
+        words += "; or a gyro that it fuses turns too far, or too little"
+    if finding.effect in WIRING_WORDS:
+        words = words.replace(WIRING_WORDS[finding.effect], _OF_ODOMETRY[finding.effect])
+    return replace(finding, words=words)
 
 
 def as_skid_steer(finding: SetUpFinding) -> SetUpFinding:

@@ -123,6 +123,7 @@ def skid_words(value: float) -> str:
     )
 
 
+ENTERED = "what the robot file says"
 _OF_A_WHEEL = "the {0} encoder's counts of a turn or its gear were entered wrongly"
 _ENTERED: dict[str, tuple[str, Mapping[str, str], str]] = {
     "radius": ("both wheels' radius", RADIUS, "look at radius, gear and encoder"),
@@ -149,7 +150,7 @@ def factor_words(on: str, value: float) -> str:
     near = f", near {factor}" if factor else ""
     times = f"{value:.3g}" if value >= 1.0 else f"1/{1.0 / value:.3g}"
     cause = causes.get(factor or "", else_)
-    words = f"{what} is {times} times what the robot file says{near}: {cause}"
+    words = f"{what} is {times} times {ENTERED}{near}: {cause}"
     base = {"base": value, "turning": 1.0 / value}.get(on, 1.0)
     words += f"; or {_SKID}" if skids(base) else ""
     tell = "; yaw alone cannot tell which: drive a taped distance" if on == "turning" else ""

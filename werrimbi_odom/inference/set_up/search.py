@@ -32,6 +32,7 @@ from werrimbi_odom.inference.set_up.findings import (
     SetUpFinding,
     as_skid_steer,
     findings_of,
+    of_odometry,
 )
 from werrimbi_odom.inference.set_up.misentered_values import (
     LENGTHS,
@@ -150,7 +151,8 @@ def look_for_mistakes(
         found, setting = search_poses(records, robot)
     else:
         found, setting = search_positions(records, robot)
-    found = _with_counts(found, robot)
+    made = all(run.wheels_from == "odometry" for run in runs)
+    found = [of_odometry(each) for each in found] if made else _with_counts(found, robot)
     mount = [each for each in found if find(each.effect).stage == "reference"]
     # How the wheels are wired first: sizes mean nothing before, and which of two mistakes makes the
     # larger errors may be another one with every second pose.
