@@ -389,7 +389,7 @@ def test_what_cannot_be_judged_either_does_not_lead_back(
     """The folder is called as a ROS 1 bag's file is: `ros2 bag record -o hall.bag`."""
     bag = in_a_hall(tmp_path / "hall.bag", "/scan", "/stable_scan", turning=False)
     printed = werrimbi("info", bag).out
-    assert printed.splitlines()[-1] == "Nothing of it can be judged."
+    assert printed.splitlines()[-1] == "Nothing of it can be judged as it is."
     assert "No reference: /stable_scan, made of /scan by its name" in " ".join(printed.split())
 
 

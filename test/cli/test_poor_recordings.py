@@ -72,6 +72,20 @@ def test_shuffled_rows_are_told_with_row_and_time(run: Path, said: Callable[...,
     assert " from t_s " in err
 
 
+@pytest.mark.parametrize(("period", "unit"), [(2**32, 1e-6), (2**32, 1e-3), (2**16, 1e-3)])
+def test_a_boards_clock_that_wraps_is_no_clock_that_was_set_back(
+    run: Path, said: Callable[..., str], period: int, unit: float
+) -> None:
+    """Of an Arduino micros() begins anew after 71.6 minutes."""
+    header, *rows = TICKS.splitlines()
+    begun = period * unit - float(rows[100].split(",")[0])
+    times = [(float(row.split(",")[0]) + begun) % (period * unit) for row in rows]
+    rows = [f"{time:.6f},{row.partition(',')[2]}" for time, row in zip(times, rows, strict=True)]
+    (run / "ticks.csv").write_text("\n".join([header, *rows]) + "\n")
+    err = said(2, run)
+    assert f"bits began anew there: add {period * unit:.10g} to t_s from that row on" in err
+
+
 def test_a_clock_that_is_set_back_is_told_with_row_and_time(
     run: Path, said: Callable[..., str]
 ) -> None:

@@ -173,6 +173,19 @@ def test_a_yaw_in_degrees(
         refuse_wrong_columns(seen(run, yaw=lambda it: np.degrees(of_range(it.yaw))))
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_what_a_reference_holds_is_seen_beside_counters_that_wrap(seed: int) -> None:
+    """Their leaps hid that the yaw is in degrees: the robot was said to be carried by hand."""
+    bits = replace(ROBOT, encoder_bits=12)
+    run = counted(driven(seed), lambda total: total % (1 << 12))
+    refuse_wrong_columns(run, bits)
+    assert not words_about_ways(run, bits)
+    with pytest.raises(InputError, match=r"the reference's yaw is in degrees, and must be in rad"):
+        refuse_wrong_columns(seen(run, yaw=lambda it: np.degrees(wrap_all(it.yaw))), bits)
+    far = seen(run, x=lambda it: 1000.0 * it.x, y=lambda it: 1000.0 * it.y)
+    assert "x_m and y_m are in millimetres, and mean metres" in words_about_ways(far, bits)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_longitude_and_latitude_are_no_metres(seed: int) -> None:
     """`info` said that such drives can show base and radii."""

@@ -138,6 +138,11 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
             "first line must be t_s,left_ticks,right_ticks",
         ),
         (
+            "micros;enc_l;enc_r;volts\n20;1;2;12,4\n",
+            "ticks.csv, line 1: the columns are not separated by commas; write a point for each "
+            "comma in its numbers, separate them so, and",
+        ),
+        (
             "1248272272.841 \t 0.074 \t 0.229\n",
             "ticks.csv, line 1: the columns are not separated by commas",
         ),

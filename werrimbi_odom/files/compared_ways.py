@@ -12,6 +12,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
+MILLIMETRES = 1000.0
 METRES, OTHERWISE = 1.25, 3.0
 """Factor within which counters go as many units as the reference goes metres, and that by which the
 robot file says otherwise."""
@@ -34,18 +35,25 @@ def words_about_ways(run: Run, robot: Robot) -> str:
 
     Of a robot that rolled most of the time while it moved: one that is carried does not.
     """
-    ways = _ways(run.ticks, run.reference) if run.reference is not None else None
+    ways = _ways_of(run, robot)
     if ways is None:
         return ""
     counted, seen = (float(each.sum()) for each in ways)
     rolled = 0.5 * counted * (robot.left_tick + robot.right_tick)
     if seen / FAR_APART < rolled < FAR_APART * seen:
         return ""
-    return (
+    told = (
         f"by its wheels, with this robot file, it went {rolled:.2g} m, and by the reference "
-        f"{seen:.2g} m, {seen / counted:.2g} m for each count: look at wheel_radius and at the "
-        "counts of a turn; counters in radians have left_ticks_per_revolution: 6.283185, in "
-        "degrees 360" + ("; or x_m and y_m are in millimetres" if seen > rolled else "")
+        f"{seen:.2g} m, {seen / counted:.2g} m for each count"
+    )
+    if MILLIMETRES / METRES < seen / rolled < MILLIMETRES * METRES:
+        return (
+            f"{told}: x_m and y_m are in millimetres, and mean metres (divide by 1000), or "
+            "wheel_radius or the counts of a turn are wrong by as much"
+        )
+    return (
+        f"{told}: look at wheel_radius and at the counts of a turn; counters in radians have "
+        "left_ticks_per_revolution: 6.283185, in degrees 360"
     )
 
 
@@ -54,7 +62,7 @@ def ways_of_one_scale(run: Run, robot: Robot) -> tuple[float, float] | None:
 
     A robot file that is wrong by it hides all that both have in common, unless the turns show it.
     """
-    ways = _ways(run.ticks, run.reference) if run.reference is not None else None
+    ways = _ways_of(run, robot)
     if ways is None:
         return None
     counted, seen = ways
@@ -97,6 +105,12 @@ def words_about_globe(ticks: Ticks, reference: Reference, robot: Robot) -> str:
         "and latitude do: write metres east and north of the first fix (a degree of latitude is "
         "111 km, one of longitude that times the cosine of the latitude)"
     )
+
+
+def _ways_of(run: Run, robot: Robot) -> tuple[Floats, Floats] | None:
+    if run.reference is None:
+        return None
+    return _ways(run.ticks.unwrapped(robot.encoder_bits), run.reference)
 
 
 def _ways(

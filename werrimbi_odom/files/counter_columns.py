@@ -43,14 +43,14 @@ SPINS, SPIN_TURN, SPIN_RADIUS = 3, 0.2, 0.03
 goes half its base a radian: 40 mm for the smallest."""
 
 
-def what_counters_hold(ticks: Ticks, reference: Reference, bits: int) -> str:
+def what_counters_hold(ticks: Ticks, reference: Reference) -> str:
     """What is wrong with a run's counters and how to convert them; "" if nothing is.
 
-    `bits`: width at which the robot file says that they wrap; 0 if they do not.
+    `ticks`: run on where the robot file says that they wrap.
     """
     windows = _windows(ticks, reference)
     words = "" if windows is None else _no_totals(windows) or _no_signs(ticks, windows)
-    return words or ("" if bits else wraps_words(ticks))
+    return words or wraps_words(ticks)
 
 
 def turns_by_wheels(ticks: Ticks, reference: Reference) -> float:

@@ -115,7 +115,7 @@ def _refuse_too_large(path: Path) -> None:
 def _header(path: Path, required: Sequence[str], filled: Sequence[str]) -> tuple[str, ...]:
     wanted = ",".join(required)
     with path.open(encoding="utf-8-sig", newline=None) as file:
-        line = file.readline(65536)
+        line, row = file.readline(65536), file.readline(65536)
     if not line:
         raise InputError(f"{path} is empty; its first line must be {wanted}")
     # numpy.savetxt writes the names as a remark.
@@ -131,9 +131,10 @@ def _header(path: Path, required: Sequence[str], filled: Sequence[str]) -> tuple
                 f"line must be {wanted}, and columns be separated by commas"
             )
         if len(names) == 1 and len(re.split(r"[;\s]+", names[0])) > 1:
+            points = "write a point for each comma in its numbers, " if "," in row else ""
             raise InputError(
-                f"{place}: the columns are not separated by commas; separate them so, and the "
-                f"first line must be {wanted}"
+                f"{place}: the columns are not separated by commas; {points}separate them so, and "
+                f"the first line must be {wanted}"
             )
         held = line.strip()[:200]
         empty = [name for name in missing if name not in filled]

@@ -73,14 +73,15 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     totals, the yaw is in degrees or no heading, or it turns the other way round than the path.
     """
     assert run.reference is not None
+    ticks, reference = run.ticks.unwrapped(robot.encoder_bits), run.reference
     words = (
-        _other_unit_of_time(run.ticks, run.reference)
-        or _rounded_times(run.ticks, run.reference)
-        or words_about_metres(run.ticks, run.reference, robot)
-        or words_about_globe(run.ticks, run.reference, robot)
-        or what_counters_hold(run.ticks, run.reference, robot.encoder_bits)
-        or _degrees(run.ticks, run.reference)
-        or _no_heading(run.ticks, run.reference)
+        _other_unit_of_time(ticks, reference)
+        or _rounded_times(ticks, reference)
+        or words_about_metres(ticks, reference, robot)
+        or words_about_globe(ticks, reference, robot)
+        or what_counters_hold(ticks, reference)
+        or _degrees(ticks, reference)
+        or _no_heading(ticks, reference)
     )
     if words:
         raise InputError(f"{run.path}: {words}")

@@ -12,6 +12,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -66,12 +67,33 @@ class Ticks:
         """Number of readings."""
         return int(self.time.size)
 
+    def unwrapped(self, bits: int) -> Ticks:
+        """With counters that run on where those of `bits` bits begin anew; itself for 0.
+
+        To compare them with a motion. An odometer takes them as they are: a reading near zero tells
+        it of a counter that was reset.
+        """
+        if not bits:
+            return self
+        left, right = (_running_on(counts, bits) for counts in (self.left, self.right))
+        return Ticks(self.time, left, right, self.channels)
+
     def latest(self, by: object, work: Callable[[], Made]) -> Made:
         """Result of `work`, cached for the last key `by`."""
         if not self._latest or self._latest[0][0] != by:
             self._latest[:] = [(by, work())]
         made: Made = self._latest[0][1]
         return made
+
+
+def _running_on(counts: Counts, bits: int) -> Counts:
+    whole = np.flatnonzero(np.isfinite(counts))
+    if whole.size == 0:
+        return counts
+    steps, _ = differences(counts[whole], bits)
+    run = counts.astype(np.float64)
+    run[whole[1:]] = run[whole[0]] + np.cumsum(steps)
+    return run
 
 
 class GyroTurn(NamedTuple):

@@ -22,6 +22,14 @@ FEW_STEPS_BACK = 3
 """More steps back in time than this are unsorted rows and not a clock set back."""
 REVERSED = 0.9
 """Share of steps back in time from which rows are taken for reversed; shuffled ones have half."""
+CLOCKS = tuple((bits, unit) for bits in (32, 16) for unit in (1.0, 1e-3, 1e-6))
+"""Bits of a board's clock, and what t_s has for each of its ticks: as it is, or milliseconds or
+microseconds as seconds."""
+WRAPS_WITHIN = 5.0
+"""Usual intervals of rows by which the step back may be off: a message may be late or lost."""
+WRAPS_SHARE = 0.1
+"""Share of the period that these may be: rows in no order step back by anything."""
+
 APART = 5.0
 """Largest time between reference and ticks that a search for the delay covers [s]
 (docs/set_up.md)."""
@@ -86,9 +94,26 @@ def _refuse_back(run: Run) -> None:
         f"{run.path}: the ticks go back in time {_times(int(back.size))}first in row {row + 1} of "
         f"{run.ticks.rows}, from t_s {latest[row - 1]:.10g} to {time[row]:.10g}"
     )
+    for bits, unit in CLOCKS:
+        if _begins_anew(np.diff(time), back, period := unit * 2.0**bits):
+            again = ", and as much again at each further one" if back.size > 1 else ""
+            raise InputError(
+                f"{where}: a clock of {bits} bits began anew there: add {period:.10g} to t_s from "
+                f"that row on{again}"
+            )
     if back.size > FEW_STEPS_BACK:
         raise InputError(f"{where}: the rows are not in the order of time; sort them by t_s")
     raise InputError(f"{where}: the clock was set back; cut the run there into two")
+
+
+def _begins_anew(steps: Floats, back: NDArray[np.intp], period: float) -> bool:
+    """Whether steps back are those of a clock that begins anew after a period."""
+    if not (steps > 0.0).any():
+        return False
+    usual = float(np.median(steps[steps > 0.0]))
+    within = WRAPS_WITHIN * usual
+    off = np.abs(period + steps[back] - usual)
+    return bool(within < WRAPS_SHARE * period and (off <= within).all())
 
 
 def _times(count: int) -> str:
@@ -104,7 +129,8 @@ def _refuse_apart(run: Run, reference: Reference) -> None:
     word, by = ("before", early) if early > late else ("after", late)
     raise InputError(
         f"{run.path}: the reference (t_s {span_in_words(reference)}) lies wholly {word} the ticks "
-        f"({span_in_words(run.ticks)}), by {by:.6g} s; both need one clock, in seconds"
+        f"({span_in_words(run.ticks)}), by {by:.6g} s; both need one clock, in seconds (of "
+        "two that have nothing in common, count each from its first row)"
     )
 
 
@@ -248,10 +274,11 @@ def _changes_alone(repeats: NDArray[np.bool_]) -> bool:
 
 def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:
     """Path [m] and turn [rad] by the counters at some instants; NaN outside their range."""
-    stamps = np.maximum.accumulate(run.ticks.time)
+    ticks = run.ticks.unwrapped(robot.encoder_bits)
+    stamps = np.maximum.accumulate(ticks.time)
     left, right = (
         np.interp(time, stamps, counts.astype(np.float64) * size, left=np.nan, right=np.nan)
-        for counts, size in ((run.ticks.left, robot.left_tick), (run.ticks.right, robot.right_tick))
+        for counts, size in ((ticks.left, robot.left_tick), (ticks.right, robot.right_tick))
     )
     return 0.5 * (left + right), (right - left) / robot.track
 

@@ -152,7 +152,7 @@ def _otherwise(found: Info) -> tuple[str, str]:
         if held.at_fault == "names":
             return f"Next: {_names_to_write(held, found)}", ""
         if held.at_fault:
-            return "Nothing of it can be judged.", ""
+            return "Nothing of it can be judged as it is.", ""
     for held in found.held:
         if held.contents is None or held.reference is None:
             continue
@@ -168,7 +168,7 @@ def _otherwise(found: Info) -> tuple[str, str]:
             robot = [] if file is None else ["--robot", str(file)]
             command = shlex.join([*words, *robot, "--reference-topic", others[0].name])
             return f"By {held.reference.name} nothing can be judged. Next:", command
-    return "Nothing of it can be judged.", ""
+    return "Nothing of it can be judged as it is.", ""
 
 
 def _names_to_write(held: Held, found: Info) -> str:
