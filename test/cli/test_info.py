@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import json
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.cli.commands import PLAIN, ROBOT_FILE, write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import DAY, JOINTS, gyro, joints, poses, stamp_of, urdf
@@ -255,6 +257,23 @@ def test_an_array_of_floats_is_told_with_how_it_is_read(tmp_path: Path, werrimbi
     )
     then = werrimbi("info", bag, "--ticks-topic", "/wheel_ticks:0:1").out
     assert "Wheels: /wheel_ticks:0:1, counters at 10 Hz" in then
+
+
+def test_legs_are_told_as_long_as_the_poses_let_them_be(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    """Of drives measured at their ends `info` said that they show all, `compare` that 1 m err."""
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(ROBOT_FILE)
+    run = run_of(PLAIN, 1, 60)
+    assert run.reference is not None
+    for name, every in (("ends", 300), ("seldom", 25)):
+        rows = np.arange(run.reference.time.size) % every == 0
+        write_run(tmp_path / name, replace(run, reference=run.reference.chosen(rows)))
+    said = werrimbi("info", tmp_path / "ends", "--robot", robot).words
+    assert "no leg is shorter than from pose to pose, which is 1 leg at most" in said
+    assert "Too seldom" not in werrimbi("info", tmp_path / "seldom", "--robot", robot).words
+    out = werrimbi("compare", tmp_path / "seldom", "--robot", robot, "--leg", "0.25").out
+    table = out.partition("Errors by length of leg")[2].splitlines()[2].split()
+    assert float(table[0]) == pytest.approx(1.0, abs=0.3)
 
 
 def test_a_run_folder_is_looked_at_too(werrimbi: Werrimbi) -> None:

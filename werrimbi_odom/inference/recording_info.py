@@ -111,6 +111,13 @@ class Info:
         )
 
     @property
+    def intervals(self) -> int:
+        """From pose to pose of all references: no leg is shorter than one."""
+        runs = [each.run for each in self.held if each.run is not None]
+        references = [run.reference for run in runs if run.reference is not None]
+        return sum(max(0, each.time.size - 1) for each in references)
+
+    @property
     def leg(self) -> float:
         """Leg length that suits the amount of driving and the noise of the reference [m]."""
         longer = max((_needed(each) for each in self.held), default=0.0)

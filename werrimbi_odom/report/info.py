@@ -128,6 +128,12 @@ def _before_command(found: Info) -> str:
             f"By legs of {found.leg:g} m, because in shorter ones the noise of these positions "
             "hides what the robot does. Next:"
         )
+    if found.intervals < rules.FEWEST_LEGS:
+        return (
+            f"Too seldom measured to judge by: no leg is shorter than from pose to pose, which is "
+            f"{counted(found.intervals, 'leg')} at most, and {rules.FEWEST_LEGS} are the least. "
+            "Measure more often on the way, or drive more; what these show is printed by:"
+        )
     most = math.floor(found.legs_of(found.leg))
     if found.leg < 1.0 and most < rules.FEWEST_LEGS:
         return (

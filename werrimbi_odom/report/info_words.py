@@ -116,7 +116,9 @@ def _mistakes(held: Held) -> Iterator[str]:
     """What the reference shows to be set up wrongly."""
     for each in held.mistakes:
         mend = ""
-        if each.effect == SWAPPED and held.wheels is not None and held.wheels.exchanged:
+        if each.effect == SWAPPED and held.wheels is None:
+            mend = " If it is the counters, exchange their names in the first line of ticks.csv."
+        elif each.effect == SWAPPED and held.wheels is not None and held.wheels.exchanged:
             mend = f" If it is the counters, --ticks-topic {held.wheels.exchanged} exchanges them."
         yield f"Set up wrongly, as the reference shows: {each.words}.{mend}"
 

@@ -60,6 +60,9 @@ class OfLength:
     """Statistics over all legs of one length."""
 
     leg: float
+    """As asked for [m]."""
+    median: float
+    """Median path of the legs, longer than asked for where poses are rare [m]."""
     all: LegFigures
     by_motion: Mapping[str, LegFigures]
     systematic: tuple[Systematic, ...]
@@ -75,7 +78,7 @@ class OfLength:
 
     def _consistency(self, of: LegFigures) -> AtLength:
         figures = of.figures
-        return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
+        return AtLength(self.leg, figures.count, figures.nees, figures.freedom, self.median)
 
     @property
     def consistency_of_dispersion(self) -> AtLength:
@@ -128,8 +131,7 @@ class Comparison:
     @property
     def median_length(self) -> float:
         """Median path of these legs, longer than requested where poses are rare [m]."""
-        length = self.legs.errors.length
-        return float(np.median(length)) if length.size else 0.0
+        return self.main.median
 
 
 def compare(
@@ -167,7 +169,9 @@ def judged(prepared: PreparedRuns, robot: Robot | Model, *, show: Show = silent)
             groups += [legs.run == index for index in range(len(prepared.runs))]
         whole, *others = _figures(legs, spread, np.array(groups))
         by_motion = dict(zip(KINDS, others, strict=False))
-        lengths.append(OfLength(leg, whole, by_motion, systematic))
+        length = legs.errors.length
+        median = float(np.median(length)) if length.size else 0.0
+        lengths.append(OfLength(leg, median, whole, by_motion, systematic))
         if leg == prepared.options.leg:
             main = legs, spread, others[len(KINDS) :]
     assert main is not None

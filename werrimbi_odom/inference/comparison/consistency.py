@@ -35,6 +35,8 @@ class AtLength:
     nees: float
     freedom: int
     """Degrees of freedom: measured coordinates of all errors."""
+    median: float = 0.0
+    """Median path of the legs, longer than `leg` where poses are rare [m]."""
 
     @property
     def says(self) -> Consistency:

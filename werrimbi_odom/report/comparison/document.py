@@ -124,7 +124,9 @@ def _motions(main: OfLength, leg: str) -> Table:
 
 
 def _lengths(comparison: Comparison) -> Table:
-    rows = [[f"{item.leg:g} m", *_cells(item.all)] for item in comparison.lengths]
+    rows = [
+        [f"{leg_words(item.median, item.leg)} m", *_cells(item.all)] for item in comparison.lengths
+    ]
     return Table("Errors by length of leg (rms)", ("leg", *_FIGURES), rows)
 
 

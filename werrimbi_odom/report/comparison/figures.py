@@ -11,6 +11,7 @@ import numpy as np
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
 from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.report import style
+from werrimbi_odom.report.phrases import leg_words
 from werrimbi_odom.report.style import Figure
 
 NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
@@ -31,7 +32,7 @@ def nees_figure(comparison: Comparison) -> Figure:
 
     figure = style.blank()
     free = len(measured_channels(comparison))
-    lengths = [f"{item.leg:g} m" for item in comparison.lengths]
+    lengths = [f"{leg_words(item.median, item.leg)} m" for item in comparison.lengths]
     looks = {
         "line": (style.BLUE, "circle", -0.24),
         "arc": (style.ORANGE, "square", 0.0),
@@ -51,8 +52,8 @@ def nees_figure(comparison: Comparison) -> Figure:
             low.append(float(bounds[0]))
             high.append(float(bounds[1]))
             texts.append(
-                f"{NAMES[kind]}, legs of {item.leg:g} m: {found.count}<br>NEES {found.nees:.2f}, "
-                f"honest within {bounds[0]:.2f} to {bounds[1]:.2f}"
+                f"{NAMES[kind]}, legs of {lengths[number]}: {found.count}"
+                f"<br>NEES {found.nees:.2f}, honest within {bounds[0]:.2f} to {bounds[1]:.2f}"
                 f"<br>{100.0 * found.coverage_95:.0f} % inside the 95 % ellipsoid"
             )
         if not at:

@@ -12,6 +12,7 @@ from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.report.number_format import from_start, listed, two_digits
+from werrimbi_odom.report.phrases import leg_words
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 
@@ -134,7 +135,7 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
         if math.isfinite(high)
         else f"at least {two_digits(low)}"
     )
-    leg, errors = f"{at.leg:g} m", math.sqrt(at.nees)
+    leg, errors = _leg(at), math.sqrt(at.nees)
     if at.says == "too small":
         text = f"{_times(at.nees)} times too small over legs of {leg} (NEES {at.nees:.3g}, 1 is "
         text += f"right: errors are {errors:.2g} times what it promises)"
@@ -146,25 +147,29 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
     )
 
 
+def _leg(at: AtLength) -> str:
+    return f"{leg_words(at.median, at.leg)} m"
+
+
 def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
     """Leg lengths at which NEES is off, and its trend with length."""
     first, last = lengths[0], lengths[-1]
     worst = (max if small else min)(lengths, key=lambda item: item.nees)
     if len(lengths) == 1:
-        return f"NEES {worst.nees:.3g} over legs of {worst.leg:g} m (1 is right)"
+        return f"NEES {worst.nees:.3g} over legs of {_leg(worst)} (1 is right)"
     trend = trend_of(lengths)
     if trend == ("longer" if small else "shorter"):
         how = "and the more so the longer the leg"
     elif trend != "between":
         how = "and the more so the shorter the leg"
     else:
-        how = f"most over legs of {worst.leg:g} m"
+        how = f"most over legs of {_leg(worst)}"
         others = [item for item in (first, last) if item is not worst]
-        beside = " and ".join(f"{item.nees:.3g} over {item.leg:g} m" for item in others)
+        beside = " and ".join(f"{item.nees:.3g} over {_leg(item)}" for item in others)
         return f"{how} (NEES {worst.nees:.3g}, where 1 is right; {beside})"
     return (
-        f"{how} (NEES {first.nees:.3g} over {first.leg:g} m, {last.nees:.3g} over "
-        f"{last.leg:g} m, where 1 is right)"
+        f"{how} (NEES {first.nees:.3g} over {_leg(first)}, {last.nees:.3g} over "
+        f"{_leg(last)}, where 1 is right)"
     )
 
 

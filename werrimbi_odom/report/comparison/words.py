@@ -71,10 +71,13 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
             f"{rules.FEWEST_LEGS} are the least. Drive more, or {other}."
         )
     if verdict.good:
-        shortest, longest = comparison.lengths[0].leg, comparison.lengths[-1].leg
-        over = f"over legs of {shortest:g} m to {longest:g} m"
+        shortest, longest = (
+            leg_words(item.median, item.leg)
+            for item in (comparison.lengths[0], comparison.lengths[-1])
+        )
+        over = f"over legs of {shortest} m to {longest} m"
         if shortest == longest:
-            over = f"over legs of {longest:g} m"
+            over = f"over legs of {longest} m"
         return (
             f"The model explains these drives: {over} its errors are what its covariance "
             "promises, and nothing systematic is left in them."
@@ -155,7 +158,8 @@ def _against_promise(comparison: Comparison, kind: str, *, elsewhere: bool) -> s
         return told
     times = f"{math.sqrt(worst.nees):.1f} times"
     whose = times if asked.says == "too small" else f"{times} what is promised"
-    return f"{told}, but over legs of {worst.leg:g} m {whose}"
+    leg = leg_words(worst.median, worst.leg)
+    return f"{told}, but over legs of {leg} m {whose}"
 
 
 def _errors(figures: LegFigures) -> str:
