@@ -5,18 +5,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from test.cli.commands import PLAIN, ROBOT_FILE
+from test.cli.commands import PLAIN, ROBOT_FILE, write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import poses, stamp_of
 from test.inference.driven import run_of
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import Run, Ticks
 
 DRIVEN = "By its wheels, with that put right, it went"
 EXCHANGED = "left and right counters are exchanged"
@@ -124,3 +125,12 @@ def test_two_floats_are_counters_if_they_run_on_as_counters_do(
 ) -> None:
     said = werrimbi("info", recorded(tmp_path, lambda *both: both, "floats")).words
     assert "Wheels: /data:0:1, counters" in said
+
+
+def test_of_a_table_the_columns_are_to_be_exchanged(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    run = drive()
+    exchanged = Ticks(run.ticks.time, run.ticks.right, run.ticks.left)
+    write_run(tmp_path / "run", replace(run, ticks=exchanged))
+    said = werrimbi("info", tmp_path / "run").words
+    assert EXCHANGED in said
+    assert "exchange their names in the first line of ticks.csv" in said
