@@ -51,13 +51,12 @@ def wander_of(variances: Variances) -> Wander:
     return Wander(*map(float, (*walk, place, heading, seconds)))
 
 
-def error_wanders(runs: Concatenated, fit: Fitted, competing: Sequence[Dependence]) -> bool:
-    """Whether a wandering reference explains what a model of everything found leaves.
+def error_may_wander(runs: Concatenated, fit: Fitted, competing: Sequence[Dependence]) -> bool:
+    """Whether a wandering reference explains some of what a model of everything found leaves.
 
-    What a dependence on a variable explains of it is not the reference's: an effect that the
-    library does not hold. Scans are left alone, as the noise of each is known from its match, and
-    headings alone, whose walk is a gyro's. `fit`: the final model, with independent errors of the
-    poses. `competing`: cells of its evidence map; none where nothing is missing otherwise.
+    Scans are left alone, as the noise of each is known from its match, and headings alone, whose
+    walk is a gyro's. `fit`: the final model, with independent errors of the poses. `competing`:
+    cells of its evidence map; none where nothing is missing otherwise.
     """
     point = fit.point
     independent = point.options.reference_kind == "absolute"
@@ -76,8 +75,24 @@ def error_wanders(runs: Concatenated, fit: Fitted, competing: Sequence[Dependenc
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
+    return chi2_survival(gain, len(WALK)) < rules.VERY_SURE
+
+
+def explains_more(
+    runs: Concatenated, fit: Fitted, wandering: Fitted, competing: Sequence[Dependence]
+) -> bool:
+    """Whether a wandering reference explains more than an effect that the library does not hold.
+
+    Such an effect is a dependence on a variable, of those `competing` with the model `fit`. With
+    the wander goes what was found beside it, as the final model `wandering` of a diagnosis: its
+    gain is over the same legs, and pays for what it has more.
+    """
+    costs = Costs(runs, replace(wandering.point, excluded=fit.point.excluded))
+    variances = wandering.point.variances
+    gain = fit.total - float((costs(variances) + prior_cost(costs, variances))[0])
     most = max((fall_of_cost(cell.gain, runs.data) for cell in competing), default=0.0)
-    return chi2_survival(gain - rules.WANDER_OVER_DEPENDENCE * most, len(WALK)) < rules.VERY_SURE
+    worth = gain - wandering.penalty - rules.WANDER_OVER_DEPENDENCE * most
+    return chi2_survival(worth, len(WALK)) < rules.VERY_SURE
 
 
 def _typical(fitted: Variances) -> Variances:
