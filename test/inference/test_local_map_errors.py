@@ -19,12 +19,15 @@ from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.correlated_filter import (
     GaussMarkovError,
     GyroHeading,
     filtered_with_correlated_error,
 )
 from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult
+from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.pose import Floats
 
@@ -99,7 +102,7 @@ def wander_of(legs: FilterInput) -> GaussMarkovError:
     count = legs.begins.size
     kept = np.random.default_rng(8).uniform(0.7, 0.99, count)
     no_gap = np.zeros(count, dtype=np.bool_)
-    return GaussMarkovError(np.array([[4e-10, 4e-10, 9e-10]]), kept[None], no_gap, 0.0)
+    return GaussMarkovError(np.array([[4e-10, 4e-10, 9e-10]]), kept[None], no_gap, no_gap, 0.0)
 
 
 def whitened(found: FilterResult) -> Floats:
@@ -196,8 +199,9 @@ def test_after_a_jump_the_pose_is_where_the_wheels_brought_it() -> None:
     start[11:] += jump
     finish[10:] += jump
     skip[10] = True
+    no_gap = np.zeros(20, np.bool_)
     kept = GaussMarkovError(
-        np.full((1, 3), 1e-4), np.full((1, 20), 1.0 - 1e-9), np.zeros(20, np.bool_), 0.0
+        np.full((1, 3), 1e-4), np.full((1, 20), 1.0 - 1e-9), no_gap, no_gap, 0.0
     )
     found = filtered_with_correlated_error(
         legs._replace(start=start, finish=finish, skip=skip), kept
@@ -225,6 +229,33 @@ def test_noise_walk_and_memory_are_told_apart(runs: list[Run]) -> None:
         off = multiplier.value - getattr(robot, name)
         assert abs(off) < 3.0 * multiplier.std, "what is calibrated is so within its error bar"
         assert multiplier.std < 4e-3
+
+
+def test_a_part_put_aside_for_judging_does_not_lose_the_robot() -> None:
+    """The reference went on all the while, so its memory is told as by whole drives."""
+    robot = TRUE.entered()
+    kept, _ = set_aside(session(range(5), jumps=0))
+    options = EvaluationOptions(reference_kind="local_map")
+    back = calibrate(match_for_fit(kept, robot, 1.0), robot, options).noises["reference_reversion"]
+    assert abs(back.value - 1.0 / MEMORY) < 2.0 * back.std
+
+
+def test_a_jump_in_a_part_put_aside_is_told_by_the_legs_after_it() -> None:
+    robot, options = TRUE.entered(), EvaluationOptions(reference_kind="local_map")
+    kept, _ = set_aside(session(range(3), jumps=0))
+    *_, (_, end) = kept[1].taken_out
+    seen = kept[1].reference
+    assert seen is not None
+    thrown = 0.2 * np.exp(-(seen.time - end) / MEMORY) * (seen.time >= end)
+    jumped = replace(kept[1], reference=replace(seen, x=seen.x + thrown, y=seen.y - thrown))
+
+    def found(runs: list[Run]) -> list[int]:
+        laid = concatenated(match_for_fit(runs, robot, 1.0))
+        excluded = fit_model(laid, start_point(laid, robot, options)).point.excluded
+        return [int(np.count_nonzero(each)) for each in excluded]
+
+    assert found([*kept]) == [0, 0, 0]
+    assert found([kept[0], jumped, kept[2]]) == [0, 1, 0]
 
 
 def test_legs_are_as_wrong_as_promised_at_every_length(runs: list[Run]) -> None:

@@ -45,7 +45,11 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
 from werrimbi_odom.inference.diagnosis.sequential_replacement import exchanged
 from werrimbi_odom.inference.diagnosis.verdict import diagnosis_of
-from werrimbi_odom.inference.diagnosis.wandering_reference import error_wanders, wander_of
+from werrimbi_odom.inference.diagnosis.wandering_reference import (
+    error_may_wander,
+    explains_all,
+    wander_of,
+)
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -90,12 +94,13 @@ def diagnose(
     found, happened = refit_without_events(search, runs, holdout)
     nothing_left = found.verdict == "none" and found.misfit is None
     competing = () if nothing_left else found.remaining
-    if not found.of_another_drive and error_wanders(found.runs, found.final, competing):
+    if not found.of_another_drive and error_may_wander(found.runs, found.final):
         on_map = replace(options, reference_kind="local_map")
         again = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
         # A reference that wanders explains all that is left, and lets nothing be named that was
         # not; else it is the robot that errs so.
         explained = not any(cell.p_value < rules.VERY_SURE for cell in again.remaining)
+        explained &= explains_all(found.runs, found.final, again.final, competing)
         if explained and (again.verdict == "none" or not nothing_left):
             return replace(again, wander=wander_of(again.final.point.variances))
     return replace(found, happened=happened)

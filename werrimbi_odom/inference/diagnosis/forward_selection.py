@@ -124,7 +124,7 @@ def instead_of_calibration(
     results = []
     penalty = calibrated.penalty_of_one
     best = sorted(best_of_each(found), key=lambda score: penalty * score.degrees - score.gain)
-    for score in worth_fitting(best, rules.INSTEAD_FITTED):
+    for score in worth_fitting(best, most=rules.INSTEAD_FITTED):
         start = started_with(runs, point, score)
         numbers = (*parameters_with(calibrated.numbers, score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
@@ -165,7 +165,9 @@ def search_round(
         return [cheapest_of(fits)] if fits else []
 
     tried = []
-    chosen = worth_fitting(ordered)
+    wanders = point.options.reference_kind == "local_map"
+    floor = rules.SCORE_FLOOR_BESIDE_WANDER if wanders else rules.SCORE_FLOOR
+    chosen = worth_fitting(ordered, floor)
     any_seen = any(chance_of_score(score, before, len(looked_at)) < rules.SURE for score in ordered)
     for score in ordered:
         looked = [] if score in chosen else [looked_for(runs, point, score)]
@@ -276,7 +278,9 @@ def best_of_each(found: Sequence[Score]) -> list[Score]:
     return list(best.values())
 
 
-def worth_fitting(ordered: Sequence[Score], most: int = rules.REFITTED) -> list[Score]:
+def worth_fitting(
+    ordered: Sequence[Score], floor: float = rules.SCORE_FLOOR, most: int = rules.REFITTED
+) -> list[Score]:
     """The few that may turn out best after a full fit."""
     if not ordered:
         return []
@@ -284,5 +288,5 @@ def worth_fitting(ordered: Sequence[Score], most: int = rules.REFITTED) -> list[
     return [
         score
         for score in ordered[: rules.SHORTLISTED]
-        if score.gain > rules.WORTH_A_FIT * top and score.gain > score.degrees + rules.SCORE_FLOOR
+        if score.gain > rules.WORTH_A_FIT * top and score.gain > score.degrees + floor
     ][:most]

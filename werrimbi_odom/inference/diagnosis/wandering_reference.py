@@ -4,8 +4,8 @@
 
 The poses of a localiser (AMCL, SLAM, visual odometry) err alike for seconds. Taken as independent,
 such errors are put down to whatever of the robot resembles them: a floor, a delay, a lever arm. So
-when everything is found that can be found, the same model is judged once more with a reference on a
-local map. A sound reference gains nothing by that, whatever is hidden in the robot.
+when everything is found that can be found, all is judged once more with a reference on a local map.
+A sound reference gains nothing by that, or less than what is hidden in the robot explains.
 """
 
 from __future__ import annotations
@@ -17,14 +17,18 @@ from itertools import product
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, fall_of_cost
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.homogeneity import change_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.what_is_left import neighbours_are_alike
-from werrimbi_odom.inference.distributions import chi2_survival
+from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import WALK, map_variances, prior_cost, with_known_noise
-from werrimbi_odom.inference.fitting.whitened_innovations import Costs
+from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, jacobian_of
+from werrimbi_odom.inference.linear import DETERMINED
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +55,11 @@ def wander_of(variances: Variances) -> Wander:
     return Wander(*map(float, (*walk, place, heading, seconds)))
 
 
-def error_wanders(runs: Concatenated, fit: Fitted, competing: Sequence[Dependence]) -> bool:
-    """Whether a wandering reference explains what a model of everything found leaves.
+def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
+    """Whether a wandering reference explains some of what a model of everything found leaves.
 
-    What a dependence on a variable explains of it is not the reference's: an effect that the
-    library does not hold. Scans are left alone, as the noise of each is known from its match, and
-    headings alone, whose walk is a gyro's. `fit`: the final model, with independent errors of the
-    poses. `competing`: cells of its evidence map; none where nothing is missing otherwise.
+    Scans are left alone, as the noise of each is known from its match, and headings alone, whose
+    walk is a gyro's. `fit`: the final model, with independent errors of the poses.
     """
     point = fit.point
     independent = point.options.reference_kind == "absolute"
@@ -67,17 +69,56 @@ def error_wanders(runs: Concatenated, fit: Fitted, competing: Sequence[Dependenc
     costs = Costs(runs, replace(point, options=options))
     some = _typical(point.variances)
     # One pass over a few typical localisers: with a sound reference all of them are far worse. So
-    # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike,
-    # as does what the library lacks, so that counts only where no dependence competes.
+    # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike.
     trial = costs(some) + prior_cost(costs, some)
     best = int(np.argmin(trial))
-    if trial[best] > fit.cost and (competing or not neighbours_are_alike(runs, point)):
+    if trial[best] > fit.cost and not neighbours_are_alike(runs, point):
         return False
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
-    most = max((fall_of_cost(cell.gain, runs.data) for cell in competing), default=0.0)
-    return chi2_survival(gain - rules.WANDER_OVER_DEPENDENCE * most, len(WALK)) < rules.VERY_SURE
+    return chi2_survival(gain, len(WALK)) < rules.VERY_SURE
+
+
+def explains_all(
+    runs: Concatenated, fit: Fitted, wandering: Fitted, competing: Sequence[Dependence]
+) -> bool:
+    """Whether a wandering reference explains what an effect that the library does not hold might.
+
+    Such an effect is a dependence on a variable, of those `competing` with the model `fit`. With
+    the wander goes what was found beside it, the final model `wandering` of a diagnosis. Over the
+    same legs, with what it has more paid for, that must explain more than independent errors do,
+    and no dependence may be needed beside it: a wander that an effect was taken for becomes smaller
+    beside it.
+    """
+    point = replace(wandering.point, excluded=fit.point.excluded)
+    costs = Costs(runs, point)
+    cost = float((costs(point.variances) + prior_cost(costs, point.variances))[0])
+    if chi2_survival(fit.total - wandering.penalty - cost, len(WALK)) > rules.VERY_SURE:
+        return False
+    for cell in competing[: rules.CELLS_ASKED]:
+        fall = cost - _cost_beside(runs, point, wandering, cell)
+        if bonferroni(len(competing), chi2_survival(fall, cell.degrees)) < rules.VERY_SURE:
+            return False
+    return True
+
+
+def _cost_beside(runs: Concatenated, point: Point, wandering: Fitted, cell: Dependence) -> float:
+    """Cost of a wander and a dependence together, with the noise and all numbers fitted anew."""
+    numbers = [number for number in (*CALIBRATION, *wandering.numbers) if not number.per_run]
+    slopes = np.concatenate(
+        [change_of(runs, point, cell), jacobian_of(runs, point.model, numbers)], axis=-1
+    )
+    costs, before = Costs(runs, point), predict_all(point.model, runs)
+    variances, seen = point.variances, before
+    for _ in range(rules.BESIDE_ROUNDS):
+        told = costs.innovations(variances, before)
+        marks = told.marks(slopes)[..., :-1].reshape(3 * runs.count, -1)
+        size = np.maximum(np.sqrt(np.sum(marks**2, axis=0)), np.finfo(np.float64).tiny)
+        moved = np.linalg.lstsq(marks / size, -told.whitened().ravel(), DETERMINED)[0] / size
+        seen = replace(before, relative=before.relative + slopes @ moved)
+        variances = map_variances(costs, variances, point.options.sigmas_known, seen)
+    return float((costs(variances, seen) + prior_cost(costs, variances))[0])
 
 
 def _typical(fitted: Variances) -> Variances:

@@ -144,6 +144,11 @@ class Concatenated:
         return np.stack([begin, end]) / np.outer(unit, unit)
 
     @property
+    def lost(self) -> NDArray[np.bool_]:
+        """Gaps in which the reference may have lost the robot; shape (m,)."""
+        return np.concatenate([run.lost for run in self.runs])
+
+    @property
     def map_growth(self) -> Floats:
         """Variances of position and heading that the map of scans walks over each leg, (m, 2).
 

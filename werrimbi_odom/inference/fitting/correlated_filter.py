@@ -49,8 +49,10 @@ class GaussMarkovError(NamedTuple):
     kept: Floats
     """Autocorrelation over each leg, (g, m)."""
     gap: NDArray[np.bool_]
-    """Legs after which the pose is unknown and the reference partly lost, (m,). On other skipped
-    legs it jumped: its error is unknown, while the robot drove on."""
+    """Legs after which the pose is unknown, (m,). On other skipped legs the reference jumped: its
+    error is unknown, while the robot drove on."""
+    lost: NDArray[np.bool_]
+    """Those of them in which the reference partly lost the robot too, (m,)."""
     heading: float
     """Variance of a start heading that was not measured; zero where it is fitted [rad²]."""
     laid: GyroHeading | None = None
@@ -97,7 +99,7 @@ def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) 
     finish = np.where(known, finish, 0.0)
     doubted = reading[:, leg] + UNMEASURED * (~known[:, None, :] * np.eye(3))
     lost = ANEW * (known & wander.gap[leg, None])
-    over = wander.gap & ~np.append(wander.gap[1:], False)  # a gap is one leg per pose in it
+    over = wander.lost & ~np.append(wander.lost[1:], False)  # a gap is one leg per pose in it
     throws = np.array([True, True, laid is None])  # a gyro does not jump
     anew = ANEW * (jumped[:, None] & known & throws) + _LOST * over[leg, None]
     kept, added = wander.kept_of_each()[:, leg], wander.added()[:, leg]

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -208,6 +209,31 @@ def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
         own = deviation[first:last]
         usual = max(float(np.median(own)) / _MEDIAN_CHI2_3, 1.0)
         found.append(own > rules.JUMP_OF_A_LEG * usual)
+    if point.options.reference_kind == "local_map":
+        return _jumps_put_aside(runs, replace(point, excluded=tuple(found)))
+    return tuple(found)
+
+
+def _jumps_put_aside(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
+    """The legs excluded, and the parts put aside for judging in which the reference jumped.
+
+    Its error reverts to zero, so legs after a part tell whether it was as usual there.
+    """
+
+    def cost_of_runs(excluded: tuple[NDArray[np.bool_], ...]) -> Floats:
+        legs = unexpected(runs, replace(point, excluded=excluded)).cost_of_legs()[0]
+        return np.add.reduceat(legs, runs.legs[:-1])
+
+    bounds = list(pairwise(runs.legs.tolist()))
+    aside = [np.flatnonzero((runs.gap & ~runs.lost)[first:last]) for first, last in bounds]
+    usual, found = cost_of_runs(point.excluded), [own.copy() for own in point.excluded]
+    for number in range(max(map(len, aside))):
+        asked = [own.copy() for own in point.excluded]
+        for own, legs in zip(asked, aside, strict=True):
+            own[legs[number : number + 1]] = True
+        jumped = usual - cost_of_runs(tuple(asked)) > rules.JUMP_PUT_ASIDE
+        for own, legs, here in zip(found, aside, jumped, strict=True):
+            own[legs[number : number + 1]] |= here
     return tuple(found)
 
 

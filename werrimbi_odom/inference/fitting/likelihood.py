@@ -157,9 +157,10 @@ def innovations(
     `robot`: the robot, with its effects. `runs`: measured poses of m legs. `prediction`: predicted
     legs. `variances`: sets of noise variances. `kind`: error model of the reference. `excluded`
     (m,): legs on which the reference jumped. Like gaps they do not count, and the pose restarts
-    after them. `start_yaws`: heading at the first reference pose of each run, where not measured
-    [rad]. `heading`: variance of these where they were not fitted, for a local_map [rad²].
-    `stretch`: least number of legs after which the filter may restart.
+    after them; of gaps, those in which a local_map jumped. `start_yaws`: heading at the first
+    reference pose of each run, where not measured [rad]. `heading`: variance of these where they
+    were not fitted, for a local_map [rad²]. `stretch`: least number of legs after which the filter
+    may restart.
     """
     count = runs.count
     skip = runs.gap if excluded is None else runs.gap | excluded
@@ -190,7 +191,9 @@ def innovations(
         laid = None
         if runs.has_gyro_headings:
             laid = GyroHeading(prediction.turn, runs.duration, variances.walk_yaw)
-        wander = GaussMarkovError(variances.wandered(), kept, runs.gap, heading, laid)
+        lost = runs.cache.known("lost", lambda: runs.lost)
+        lost = lost if excluded is None else lost | (runs.gap & excluded)
+        wander = GaussMarkovError(variances.wandered(), kept, runs.gap, lost, heading, laid)
         found = filtered_with_correlated_error(legs, wander)
     else:
         found = filtered(legs)

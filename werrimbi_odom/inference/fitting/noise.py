@@ -94,9 +94,14 @@ def with_known_noise(variances: Variances, options: EvaluationOptions) -> Varian
     return variances
 
 
-def map_variances(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
-    """Maximum a posteriori variances for a fixed model (`fisher_scoring`)."""
-    prediction = costs.prediction()
+def map_variances(
+    costs: Costs,
+    start: Variances,
+    held: tuple[bool, bool],
+    prediction: Prediction | None = None,
+) -> Variances:
+    """Maximum a posteriori variances for a fixed model or prediction (`fisher_scoring`)."""
+    prediction = prediction or costs.prediction()
     moving = _moving(costs, held)
     logs = minimum(
         lambda logs: _scored(costs, prediction, start, moving, logs),

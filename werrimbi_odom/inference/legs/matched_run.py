@@ -107,6 +107,15 @@ class MatchedRun:
         return touched(self.measured.time, self.record.happened)
 
     @property
+    def lost(self) -> NDArray[np.bool_]:
+        """Gaps in which the reference may have lost the robot; shape (m,).
+
+        It has not where a stretch was only taken out, to be judged by.
+        """
+        parts = [(part.begin, part.end) for part in self.record.left_out]
+        return self.gap & touched(self.measured.time, parts)
+
+    @property
     def legs(self) -> int:
         """Number of legs, including those marked as gaps."""
         return self.ends.size - 1

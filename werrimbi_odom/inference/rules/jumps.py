@@ -69,6 +69,11 @@ JUMP_OF_A_LEG = 40.0
 """Squared deviation of a leg, relative to the median of its run, above which the reference jumped:
 chi-squared with three degrees of freedom exceeds it in one leg of 10^8."""
 
+JUMP_PUT_ASIDE = 10.0
+"""Fall of the cost of a run above which the reference jumped within a part put aside, as the legs
+after it tell. Chosen: 150 times as likely, where without a jump the cost rises (by 15, as an error
+of `LOST_XY` is taken for possible that is not there)."""
+
 STRAY_AT_ONCE = 2
 """Most wrong poses in a row at which no leg ends: single ones, and the few pairs that chance makes
 of them. What lasts longer is a jump, or an event."""

@@ -28,6 +28,11 @@ SCORE_FLOOR = 8.0
 0.3 % of candidates with one degree of freedom and in 0.7 % with two, and `SURE` needs 18.5 for one
 among 60."""
 
+SCORE_FLOOR_BESIDE_WANDER = 3.0
+"""The same where the reference's error wanders: its size was fitted without the effect, and took up
+most of it (a mount askew by 0.03 rad has a score of 8.2 where a fit gains 28). Chance exceeds it in
+5 % of candidates, so some more are fitted."""
+
 SAME_BY_RUN = 0.5
 """Gain of another variant of an effect (a phase in each run, or one for all; a bump or a flat of a
 tread) relative to the best, above which it is fitted as well. Chosen: one with half the gain may
