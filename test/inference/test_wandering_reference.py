@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from test.inference.test_homogeneity import ROBOT, driven, nothing, wanders
-from test.inference.test_local_map_errors import TRUE, WALK, session
+from test.inference.test_local_map_errors import MEMORY, TRUE, WALK, session
 from werrimbi_odom.api.compare_diagnose_add import as_judged
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -54,6 +54,31 @@ def test_what_is_really_wrong_is_named_beside_it() -> None:
     wide = seen_by_a_localiser(replace(TRUE.entered(), wheel_separation_multiplier=1.05))
     assert wide.wander is not None
     assert wide.found == ("track_width",)
+
+
+def test_a_mount_askew_is_not_taken_for_wander() -> None:
+    """The wander, fitted without it, grows and lasts until it is most of that angle."""
+    turned = [
+        replace(run, reference=replace(run.reference, yaw=run.reference.yaw + 0.03))
+        for run in session(range(40, 43), jumps=0, seconds=60.0)
+        if run.reference is not None
+    ]
+    found = diagnose(turned, TRUE.entered(), [*EFFECTS, find("reference_yaw_offset")])
+    assert found.wander is not None
+    assert found.wander.seconds < 2.0 * MEMORY
+    assert set(found.found) <= {"reference_yaw_offset", "sideways_drift"}
+    assert found.found
+
+
+def test_motion_capture_that_errs_alike_is_no_unknown_law() -> None:
+    """Here it was one of the distance: errors that are alike go with something by chance."""
+    drives = [
+        driven(seed, lambda time, random: 0.2 * wanders(time, random), f"drive_{seed}")
+        for seed in range(106, 112)
+    ]
+    found = diagnose(drives[:4], ROBOT, EFFECTS, holdout=drives[4:])
+    assert (found.verdict, found.found) == ("none", ())
+    assert found.wander is not None
 
 
 def test_motion_capture_that_errs_alike_for_seconds_is_told() -> None:
