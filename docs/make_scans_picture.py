@@ -17,7 +17,7 @@ from plotly.subplots import make_subplots
 from werrimbi_odom.report.save import save_png
 from werrimbi_odom.report.style import BLUE, GREY, INK, ORANGE, PAPER
 from werrimbi_odom.scans.sweep import Sweep, sweep_of
-from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
+from werrimbi_odom.scans.three_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import AxlePose, TrueRobot, figure_eight, record
 from werrimbi_odom.simulation.lidar import Lidar, scanned
 from werrimbi_odom.simulation.rooms import living_room

@@ -9,6 +9,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from test.command_line import Printed
@@ -120,6 +121,28 @@ def test_a_lidar_is_askew_rather_than_the_robots_axle(lidar: bool, first: str) -
     assert found.verdict == "ambiguous"
     assert (found.effect, found.rivals[0]) == (first, first)
     assert set(found.rivals) == {"sideways_drift", "reference_yaw_offset"}
+
+
+@pytest.mark.parametrize("ahead", [0.1, 0.3])
+def test_twins_are_rivals_beside_what_is_missing_too(ahead: float) -> None:
+    """A lidar where its transform says and askew, its place taken off in axes askew with it.
+
+    Before the lever arm that this makes was fitted, an axle that is askew explained more by 13, and
+    was named.
+    """
+    names = ("lateral_slip", "sideways_drift", "reference_yaw_offset", "reference_lever_arm")
+    runs = []
+    for run in runs_of(ROBOT, (1, 2), 60):
+        seen = run.reference
+        assert seen is not None
+        place = seen.x + 1j * seen.y + (ahead + 0.02j) * np.exp(1j * seen.yaw)
+        base = place - (ahead + 0.02j) * np.exp(1j * (seen.yaw + 0.05))
+        askew = replace(seen, x=base.real, y=base.imag, yaw=seen.yaw + 0.05, own_axes=True)
+        runs.append(replace(run, reference=askew))
+    found = diagnose(runs, ROBOT, named(*names))
+    assert found.verdict == "ambiguous"
+    assert found.rivals == ("reference_yaw_offset", "sideways_drift")
+    assert found.found == ("reference_yaw_offset", "reference_lever_arm")
 
 
 def named(*names: str) -> list[Effect]:

@@ -11,7 +11,7 @@ import numpy as np
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.scan_odometry import motion_between
 from werrimbi_odom.scans.sweep import Sweep, sweep_of
-from werrimbi_odom.scans.two_pass_odometry import ScanMatcher, ScanPath
+from werrimbi_odom.scans.three_pass_odometry import ScanMatcher, ScanPath
 from werrimbi_odom.simulation import free
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned

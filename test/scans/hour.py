@@ -16,7 +16,7 @@ import numpy as np
 from test.memory import resident
 from test.scans.drives import seen
 from werrimbi_odom.scans.sweep import Sweep
-from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
+from werrimbi_odom.scans.three_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar

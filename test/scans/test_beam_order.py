@@ -14,7 +14,7 @@ import pytest
 from test.scans.drives import Matched, in_circles, rms, seen
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
 from werrimbi_odom.scans.sweep import Sweep
-from werrimbi_odom.scans.two_pass_odometry import ScanMatcher, ScanPath
+from werrimbi_odom.scans.three_pass_odometry import ScanMatcher, ScanPath
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.lidar import Lidar, Sweeps
 

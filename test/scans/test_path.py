@@ -22,7 +22,7 @@ from test.scans.drives import (
     seen,
 )
 from werrimbi_odom.scans.sweep import sweep_of
-from werrimbi_odom.scans.two_pass_odometry import ScanMatcher
+from werrimbi_odom.scans.three_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, AxlePose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, scanned
@@ -134,6 +134,22 @@ def test_where_turning_begins_and_ends_a_scan_is_deskewed_by_its_own_course() ->
         found = matched(path, rooms.around(path.x_m, path.y_m, seed), Lidar(), seed=seed)
         nees.extend(found.steps()[1][turning_hard(path, found.path.time)])
     assert np.mean(nees) < 1.35
+
+
+def test_in_turning_poses_are_not_ahead_of_the_truth() -> None:
+    """Where the first pass deskewed by the motion before alone, by 0.45 ms over three scans."""
+    clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0)
+    errors, faster = [], []
+    for seed in (20, 21):
+        path = brisk(30.0, seed=seed)
+        found = matched(path, rooms.around(path.x_m, path.y_m, seed), clean, seed=seed)
+        assert np.ptp(found.path.piece) == 0
+        rate = np.interp(found.path.time, path.t_s, np.gradient(path.yaw_rad, path.t_s))
+        error = np.unwrap(found.path.poses[:, 2] - found.truth[:, 2])
+        errors.append(error[3:] - error[:-3])
+        faster.append(rate[3:] - rate[:-3])
+    (ahead,), *_ = np.linalg.lstsq(np.concatenate(faster)[:, None], np.concatenate(errors))
+    assert abs(ahead) < 0.15e-3
 
 
 def test_far_walls_with_cupboards_before_them_do_not_let_the_path_walk() -> None:

@@ -19,7 +19,7 @@ from werrimbi_odom.scans.beam_order import AnyOrder, Order
 from werrimbi_odom.scans.limits import LONGEST_SWEEP
 from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
-from werrimbi_odom.scans.two_pass_odometry import ScanPath
+from werrimbi_odom.scans.three_pass_odometry import ScanPath
 
 WHY: dict[Flag, str] = {
     "few": "too little within the lidar's reach",

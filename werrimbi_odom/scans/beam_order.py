@@ -27,7 +27,7 @@ from werrimbi_odom.scans.limits import (
     ORDER_SURE,
 )
 from werrimbi_odom.scans.sweep import Sweep
-from werrimbi_odom.scans.two_pass_odometry import INTERVALS, USUAL, ScanMatcher, ScanPath
+from werrimbi_odom.scans.three_pass_odometry import INTERVALS, USUAL, ScanMatcher, ScanPath
 
 Order = Literal["stated", "first to last", "last to first"]
 """Order in which the beams of a turn were measured."""

@@ -47,7 +47,7 @@ FLOOR = 1e-4
 """Least standard deviation of a match [m, rad]: a millimetre in ten metres, walls are not
 straighter. Of the simulated rooms only a corridor's heading with 681 beams comes near it
 (docs/scans.md). Further errors of a real lidar are estimated from each drive
-(`two_pass_odometry.common_noise`)."""
+(`pose_noise.common_noise`)."""
 
 COMMON, COMMON_SURE = 1.5, 3.0
 """Ratio of the variance of the poses about a smooth course to that stated by the matches, above

@@ -262,12 +262,22 @@ def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
 
     A lidar that was mounted by hand is askew more often than an axle.
     """
-    effects = [fit.point.model.robot.effects[-1].effect for fit in tried]
-    for fit, effect in zip(tried[1:], effects[1:], strict=True):
-        near = fit.total - tried[0].total < rules.RIVAL * tried[0].scatter
-        if effect.stage == "reference" and near and always_twins(effect, effects[0]):
+    for fit in tried[1:]:
+        twin = always_twins(fit.newest, tried[0].newest)
+        if fit.newest.stage == "reference" and twin and near_to(tried[0], fit):
             return [fit, *(other for other in tried if other is not fit)]
     return tried
+
+
+def near_to(best: Fitted, other: Fitted) -> bool:
+    """Whether data that ask for one fit do not exclude the other.
+
+    What twins of one number each differ by is due to what is still missing beside them: where a
+    lidar's place was taken off in axes that are askew with it, an axle that is askew led by 13.
+    """
+    one, another = best.newest, other.newest
+    alike = len(one.parameters) == len(another.parameters) and always_twins(one, another)
+    return alike or other.total - best.total < rules.RIVAL * best.scatter
 
 
 def best_of_each(found: Sequence[Score]) -> list[Score]:

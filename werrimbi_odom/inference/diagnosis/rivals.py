@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
-from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
+from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round, near_to
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -112,7 +112,7 @@ def _near(name: str, this: Round) -> tuple[str, ...]:
     """Rivals of an effect in the round that tried it."""
     fits = [fit for fit in this.tried if not fit.at_bound]
     best = next(fit for fit in fits if fit.names[-1] == name)
-    near = (fit.names[-1] for fit in fits if fit.total - best.total < rules.RIVAL * best.scatter)
+    near = (fit.names[-1] for fit in fits if near_to(best, fit))
     return tuple(other for other in dict.fromkeys(near) if other != name)
 
 
