@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from test.command_line import ROOT, WERRIMBI, ran
+from test.command_line import ROOT, Werrimbi
 from test.recorded_robots import with_recordings
 
 README = (ROOT / "README.md").read_text()
@@ -100,13 +100,11 @@ def test_the_table_of_real_robots_is_what_its_command_prints() -> None:
             assert float(now) == pytest.approx(float(before), rel=0.02, abs=0.11)
 
 
-def werrimbi(*arguments: str, cwd: Path) -> None:
-    run = ran([*WERRIMBI, *arguments], cwd)
-    assert run.returncode == 0, f"werrimbi {' '.join(arguments)}\n{run.stdout}{run.stderr}"
-
-
-def test_the_readmes_commands_run(tmp_path: Path) -> None:
+def test_the_readmes_commands_run(
+    tmp_path: Path, werrimbi: Werrimbi, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Each `werrimbi` command of the README, on the shipped recording and small tables."""
+    monkeypatch.chdir(tmp_path)
     recording = ROOT / "werrimbi_odom" / "recordings" / "square"
     (tmp_path / "my_robot.yaml").write_text((recording / "robot.yaml").read_text())
     offsets = [("ccw", 0.097, -0.094), ("ccw", 0.095, -0.090), ("cw", 0.032, 0.031)]
@@ -124,7 +122,7 @@ def test_the_readmes_commands_run(tmp_path: Path) -> None:
         table = "UMBMARK.csv" if "umbmark" in command else "NOISE.csv"
         words = command.replace("RESULTS.csv", table).replace("calibrated.yaml", f"{number}.yaml")
         words = words.replace("RUN...", str(recording)).replace("RUN", str(recording))
-        werrimbi(*words.split()[1:], cwd=tmp_path)
+        werrimbi(*words.split()[1:])
 
 
 def test_what_is_shown_was_printed_by_commands_that_there_are() -> None:

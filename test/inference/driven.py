@@ -15,6 +15,7 @@ from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.calibration.recorded_square import SquareRecording
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
@@ -37,6 +38,11 @@ COMMON = tuple(
 )
 """Effects for tests that ask something else than which of the library it is: that takes twice as
 long."""
+
+
+def common(*names: str) -> tuple[Effect, ...]:
+    """`COMMON`, and those that the test is about."""
+    return (*COMMON, *map(find, names))
 
 
 def runs_of(truth: Robot, seeds: Sequence[int], seconds: int = 90) -> list[Run]:

@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import runs_of
+from test.inference.driven import common, runs_of
 from werrimbi_odom.effects import find
-from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import add_effects
@@ -131,13 +130,15 @@ def test_the_place_is_learnt_where_the_height_is_known(height: float) -> None:
 
 
 def test_a_bump_is_named_and_an_axle_off_its_centre_is_none() -> None:
-    told = diagnose(bumpy(2e-3), PLAIN, effects=LIBRARY)
+    waves = [f"{kind}_{side}_wheel" for kind in ("eccentric", "oval") for side in ("left", "right")]
+    effects = common("left_tread_bump", "right_tread_bump", *waves)
+    told = diagnose(bumpy(2e-3), PLAIN, effects)
     assert (told.verdict, told.found) == ("named", ("left_tread_bump",))
     law = find("left_tread_bump")
     off = find("eccentric_left_wheel")
     truth = [replace(PLAIN, effects=(off.using(amplitude=1e-3, phase=at),)) for at in PLACES]
     runs = [runs_of(robot, (seed,), 60)[0] for seed, robot in enumerate(truth)]
-    told = diagnose(runs, PLAIN, effects=LIBRARY)
+    told = diagnose(runs, PLAIN, effects)
     assert (told.verdict, told.found) == ("named", ("eccentric_left_wheel",))
     assert law.name in {score.candidate.name for score in told.rounds[0].scores}  # it was asked
 
@@ -158,7 +159,7 @@ def test_each_drive_has_its_own_rate_from_its_score() -> None:
 
 def test_it_is_named_and_lasts() -> None:
     runs = drifting()
-    told = diagnose(runs, PLAIN, effects=LIBRARY)
+    told = diagnose(runs, PLAIN, common("reference_gyro_drift"))
     assert (told.verdict, told.found) == ("named", ("reference_gyro_drift",))
     laid = concatenated(match_for_fit(runs, PLAIN, 1.0, None))
     best = search_round(laid, fit_calibration(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
@@ -174,7 +175,8 @@ def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> N
         bias = rate * SETTLES * (since - SETTLES * (1.0 - np.exp(-since / SETTLES)))
         runs.append(replace(run, reference=replace(run.reference, yaw=run.reference.yaw + bias)))
     drift = replace(find("reference_gyro_drift").using(), unknown=("rate",))
-    told = diagnose(runs[:3], replace(PLAIN, effects=(drift,)), effects=LIBRARY, holdout=runs[3:])
+    holds = replace(PLAIN, effects=(drift,))
+    told = diagnose(runs[:3], holds, common("reference_gyro_drift"), holdout=runs[3:])
     assert told.verdict == "none"
     assert told.misfit is not None
     assert told.misfit.effect == "reference_gyro_drift"
@@ -186,9 +188,10 @@ def test_matched_scans_have_neither_a_gyro_nor_headings_that_come_later() -> Non
     """What they do wrong goes by no such name, and what they cannot have is not told as unseen."""
     gyros = {"reference_gyro_drift", "reference_heading_delay"}
     runs = [replace(run, reference=replace(run.reference, own_axes=True)) for run in drifting()[:2]]
-    told = diagnose(runs, PLAIN, effects=LIBRARY)
+    effects = common(*gyros)
+    told = diagnose(runs, PLAIN, effects)
     assert gyros.isdisjoint(score.candidate.name for this in told.rounds for score in this.scores)
-    assert gyros.isdisjoint(limit.effect for limit in detection_limits(told, LIBRARY))
+    assert gyros.isdisjoint(limit.effect for limit in detection_limits(told, effects))
 
 
 def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import of_headings, run_by, run_of
+from test.inference.driven import COMMON, common, of_headings, run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.inference.test_late_clock import later
 from test.model.drives import ROBOT, read
@@ -127,7 +127,7 @@ def test_what_drives_do_not_determine_does_not_stay_where_its_score_sent_it() ->
 )
 def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: complex) -> None:
     circle = positions_of_a_point("circle", [0.3] * 5, [0.3] * 5, point)
-    found = diagnose([circle], ROBOT, LIBRARY)
+    found = diagnose([circle], ROBOT, COMMON)
     assert found.verdict == "ambiguous"
     assert "reference_lever_arm" in found.rivals
 
@@ -137,7 +137,7 @@ def test_on_one_circle_at_one_speed_many_effects_are_rivals_of_unequal_wheels() 
     circle = positions_of_a_point(
         "circle", [0.3] * 5, [0.3] * 5, truth=replace(ROBOT, effects=(load,))
     )
-    found = diagnose([circle], ROBOT, LIBRARY)
+    found = diagnose([circle], ROBOT, COMMON)
     assert found.verdict == "ambiguous"
     assert {"unequal_wheel_radii", "load_transfer"} <= set(found.rivals)
 
@@ -156,7 +156,7 @@ def test_two_sizes_that_do_nearly_the_same_start_within_what_is_physical(seed: i
     (start,) = started_with(runs, point, score).model.robot.effects
     assert abs(start.values["sharpness"]) < 0.1
     assert abs(start.values["sense"]) < 0.1
-    found = diagnose([drive], ROBOT, LIBRARY)
+    found = diagnose([drive], ROBOT, COMMON)
     assert found.verdict == "ambiguous"
     assert {"track_width", "turn_dependent_track"} <= set(found.rivals)
 
@@ -211,7 +211,8 @@ def coarsely_counted(seed: int) -> Run:
 @pytest.mark.parametrize("first", [0, pytest.param(6, marks=pytest.mark.evidence)])
 def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
     """Twenty counts a turn: the score at null ended 4 ms from none, and slip was named instead."""
-    found = diagnose([coarsely_counted(first + number) for number in range(3)], COARSE, LIBRARY)
+    runs = [coarsely_counted(first + number) for number in range(3)]
+    found = diagnose(runs, COARSE, common("longitudinal_slip", "coulomb_slip"))
     assert found.found == ("reference_delay",)
     (late,) = found.model.robot.effects
     assert late.values["delay"] == pytest.approx(0.02, abs=0.006)  # a message takes 10 ms

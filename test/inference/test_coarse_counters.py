@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
-from test.inference.driven import COARSE, of_coarse_counts
-from werrimbi_odom.api.result import Result
+from test.inference.driven import COARSE, COMMON, common, of_coarse_counts
+from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.likelihood import quantisation
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.simulation import (
     TrueRobot,
     free,
@@ -31,8 +33,10 @@ from werrimbi_odom.simulation.hidden import Peculiarity
 LATE = 0.04
 
 
-def diagnosed(folder: Path, counts: int, hidden: Sequence[Peculiarity]) -> Result[AdvisedDiagnosis]:
-    """Of four drives of a minute with so many counts in a turn."""
+def driven(
+    folder: Path, counts: int, hidden: Sequence[Peculiarity] = ()
+) -> tuple[RobotFile, list[Run]]:
+    """Four drives of a minute with so many counts in a turn."""
     each = float(counts)
     true = TrueRobot(
         left_wheel_noise=4.0e-4,
@@ -47,30 +51,34 @@ def diagnosed(folder: Path, counts: int, hidden: Sequence[Peculiarity]) -> Resul
         manoeuvre = free(60.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
         recording = record(true, manoeuvre, seed=100 + number, hidden=hidden)
         drives.append(wo.read_run(write_run(recording, folder / str(number)), robot))
-    return wo.diagnose(robot, drives[:3], holdout=drives[3:])
+    return robot, drives
 
 
 @pytest.mark.parametrize("counts", [20, pytest.param(40, marks=pytest.mark.evidence)])
 def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     """Legs that were cut at the steps of the counters told 9 mm of backlash, for certain."""
     late = hide("reference_delay", LATE, seed=1).peculiarity
-    said = diagnosed(tmp_path, counts, [late]).to_dict()
-    assert [each["effect"] for each in said["found"]] == ["reference_delay"]
-    assert said["found"][0]["parameters"]["delay"]["value"] == pytest.approx(LATE, rel=0.15)
+    file, drives = driven(tmp_path, counts, [late])
+    found = diagnose(drives[:3], file.robot, COMMON, holdout=drives[3:])
+    assert found.found == ("reference_delay",)
+    assert values_of(found, "reference_delay")["delay"].value == pytest.approx(LATE, rel=0.15)
 
 
 @pytest.mark.parametrize("counts", [100, pytest.param(60, marks=pytest.mark.evidence)])
 def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
     """Accelerations of single messages are of the counters' steps: a late clock explained more."""
     slip = hide("longitudinal_slip", 0.04, seed=1).peculiarity
-    first, *_ = diagnosed(tmp_path, counts, [slip]).to_dict()["found"]
-    assert first["effect"] == "longitudinal_slip"
-    share = first["parameters"]["coefficient"]
-    assert abs(share["value"] - 0.04) < 3.0 * share["std"] < 0.02
+    file, drives = driven(tmp_path, counts, [slip])
+    effects = common("longitudinal_slip", "coulomb_slip")
+    found = diagnose(drives[:3], file.robot, effects, holdout=drives[3:])
+    assert found.effect == "longitudinal_slip"
+    share = values_of(found, "longitudinal_slip")["coefficient"]
+    assert abs(share.value - 0.04) < 3.0 * share.std < 0.02
 
 
 def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> None:
-    found = diagnosed(tmp_path, 40, [])
+    robot, drives = driven(tmp_path, 40)
+    found = wo.diagnose(robot, drives[:3], holdout=drives[3:])
     assert found.to_dict()["verdict"] == "none"
     words = " ".join(found.summary().split())
     assert "A count of a wheel is 7.9 mm" in words

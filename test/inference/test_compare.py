@@ -62,6 +62,12 @@ def runs() -> tuple[Run, ...]:
     return tuple(recorded(seed) for seed in range(60, 64))
 
 
+@pytest.fixture(scope="module")
+def right(runs: tuple[Run, ...]) -> Comparison:
+    """These runs by the true model."""
+    return compare(runs, RIGHT)
+
+
 def with_reference(run: Run, **columns: np.ndarray) -> Run:
     assert run.reference is not None
     return replace(run, reference=replace(run.reference, **columns))
@@ -77,20 +83,19 @@ def flat(comparison: Comparison) -> str:
     return " ".join(as_text(words_of(comparison)).split())
 
 
-def test_a_true_model_is_called_good_and_its_covariance_honest(runs: tuple[Run, ...]) -> None:
-    found = compare(runs, RIGHT)
-    assert verdict_of(found).good
-    words = flat(found)
+def test_a_true_model_is_called_good_and_its_covariance_honest(right: Comparison) -> None:
+    assert verdict_of(right).good
+    words = flat(right)
     assert words.startswith("The model explains these drives")
     assert "Next" not in words
     # 600 legs of 3 degrees of freedom: mean and coverage scatter by 0.04 and 0.01.
-    figures = found.main.all.figures
+    figures = right.main.all.figures
     assert figures.nees == pytest.approx(1.0, abs=0.15)
     assert figures.coverage_95 == pytest.approx(0.95, abs=0.035)
 
 
 def test_the_noise_of_the_reference_is_found_whatever_is_wrong_with_the_model(
-    runs: tuple[Run, ...],
+    runs: tuple[Run, ...], right: Comparison
 ) -> None:
     wrong = replace(
         RIGHT,
@@ -99,8 +104,8 @@ def test_the_noise_of_the_reference_is_found_whatever_is_wrong_with_the_model(
         left_wheel_noise=5e-5,
         right_wheel_noise=5e-3,
     )
-    for robot in (RIGHT, wrong):
-        ((_, noise),) = compare(runs, robot).prepared.noises
+    for found in (right, compare(runs, wrong)):
+        ((_, noise),) = found.prepared.noises
         assert noise.sigma_xy == pytest.approx(1e-3, rel=0.08)
         assert noise.sigma_yaw == pytest.approx(2e-3, rel=0.08)
         assert (noise.xy_told, noise.yaw_told) == ("estimated", "estimated")
@@ -267,16 +272,15 @@ def shifted(run: Run, at: float, by: float, last: int | None = None) -> Run:
 
 
 def test_a_tracker_that_jumps_spoils_the_leg_on_which_it_does_and_no_other(
-    runs: tuple[Run, ...],
+    runs: tuple[Run, ...], right: Comparison
 ) -> None:
-    clean = compare(runs, RIGHT)
     found = compare([shifted(runs[0], 0.4, 0.3), *runs[1:]], RIGHT)
-    assert clean.main.all.outliers == 0
+    assert right.main.all.outliers == 0
     assert found.main.all.outliers == 1
     assert found.legs.run[found.legs.outlier].tolist() == [0]
     assert found.main.all.rmse_all_position_m > 2.0 * found.main.all.figures.rmse_position_m
     assert found.main.all.figures.rmse_position_m == pytest.approx(
-        clean.main.all.figures.rmse_position_m, rel=0.02
+        right.main.all.figures.rmse_position_m, rel=0.02
     )
     assert "On 1 of" in flat(found)
     assert verdict_of(found).good
@@ -360,10 +364,11 @@ def test_before_and_after_are_over_the_same_legs(runs: tuple[Run, ...]) -> None:
     assert after.main.all.figures.rmse_position_m < 0.1 * before.main.all.figures.rmse_position_m
 
 
-def test_a_model_with_values_of_the_runs_own_is_taken_as_well(runs: tuple[Run, ...]) -> None:
-    plain = compare(runs, RIGHT)
+def test_a_model_with_values_of_the_runs_own_is_taken_as_well(
+    runs: tuple[Run, ...], right: Comparison
+) -> None:
     found = compare(runs, Model(RIGHT, tuple({} for _ in runs)))
-    np.testing.assert_array_equal(found.legs.errors.error, plain.legs.errors.error)
+    np.testing.assert_array_equal(found.legs.errors.error, right.legs.errors.error)
 
 
 def test_a_floor_that_pulls_one_way_goes_with_the_heading(runs: tuple[Run, ...]) -> None:

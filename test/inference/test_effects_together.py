@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, run_by, run_of, runs_of
+from test.inference.driven import COMMON, common, run_by, run_of, runs_of
 from test.model.drives import ROBOT
-from werrimbi_odom.effects import all_effects, find
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -47,7 +47,8 @@ def test_a_mount_a_clock_and_a_drift_are_found_in_one_short_drive(tmp_path: Path
     x = x + DRIFT * np.cumsum(np.hypot(np.diff(x, prepend=x[0]), np.diff(y, prepend=y[0])))
     early = np.interp(seen.time + EARLY, seen.time, yaw) + ASKEW
     run = replace(run, reference=replace(seen, x=x, y=y, yaw=early))
-    found = diagnose([run], file.robot, all_effects().effects)
+    others = ("sideways_drift", "reference_heading_delay", "floor_slope", "anisotropic_floor")
+    found = diagnose([run], file.robot, common(*others))
     assert {TWINS.get(name, name) for name in found.found} == {
         "reference_lever_arm",
         "reference_yaw_offset",

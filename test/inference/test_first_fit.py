@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import pytest
 
+from test.inference.driven import COMMON
 from test.recorded_robots import ROBOTS, with_recordings
-from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run_folder import read_run_folder
@@ -53,7 +54,7 @@ def test_of_a_file_whose_base_was_found_the_late_clock_comes_first() -> None:
         wheel_separation_multiplier=1.9625,
         effects=(find("wheels_swapped").using(),),
     )
-    found = diagnose([read_run_folder(labyrinth / "drive")], robot, LIBRARY)
+    found = diagnose([read_run_folder(labyrinth / "drive")], robot, COMMON)
     assert found.final.names[0] == "reference_delay", "the first that the search takes"
     assert "reference_delay" in found.found
     assert found.train.after < found.train.before

@@ -14,8 +14,8 @@ import pytest
 from test.inference.driven import COMMON, run_of, runs_of
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT
-from werrimbi_odom.api.drives import collection_of, read_robot
-from werrimbi_odom.effects import find
+from werrimbi_odom.api.drives import read_robot
+from werrimbi_odom.effects import Collection, find
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
@@ -89,19 +89,14 @@ def test_a_fitted_drive_recorded_otherwise_is_told_and_left_out(runs: list[Run])
     assert found.effect == "castor_kick"
 
 
-def test_set_up_is_looked_for_in_the_fitted_drives_alone_when_adding(runs: list[Run]) -> None:
-    held = [swapped(run) for run in runs[3:]]
-    found = add_effects([find("castor_kick")], runs[:3], GIVEN, holdout=held)
-    assert found.set_up.findings == ()
-    assert found.train.sides.after < found.train.sides.before
-
-
 def test_nothing_of_the_held_out_drives_moves_a_fit(runs: list[Run]) -> None:
     """The written robot is the same to the last digit whatever was held out."""
     effect = find("castor_kick")
     one = add_effects([effect], runs[:3], GIVEN, holdout=runs[3:4])
     other = add_effects([effect], runs[:3], GIVEN, holdout=[swapped(run) for run in runs[4:]])
     assert one.robot == other.robot
+    assert other.set_up.findings == ()
+    assert other.train.sides.after < other.train.sides.before
 
 
 def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
@@ -132,7 +127,7 @@ def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     run = replace(run, reference=late, ticks=swapped)
     robot = read_robot(FILE)
     advised = advised_diagnosis(
-        Recordings(robot, collection_of(), (run,), (), DriveOptions(), half)
+        Recordings(robot, Collection(COMMON), (run,), (), DriveOptions(), half)
     )
     assert advised.diagnosis.verdict == "unknown"
     words = " ".join(each.text for each in words_of(advised, NextSteps()))
@@ -156,7 +151,7 @@ def test_nor_is_it_beside_a_set_up_mistake() -> None:
         sides.append((replace(run, reference=replace(seen, x=x, y=y, yaw=seen.yaw + 1.8)),))
     robot = read_robot(FILE)
     found = advised_diagnosis(
-        Recordings(robot, collection_of(), *sides, DriveOptions(), ROBOT)
+        Recordings(robot, Collection(COMMON), *sides, DriveOptions(), ROBOT)
     ).diagnosis
     assert found.found == ("reference_yaw_offset",)
     assert found.verdict == "named"

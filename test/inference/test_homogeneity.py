@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of
+from test.inference.driven import COMMON, common, run_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -125,7 +125,7 @@ def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
 def test_what_one_drive_alone_shows_is_no_law_of_the_robot() -> None:
     hot = [driven(seed, nothing, f"drive_{seed}") for seed in range(70, 74)]
     hot.append(driven(74, nothing, "hot", hotter=0.02))
-    found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(75, nothing, "apart")])
+    found = diagnose(hot, ROBOT, COMMON, holdout=[driven(75, nothing, "apart")])
     assert (found.verdict, found.found) == ("none", ())
     assert found.misfit is not None
     assert (found.misfit.only_in, found.misfit.cell.variable.name) == ("hot", "warmth")
@@ -134,7 +134,7 @@ def test_what_one_drive_alone_shows_is_no_law_of_the_robot() -> None:
 @pytest.mark.evidence
 def test_what_every_drive_shows_is_told_of_the_robot() -> None:
     hot = [driven(seed, nothing, f"drive_{seed}", hotter=0.01) for seed in range(80, 84)]
-    found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(85, nothing, "apart", hotter=0.01)])
+    found = diagnose(hot, ROBOT, COMMON, holdout=[driven(85, nothing, "apart", hotter=0.01)])
     assert (found.verdict, found.depends_on[0].variable.name) == ("unknown", "warmth")
 
 
@@ -313,13 +313,14 @@ def test_axes_that_begin_anew_have_no_common_direction() -> None:
         return np.outer(time, [0.004, 0.0, 0.0])
 
     runs = [driven(seed, slopes, f"drive_{seed}") for seed in range(90, 93)]
-    found = diagnose(runs[:2], ROBOT, LIBRARY, holdout=runs[2:])
+    effects = common("floor_slope", "anisotropic_floor")
+    found = diagnose(runs[:2], ROBOT, effects, holdout=runs[2:])
     assert found.found == ("floor_slope",)
     anew = [replace(run, reference=replace(run.reference, own_axes=True)) for run in runs]
-    found = diagnose(anew[:2], ROBOT, LIBRARY, holdout=anew[2:])
+    found = diagnose(anew[:2], ROBOT, effects, holdout=anew[2:])
     assert "floor_slope" not in [item.effect for item in found.ranking]
     assert {"heading", "position"}.isdisjoint(cell.variable.name for cell in found.depends_on)
-    limits = {limit.effect: limit for limit in detection_limits(found, LIBRARY)}
+    limits = {limit.effect: limit for limit in detection_limits(found, effects)}
     assert limits["floor_slope"].minimum_detectable == np.inf
     assert limits["lateral_slip"].minimum_detectable < 1.0
     said = " ".join(not_shown(AdvisedDiagnosis(found, None, tuple(limits.values()))))

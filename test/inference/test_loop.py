@@ -15,6 +15,7 @@ import pytest
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.inference.driven import COMMON
 from test.inference.driven import runs_of as driven
+from test.inference.test_late_clock import later
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.read_run import read_run
@@ -61,8 +62,9 @@ def hidden(seed: int, *effects: str) -> Loop:
 @pytest.fixture(scope="module")
 def wheel_and_clock() -> Loop:
     """The right wheel is 3 % larger, and the reference 60 ms late."""
-    radii = ("unequal_wheel_radii=1.03", "wheel_radius_scale=1.015")
-    return hidden(5, *radii, "reference_delay=0.06")
+    truth = replace(PLAIN, right_wheel_radius_multiplier=1.03)
+    runs = [later(run, 0.06) for run in driven(truth, (1, 2, 3, 4), seconds=60)]
+    return Loop(PLAIN, runs[:3], runs[3:])
 
 
 def test_a_wrong_wheel_and_a_late_clock_come_to_rest_at_the_truth(wheel_and_clock: Loop) -> None:

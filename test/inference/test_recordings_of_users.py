@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import of_headings, parts, run_of, runs_of
+from test.inference.driven import COMMON, of_headings, parts, run_of, runs_of
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.lookup import load_file
@@ -85,7 +85,7 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     off = replace(
         robot, wheel_separation_multiplier=robot.wheel_separation_multiplier * (1.0 + share)
     )
-    found = diagnose([run], off, LIBRARY, holdout=[run])
+    found = diagnose([run], off, COMMON, holdout=[run])
     chances = [each.p_value for each in found.ranking if each.effect in found.found]
     assert all(each is not None and each < rules.SURE for each in chances)
     assert found.found == (() if away < 3.0 else ("track_width",))
@@ -101,7 +101,7 @@ def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: f
     true = ROBOT.wheel_separation_multiplier / factor
     entered = replace(ROBOT, wheel_separation=ROBOT.wheel_separation * factor)
     off = replace(entered, wheel_separation_multiplier=1.05 * true)
-    found = diagnose([run], off, LIBRARY, holdout=[run])
+    found = diagnose([run], off, COMMON, holdout=[run])
     assert found.effect == "track_width"
     assert found.robot.wheel_separation_multiplier == pytest.approx(true, rel=0.003)
 
@@ -114,7 +114,7 @@ def test_the_rival_that_headings_alone_leave_is_told_with_the_inverse() -> None:
             replace(as_turning(ROBOT, 1.95), right_wheel_radius_multiplier=1.01), [1, 2]
         )
     ]
-    found = diagnose(runs, ROBOT, LIBRARY, holdout=runs)
+    found = diagnose(runs, ROBOT, COMMON, holdout=runs)
     assert found.rivals == ("track_width", "wheel_radius_scale")
     base = values_of(found, "track_width")["multiplier"]
     radii = values_of(found, "wheel_radius_scale")["multiplier"]

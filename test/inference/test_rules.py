@@ -34,10 +34,13 @@ ELSEWHERE = {
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
     "changes/scatter.py": {"_MEDIAN_CHI2_1": "a quantile"},
     "changes/change_points.py": {"_FEW": "time that it takes"},
-    "distributions.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
+    "distributions.py": {
+        "MEDIAN_TO_SIGMA": "of the normal law",
+        "NORMAL_95": "a quantile",
+        "CHI2_95": "quantiles",
+    },
     "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
     "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
-    "comparison/leg_errors.py": {"CHI2_95": "quantiles"},
     "comparison/local_map_errors.py": {
         "_MEDIAN_OF_A_SHARE": "a quantile",
         "_ROUNDS": "passes of the search of a doubt",

@@ -6,21 +6,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-import werrimbi_odom as wo
-from test.cli.commands import ROBOT_FILE, write_run
-from test.inference.driven import run_of
+from test.inference.driven import COMMON, run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference.changes.between_drives import changes_between
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.adding.words import _headline
@@ -33,7 +33,8 @@ from werrimbi_odom.report.diagnosis.remarks import (
     nearest,
     not_shown,
 )
-from werrimbi_odom.report.diagnosis.words import how_long
+from werrimbi_odom.report.diagnosis.words import NextSteps, how_long, words_of
+from werrimbi_odom.report.terminal import as_text
 
 
 def told_of(after: float) -> Any:
@@ -243,18 +244,17 @@ def test_of_what_is_no_drive_no_minutes_are_said() -> None:
     )
 
 
-def test_drives_that_no_mount_fits_are_not_said_to_be_lost(tmp_path: Path) -> None:
+def test_drives_that_no_mount_fits_are_not_said_to_be_lost() -> None:
     """A mower's compass beside its UWB: the reference "is lost, it slides, or sits far away"."""
-    (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
-    places = []
+    runs = []
     for number, angle in enumerate((1.57, 1.57, -1.57, -1.57)):
         run = run_of(ROBOT, number, 30)
         assert run.reference is not None
         turned = replace(run.reference, yaw=run.reference.yaw + angle)
-        places.append(tmp_path / f"run_{number}")
-        write_run(places[-1], replace(run, reference=turned))
-    told = wo.diagnose(wo.read_robot(tmp_path / "robot.yaml"), places).summary()
-    words = " ".join(told.split())
+        runs.append(replace(run, reference=turned))
+    found = diagnose(runs, ROBOT, COMMON)
+    told = AdvisedDiagnosis(found, None, (), changes=changes_between(found, COMMON))
+    words = " ".join(as_text(words_of(told, NextSteps())).split())
     assert "Between run_1 and run_2 the reference came to be mounted otherwise" in words
     assert "No mount of the reference fits all of these drives" in words
     assert "It is lost" not in words

@@ -18,7 +18,7 @@ import numpy as np
 
 from werrimbi_odom.demo.node_processes import Stage, save_and_tell
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
+from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.style import BLUE, ORANGE, Figure, blank, plain
 

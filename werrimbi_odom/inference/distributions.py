@@ -20,6 +20,9 @@ MEDIAN_TO_SIGMA = 1.4826
 NORMAL_95 = 1.959963984540054
 """Half width of the 95 % interval of a standard normal variable."""
 
+CHI2_95 = np.array([np.inf, 3.841458820694124, 5.991464547107979, 7.814727903251179])
+"""95 % quantiles of chi-squared, by degrees of freedom."""
+
 
 def bonferroni(tests: int, chance: float) -> float:
     """Bonferroni bound: probability that noise alone is as extreme in any of several tests."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
+from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.style import (
     BLUE,

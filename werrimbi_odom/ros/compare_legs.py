@@ -20,7 +20,8 @@ import numpy as np
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.consistency import chance_bounds, honest_bounds
-from werrimbi_odom.inference.comparison.leg_errors import CHI2_95, squared_deviation
+from werrimbi_odom.inference.comparison.leg_errors import squared_deviation
+from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.inference.legs.cutting import legs_worth
 from werrimbi_odom.inference.legs.gaps import are_gaps
 from werrimbi_odom.model.covariance import PoseCovariance, carried

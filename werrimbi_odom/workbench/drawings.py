@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
+from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure

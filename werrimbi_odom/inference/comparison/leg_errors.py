@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.local_map_errors import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
+from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
@@ -32,9 +33,6 @@ from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pieces import PieceKind, kind_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-CHI2_95 = np.array([np.inf, 3.841458820694124, 5.991464547107979, 7.814727903251179])
-"""95 % quantiles of chi-squared, by degrees of freedom."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,7 +90,7 @@ class Concatenated:
     @property
     def headings_alone(self) -> bool:
         """Whether references measure headings only, as gyros do."""
-        return not np.isfinite(self.finish[:, :2]).any()
+        return self.cache.known("no place", lambda: not np.isfinite(self.finish[:, :2]).any())
 
     @property
     def positions_alone(self) -> bool:
@@ -193,9 +193,13 @@ class Concatenated:
     def seen_through(self, view: View) -> Concatenated:
         """Same legs with stamps as late as `view` says, whose values may be arrays (m,)."""
         first = self.legs[:-1]
-        late = np.broadcast_arrays(view.delay, view.clock_drift, np.zeros(self.count))
-        clocks = tuple(zip(late[0][first].tolist(), late[1][first].tolist(), strict=True))
-        return self._by_clocks(clocks)
+        delays, drifts = (
+            [float(each)] * len(self.runs)
+            if np.ndim(each) == 0
+            else np.asarray(each)[first].tolist()
+            for each in (view.delay, view.clock_drift)
+        )
+        return self._by_clocks(tuple(zip(delays, drifts, strict=True)))
 
     def _by_clocks(self, clocks: Clocks) -> Concatenated:
         if clocks == tuple((run.delay, run.clock_drift) for run in self.runs):

@@ -158,13 +158,12 @@ class FilterResult(NamedTuple):
 def stretches(legs: FilterInput) -> NDArray[np.intp]:
     """First leg of each stretch."""
     length = max(legs.stretch, legs.begins.size // SIDE_BY_SIDE)
-    full = np.all(np.isfinite(legs.start), axis=-1).tolist()
     starts = []
     bounds = np.append(np.flatnonzero(legs.begins), legs.begins.size)
     for begin, end in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         starts.append(begin)
         for wanted in range(begin + length, end - length // 2, length):
-            if full[wanted]:
+            if np.isfinite(legs.start[wanted]).all():
                 starts.append(wanted)
     return np.array(starts, dtype=np.intp)
 
