@@ -14,7 +14,7 @@ from test.inference.driven import COMMON, common, of_headings, run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.inference.test_late_clock import later
 from test.model.drives import ROBOT, read
-from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference import rules
@@ -176,7 +176,7 @@ def test_jitter_of_the_stamps_does_not_stand_in_for_a_delay() -> None:
     runs = concatenated(match_for_fit([gyro], ROBOT, 0.25))
     before = fit_calibration(runs, ROBOT, EvaluationOptions(reference_kind="incremental"))
     assert before.point.variances.stamp[0] ** 0.5 > rules.MOST_STAMP_NOISE
-    best = search_round(runs, before, LIBRARY, ROBOT).tried[0]
+    best = search_round(runs, before, COMMON, ROBOT).tried[0]
     assert best.names == ("reference_delay",)
     (delay,) = best.point.model.robot.effects[-1].values.values()
     assert delay == pytest.approx(0.05, abs=0.02)

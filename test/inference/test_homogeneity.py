@@ -299,7 +299,7 @@ def test_a_delay_is_named_of_one_short_drive(seed: int) -> None:
     found = diagnose(
         [late(seed, 0.1)],
         ROBOT,
-        LIBRARY,
+        COMMON,
         EvaluationOptions(leg=0.25),
         holdout=[late(seed + 1, 0.1)],
     )

@@ -62,7 +62,7 @@ def short_drive(seed: int) -> Run:
 
 def test_a_wrong_base_is_found_in_one_short_drive_with_positions_alone() -> None:
     run = short_drive(2)
-    found = diagnose([run], NOMINAL, LIBRARY)
+    found = diagnose([run], NOMINAL, COMMON)
     assert (found.verdict, found.effect) == ("named", "track_width")
     assert found.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
     assert found.train.before > 0.1
