@@ -150,9 +150,10 @@ def test_what_was_found_beside_an_effect_is_no_rival_of_it(
     rivals: tuple[str, ...], *, also_found: bool
 ) -> None:
     """Slip along and creep aside gained as much in the first round, and both were found."""
+    slip, creep = find("longitudinal_slip"), find("lateral_slip")
     tried = [
-        SimpleNamespace(names=(name,), at_bound=(), total=total, scatter=1.0)
-        for name, total in (("a", 900.0), ("b", 905.0))
+        SimpleNamespace(names=(name,), newest=effect, at_bound=(), total=total, scatter=1.0)
+        for name, effect, total in (("a", slip, 900.0), ("b", creep, 905.0))
     ]
     first: Any = SimpleNamespace(tried=tried)
     beside: Any = SimpleNamespace(tried=[SimpleNamespace(names=("a", "b"), at_bound=())])

@@ -100,7 +100,10 @@ def diagnose(
         # A reference that wanders explains all that is left, and lets nothing be named that was
         # not; else it is the robot that errs so.
         explained = not any(cell.p_value < rules.VERY_SURE for cell in again.remaining)
-        explained &= explains_all(found.runs, found.final, again.final, competing)
+        law = found.misfit is not None and found.misfit.effect is not None
+        explained = explained and explains_all(
+            found.runs, found.final, again.final, competing, of_a_law=law
+        )
         if explained and (again.verdict == "none" or not nothing_left):
             return replace(again, wander=wander_of(again.final.point.variances))
     return replace(found, happened=happened)

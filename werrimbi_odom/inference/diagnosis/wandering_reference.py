@@ -17,7 +17,7 @@ from itertools import product
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, fall_of_cost
 from werrimbi_odom.inference.diagnosis.homogeneity import change_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.what_is_left import neighbours_are_alike
@@ -72,35 +72,49 @@ def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
     # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike.
     trial = costs(some) + prior_cost(costs, some)
     best = int(np.argmin(trial))
-    if trial[best] > fit.cost and not neighbours_are_alike(runs, point):
+    small = trial[best] > fit.cost
+    if small and not neighbours_are_alike(runs, point):
         return False
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
+    size = wander_of(found)
+    if small and max(size.place, size.heading) > rules.SMALL_WANDER:
+        return False
     return chi2_survival(gain, len(WALK)) < rules.VERY_SURE
 
 
 def explains_all(
-    runs: Concatenated, fit: Fitted, wandering: Fitted, competing: Sequence[Dependence]
+    runs: Concatenated,
+    fit: Fitted,
+    wandering: Fitted,
+    competing: Sequence[Dependence],
+    *,
+    of_a_law: bool,
 ) -> bool:
     """Whether a wandering reference explains what an effect that the library does not hold might.
 
     Such an effect is a dependence on a variable, of those `competing` with the model `fit`. With
     the wander goes what was found beside it, the final model `wandering` of a diagnosis. Over the
-    same legs, with what it has more paid for, that must explain more than independent errors do,
-    and no dependence may be needed beside it: a wander that an effect was taken for becomes smaller
-    beside it.
+    same legs, with what it has more paid for, that must explain more than independent errors do.
+    And it must explain far more than any dependence, or none may be needed beside it: a wander that
+    an effect was taken for becomes smaller beside it. `of_a_law`: whether the dependence is what a
+    law of the model leaves, and so has a cause already.
     """
     point = replace(wandering.point, excluded=fit.point.excluded)
     costs = Costs(runs, point)
     cost = float((costs(point.variances) + prior_cost(costs, point.variances))[0])
-    if chi2_survival(fit.total - wandering.penalty - cost, len(WALK)) > rules.VERY_SURE:
+    gain = fit.total - wandering.penalty - cost
+    most = max((fall_of_cost(cell.gain, runs.data) for cell in competing), default=0.0)
+    if chi2_survival(gain, len(WALK)) > rules.VERY_SURE:
         return False
+    if chi2_survival(gain - rules.WANDER_OVER_DEPENDENCE * most, len(WALK)) < rules.VERY_SURE:
+        return True
     for cell in competing[: rules.CELLS_ASKED]:
         fall = cost - _cost_beside(runs, point, wandering, cell)
-        if bonferroni(len(competing), chi2_survival(fall, cell.degrees)) < rules.VERY_SURE:
+        if bonferroni(len(competing), chi2_survival(fall, cell.degrees)) < rules.SURE:
             return False
-    return True
+    return not of_a_law
 
 
 def _cost_beside(runs: Concatenated, point: Point, wandering: Fitted, cell: Dependence) -> float:

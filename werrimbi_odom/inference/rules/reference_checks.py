@@ -58,6 +58,18 @@ SUSPECT_TURNED = 2.0 * math.pi
 """Total turn of all drives [rad] for that test: 1 % of a whole turn is 4 degrees, more than
 references with a metric scale err by."""
 
+WANDER_OVER_DEPENDENCE = 2.0
+"""How many times as much as the strongest dependence on a measured variable a wandering reference
+explains (fall of the cost), beyond chance (`VERY_SURE`), above which no dependence is asked for
+beside it. Chosen: an effect of two variables that the library does not hold shows about half of
+itself over either, and the wander of a reference takes up some of what is left. References that
+wander by centimetres explain 2.2 to 12 times as much."""
+
+SMALL_WANDER = 5e-3
+"""Wander in the long run [m, rad] up to which neighbouring legs that are alike tell it, though
+every typical localiser is worse. Chosen: the camera systems recorded wander by 0.7 mm and 3.4 mrad;
+errors of 20 mm that are alike on one drive of two are no camera's."""
+
 BESIDE_ROUNDS = 3
 """Fits in turn of a dependence and of the wander of a reference. Chosen: a wander that a dependence
 was taken for shrinks in the first, and the third moves the cost by less than one."""
