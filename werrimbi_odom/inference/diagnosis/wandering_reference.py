@@ -110,11 +110,13 @@ def explains_all(
         return False
     if chi2_survival(gain - rules.WANDER_OVER_DEPENDENCE * most, len(WALK)) < rules.VERY_SURE:
         return True
+    if of_a_law:
+        return False
     for cell in competing[: rules.CELLS_ASKED]:
         fall = cost - _cost_beside(runs, point, wandering, cell)
         if bonferroni(len(competing), chi2_survival(fall, cell.degrees)) < rules.SURE:
             return False
-    return not of_a_law
+    return True
 
 
 def _cost_beside(runs: Concatenated, point: Point, wandering: Fitted, cell: Dependence) -> float:
