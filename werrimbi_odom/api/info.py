@@ -150,9 +150,8 @@ def _held(
     try:
         if held.wheels is None:
             raise InputError("nothing in it tells how the wheels turned")
-        reference = reference_topic or (held.reference.name if held.reference else None)
-        if other is None:
-            reference = reference or NONE
+        own = NONE if other is None else None
+        reference = reference_topic or (held.reference.name if held.reference else own)
         if source is None:
             first = _with_ticks(path, held.wheels, first)
         file, topic = source or robot_file_of(first), held.wheels.name

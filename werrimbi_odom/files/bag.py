@@ -62,28 +62,27 @@ class Bag:
     _types: Types | Parsed
 
     def messages(self, topics: Sequence[str]) -> Iterator[BagMessage]:
-        """Yield the messages of some topics, in order of recording.
+        """The messages of some topics, in order of recording.
 
         InputError if a message cannot be read.
         """
-        try:
-            for raw in self._raw(topics):
-                yield BagMessage(raw.topic, raw.received, self._read(raw))
-        except Exception as error:  # a damaged bag may raise anything, from struct to zstd
-            raise _unreadable(self.path, error) from error
+        return self._stretches(topics, 1)
 
     def sampled(self, topic: str, most: int) -> Iterator[BagMessage]:
-        """Yield the messages of a topic, or about `most` in stretches spread over all of the bag.
+        """The messages of a topic, or about `most` in stretches spread over all of the bag.
 
         Others are not deserialised, which takes most of the time. InputError as in `messages`.
         """
         count = sum(each.messages for each in self.topics if each.name == topic)
-        every = max(1, count // most)
+        return self._stretches([topic], max(1, count // most))
+
+    def _stretches(self, topics: Sequence[str], every: int) -> Iterator[BagMessage]:
+        """One stretch of messages of each `every`."""
         try:
-            for number, raw in enumerate(self._raw([topic])):
+            for number, raw in enumerate(self._raw(topics)):
                 if number // _STRETCH % every == 0:
                     yield BagMessage(raw.topic, raw.received, self._read(raw))
-        except Exception as error:  # as above
+        except Exception as error:  # a damaged bag may raise anything, from struct to zstd
             raise _unreadable(self.path, error) from error
 
     def _read(self, raw: Raw) -> Any:

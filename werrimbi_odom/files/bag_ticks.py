@@ -34,6 +34,7 @@ from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks
+from werrimbi_odom.model.counter_wraps import running_on
 
 KINDS = {
     "joint_state": JOINT_STATE,
@@ -255,6 +256,4 @@ def _width(robot_file: RobotFile, bits: int) -> int:
 def _unwrapped(counts: NDArray[np.int64], bits: int) -> NDArray[np.int64]:
     if not bits:
         return counts
-    half = 1 << (bits - 1)
-    steps = (np.diff(counts) + half) % (2 * half) - half
-    return np.concatenate([counts[:1], counts[0] + np.cumsum(steps)])
+    return running_on(counts, bits).astype(np.int64)

@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.counter_wraps import differences
+from werrimbi_odom.model.counter_wraps import running_on
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -90,9 +90,8 @@ def _running_on(counts: Counts, bits: int) -> Counts:
     whole = np.flatnonzero(np.isfinite(counts))
     if whole.size == 0:
         return counts
-    steps, _ = differences(counts[whole], bits)
     run = counts.astype(np.float64)
-    run[whole[1:]] = run[whole[0]] + np.cumsum(steps)
+    run[whole] = running_on(counts[whole], bits)
     return run
 
 

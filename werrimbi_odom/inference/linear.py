@@ -110,10 +110,14 @@ def within_reach(free: Floats, residual: Floats, reach: Floats) -> Floats:
     return np.asarray(np.linalg.solve(square, -(free.T @ residual)))
 
 
-def solved(columns: Floats, target: Floats) -> Floats:
-    """Least-squares solution (k,) for a target (n,), zero along undetermined directions."""
+def solved(columns: Floats, target: Floats, least: float = ROUNDING) -> Floats:
+    """Least-squares solution (k,) for a target (n,), zero along undetermined directions.
+
+    `least`: singular value of the columns at unit length, relative to the largest, below which a
+    direction is undetermined.
+    """
     unit, size = _unit(columns)
-    found = np.linalg.lstsq(unit, target, rcond=ROUNDING)[0]
+    found = np.linalg.lstsq(unit, target, rcond=least)[0]
     result = np.zeros(columns.shape[-1])
     result[size > 0.0] = found / size[size > 0.0]
     return result

@@ -32,3 +32,9 @@ def differences(
         if wraps.any():
             steps[wraps] = (steps[wraps] + half) % (2 * half) - half
     return steps.astype(np.float64, copy=False), wraps
+
+
+def running_on(counts: NDArray[np.float64] | NDArray[np.int64], bits: int) -> Floats:
+    """Counts (n,) from the first on, without the wraps of a counter of `bits` bits."""
+    steps, _ = differences(counts, bits)
+    return np.concatenate([counts[:1], counts[0] + np.cumsum(steps)])

@@ -120,19 +120,20 @@ def _added_up(columns: Floats, of: Sequence[str]) -> Floats:
 def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
     """Change of the whitened innovations for a dependence of a cell's form, (3 m, k)."""
     own = unexpected(runs, point).marks(change_of(runs, point, cell))[..., :-1]
+    if cell.variable.per_run:
+        own = of_each_run(runs, own)
     return np.asarray(own.reshape(3 * runs.count, -1))
 
 
 def change_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
-    """Change of the legs for a dependence of a cell's form, (m, 3, k)."""
+    """Change of the legs for a dependence of a cell's form, (m, 3, k), the same in all runs."""
     path = path_of(point.model, runs)
     sides = zip(
         functions_of(cell.variable)[cell.form],
         step_jacobians(runs, path, [cell.amount], point),
         strict=True,
     )
-    change = np.asarray(sum(summed_over_legs(runs, *side) for side in sides))
-    return of_each_run(runs, change) if cell.variable.per_run else change
+    return np.asarray(sum(summed_over_legs(runs, *side) for side in sides))
 
 
 def lasting_columns(

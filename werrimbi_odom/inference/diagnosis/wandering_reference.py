@@ -25,10 +25,17 @@ from werrimbi_odom.inference.distributions import bonferroni, chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import WALK, map_variances, prior_cost, with_known_noise
+from werrimbi_odom.inference.fitting.noise import (
+    WALK,
+    map_variances,
+    posterior_cost,
+    with_known_noise,
+)
 from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.fitting.score_tests import of_each_run
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, jacobian_of
-from werrimbi_odom.inference.linear import DETERMINED
+from werrimbi_odom.inference.linear import DETERMINED, solved
+from werrimbi_odom.model.pose import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +77,14 @@ def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
     some = _typical(point.variances)
     # One pass over a few typical localisers: with a sound reference all of them are far worse. So
     # they are beside motion capture, whose wander is small; but it makes neighbouring legs alike.
-    trial = costs(some) + prior_cost(costs, some)
+    trial = posterior_cost(costs, some)
     best = int(np.argmin(trial))
     small = trial[best] > fit.cost
     if small and not neighbours_are_alike(runs, point):
         return False
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
-    gain = fit.cost - float((costs(found) + prior_cost(costs, found))[0])
+    gain = fit.cost - float(posterior_cost(costs, found)[0])
     size = wander_of(found)
     if small and max(size.place, size.heading) > rules.SMALL_WANDER:
         return False
@@ -103,7 +110,7 @@ def explains_all(
     """
     point = replace(wandering.point, excluded=fit.point.excluded)
     costs = Costs(runs, point)
-    cost = float((costs(point.variances) + prior_cost(costs, point.variances))[0])
+    cost = float(posterior_cost(costs, point.variances)[0])
     gain = fit.total - wandering.penalty - cost
     most = max((fall_of_cost(cell.gain, runs.data) for cell in competing), default=0.0)
     if chi2_survival(gain, len(WALK)) > rules.VERY_SURE:
@@ -112,29 +119,33 @@ def explains_all(
         return True
     if of_a_law:
         return False
+    numbers = [number for number in (*CALIBRATION, *wandering.numbers) if not number.per_run]
+    of_numbers = jacobian_of(runs, point.model, numbers)
     for cell in competing[: rules.CELLS_ASKED]:
-        fall = cost - _cost_beside(runs, point, wandering, cell)
+        fall = cost - _cost_beside(runs, point, cell, of_numbers)
         if bonferroni(len(competing), chi2_survival(fall, cell.degrees)) < rules.SURE:
             return False
     return True
 
 
-def _cost_beside(runs: Concatenated, point: Point, wandering: Fitted, cell: Dependence) -> float:
-    """Cost of a wander and a dependence together, with the noise and all numbers fitted anew."""
-    numbers = [number for number in (*CALIBRATION, *wandering.numbers) if not number.per_run]
-    slopes = np.concatenate(
-        [change_of(runs, point, cell), jacobian_of(runs, point.model, numbers)], axis=-1
-    )
+def _cost_beside(runs: Concatenated, point: Point, cell: Dependence, of_numbers: Floats) -> float:
+    """Cost of a wander and a dependence together, with the noise and all numbers fitted anew.
+
+    `of_numbers` (m, 3, p): change of the legs for the numbers that all runs share.
+    """
+    change = change_of(runs, point, cell)
+    if cell.variable.per_run:
+        change = of_each_run(runs, change)
+    slopes = np.concatenate([change, of_numbers], axis=-1)
     costs, before = Costs(runs, point), predict_all(point.model, runs)
     variances, seen = point.variances, before
     for _ in range(rules.BESIDE_ROUNDS):
         told = costs.innovations(variances, before)
         marks = told.marks(slopes)[..., :-1].reshape(3 * runs.count, -1)
-        size = np.maximum(np.sqrt(np.sum(marks**2, axis=0)), np.finfo(np.float64).tiny)
-        moved = np.linalg.lstsq(marks / size, -told.whitened().ravel(), DETERMINED)[0] / size
+        moved = solved(marks, -told.whitened().ravel(), DETERMINED)
         seen = replace(before, relative=before.relative + slopes @ moved)
         variances = map_variances(costs, variances, point.options.sigmas_known, seen)
-    return float((costs(variances, seen) + prior_cost(costs, variances))[0])
+    return float(posterior_cost(costs, variances, seen)[0])
 
 
 def _typical(fitted: Variances) -> Variances:

@@ -146,7 +146,7 @@ class Concatenated:
     @property
     def lost(self) -> NDArray[np.bool_]:
         """Gaps in which the reference may have lost the robot; shape (m,)."""
-        return np.concatenate([run.lost for run in self.runs])
+        return self.cache.known("lost", lambda: np.concatenate([run.lost for run in self.runs]))
 
     @property
     def map_growth(self) -> Floats:
@@ -193,13 +193,9 @@ class Concatenated:
     def seen_through(self, view: View) -> Concatenated:
         """Same legs with stamps as late as `view` says, whose values may be arrays (m,)."""
         first = self.legs[:-1]
-        delays, drifts = (
-            [float(each)] * len(self.runs)
-            if np.ndim(each) == 0
-            else np.asarray(each)[first].tolist()
-            for each in (view.delay, view.clock_drift)
-        )
-        return self._by_clocks(tuple(zip(delays, drifts, strict=True)))
+        late = np.broadcast_arrays(view.delay, view.clock_drift, np.zeros(self.count))
+        clocks = tuple(zip(late[0][first].tolist(), late[1][first].tolist(), strict=True))
+        return self._by_clocks(clocks)
 
     def _by_clocks(self, clocks: Clocks) -> Concatenated:
         if clocks == tuple((run.delay, run.clock_drift) for run in self.runs):

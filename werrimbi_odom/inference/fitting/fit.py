@@ -31,7 +31,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.gauss_newton import gauss_newton, is_small, moved, step_within
 from werrimbi_odom.inference.fitting.identifiable import Directions, determined, with_held_as_given
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import map_variances, prior_cost, with_known_noise
+from werrimbi_odom.inference.fitting.noise import map_variances, posterior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, stacked, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
@@ -58,7 +58,7 @@ class ModelFit:
     at_bound: tuple[FreeParameter, ...]
     """Fitted parameters that ended at a physical bound."""
     minus_two_log_likelihood: float
-    """Minus two log posterior: includes the prior on the noise (`noise.prior_cost`)."""
+    """Minus two log posterior: includes the prior on the noise (`noise.posterior_cost`)."""
 
     @property
     def held(self) -> tuple[str, ...]:
@@ -158,7 +158,7 @@ def fit_model(
         tuple(number for number in shared_of(numbers) if number not in free),
         directions,
         tuple(number for number in free if _at_bound(point.model.value(number), number)),
-        float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
+        float(posterior_cost(costs, point.variances)[0]),
     )
 
 
@@ -224,8 +224,10 @@ def _jumps_put_aside(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_
         legs = unexpected(runs, replace(point, excluded=excluded)).cost_of_legs()[0]
         return np.add.reduceat(legs, runs.legs[:-1])
 
-    bounds = list(pairwise(runs.legs.tolist()))
-    aside = [np.flatnonzero((runs.gap & ~runs.lost)[first:last]) for first, last in bounds]
+    kept = runs.gap & ~runs.lost
+    if not kept.any():
+        return point.excluded
+    aside = [np.flatnonzero(kept[first:last]) for first, last in pairwise(runs.legs.tolist())]
     usual, found = cost_of_runs(point.excluded), [own.copy() for own in point.excluded]
     for number in range(max(map(len, aside))):
         asked = [own.copy() for own in point.excluded]

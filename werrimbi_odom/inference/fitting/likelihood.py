@@ -191,8 +191,7 @@ def innovations(
         laid = None
         if runs.has_gyro_headings:
             laid = GyroHeading(prediction.turn, runs.duration, variances.walk_yaw)
-        lost = runs.cache.known("lost", lambda: runs.lost)
-        lost = lost if excluded is None else lost | (runs.gap & excluded)
+        lost = runs.lost if excluded is None else runs.lost | (runs.gap & excluded)
         wander = GaussMarkovError(variances.wandered(), kept, runs.gap, lost, heading, laid)
         found = filtered_with_correlated_error(legs, wander)
     else:

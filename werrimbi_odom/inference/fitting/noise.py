@@ -124,6 +124,13 @@ def prior_cost(costs: Costs, variances: Variances) -> Floats:
     return np.asarray(np.sum(((0.5 * np.log(rows) - middle) / spread) ** 2, axis=-1))
 
 
+def posterior_cost(
+    costs: Costs, variances: Variances, prediction: Prediction | None = None
+) -> Floats:
+    """Minus two log posterior of a fixed model, or of another prediction; shape (g,)."""
+    return costs(variances, prediction) + prior_cost(costs, variances)
+
+
 def _prior(costs: Costs) -> tuple[Floats, Floats]:
     """Log means of the prior standard deviations, and their spread; infinite where unknown."""
     runs = costs.runs
@@ -263,6 +270,6 @@ def _in_logs(
 
     def cost(logs: Floats) -> Floats:
         sets = _variances(base, moving, logs)
-        return costs(sets, prediction) + prior_cost(costs, sets)
+        return posterior_cost(costs, sets, prediction)
 
     return cost

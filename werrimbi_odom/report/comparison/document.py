@@ -14,6 +14,7 @@ from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.report.comparison.figures import NAMES, legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.over_variable import error_against_figure, variables_of
+from werrimbi_odom.report.comparison.phrases import length_of
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.document import Document, Part, Shown, Table, paragraphs
 from werrimbi_odom.report.phrases import leg_words
@@ -124,9 +125,7 @@ def _motions(main: OfLength, leg: str) -> Table:
 
 
 def _lengths(comparison: Comparison) -> Table:
-    rows = [
-        [f"{leg_words(item.median, item.leg)} m", *_cells(item.all)] for item in comparison.lengths
-    ]
+    rows = [[length_of(item), *_cells(item.all)] for item in comparison.lengths]
     return Table("Errors by length of leg (rms)", ("leg", *_FIGURES), rows)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
 from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.report import style
-from werrimbi_odom.report.phrases import leg_words
+from werrimbi_odom.report.comparison.phrases import length_of
 from werrimbi_odom.report.style import Figure
 
 NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
@@ -32,7 +32,7 @@ def nees_figure(comparison: Comparison) -> Figure:
 
     figure = style.blank()
     free = len(measured_channels(comparison))
-    lengths = [f"{leg_words(item.median, item.leg)} m" for item in comparison.lengths]
+    lengths = [length_of(item) for item in comparison.lengths]
     looks = {
         "line": (style.BLUE, "circle", -0.24),
         "arc": (style.ORANGE, "square", 0.0),

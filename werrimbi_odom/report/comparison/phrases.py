@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.compare import Comparison, OfLength
 from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import Verdict
@@ -135,7 +135,7 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
         if math.isfinite(high)
         else f"at least {two_digits(low)}"
     )
-    leg, errors = _leg(at), math.sqrt(at.nees)
+    leg, errors = length_of(at), math.sqrt(at.nees)
     if at.says == "too small":
         text = f"{_times(at.nees)} times too small over legs of {leg} (NEES {at.nees:.3g}, 1 is "
         text += f"right: errors are {errors:.2g} times what it promises)"
@@ -147,8 +147,9 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
     )
 
 
-def _leg(at: AtLength) -> str:
-    return f"{leg_words(at.median, at.leg)} m"
+def length_of(legs: AtLength | OfLength) -> str:
+    """Length of legs with its unit: as they are, where poses are rarer than was asked for."""
+    return f"{leg_words(legs.median, legs.leg)} m"
 
 
 def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
@@ -156,20 +157,20 @@ def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
     first, last = lengths[0], lengths[-1]
     worst = (max if small else min)(lengths, key=lambda item: item.nees)
     if len(lengths) == 1:
-        return f"NEES {worst.nees:.3g} over legs of {_leg(worst)} (1 is right)"
+        return f"NEES {worst.nees:.3g} over legs of {length_of(worst)} (1 is right)"
     trend = trend_of(lengths)
     if trend == ("longer" if small else "shorter"):
         how = "and the more so the longer the leg"
     elif trend != "between":
         how = "and the more so the shorter the leg"
     else:
-        how = f"most over legs of {_leg(worst)}"
+        how = f"most over legs of {length_of(worst)}"
         others = [item for item in (first, last) if item is not worst]
-        beside = " and ".join(f"{item.nees:.3g} over {_leg(item)}" for item in others)
+        beside = " and ".join(f"{item.nees:.3g} over {length_of(item)}" for item in others)
         return f"{how} (NEES {worst.nees:.3g}, where 1 is right; {beside})"
     return (
-        f"{how} (NEES {first.nees:.3g} over {_leg(first)}, {last.nees:.3g} over "
-        f"{_leg(last)}, where 1 is right)"
+        f"{how} (NEES {first.nees:.3g} over {length_of(first)}, {last.nees:.3g} over "
+        f"{length_of(last)}, where 1 is right)"
     )
 
 

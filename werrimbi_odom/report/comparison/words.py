@@ -14,7 +14,12 @@ from werrimbi_odom.inference.comparison.consistency import judged_lengths
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.recording_info import leg_of_positions
-from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
+from werrimbi_odom.report.comparison.phrases import (
+    NAMES,
+    covariance_words,
+    length_of,
+    systematic_told,
+)
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import capital, counted, length, listed, two_digits
 from werrimbi_odom.report.phrases import left_out_words, leg_words, rarer_than_asked, remark_words
@@ -71,13 +76,10 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
             f"{rules.FEWEST_LEGS} are the least. Drive more, or {other}."
         )
     if verdict.good:
-        shortest, longest = (
-            leg_words(item.median, item.leg)
-            for item in (comparison.lengths[0], comparison.lengths[-1])
-        )
-        over = f"over legs of {shortest} m to {longest} m"
+        shortest, longest = length_of(comparison.lengths[0]), length_of(comparison.lengths[-1])
+        over = f"over legs of {shortest} to {longest}"
         if shortest == longest:
-            over = f"over legs of {longest} m"
+            over = f"over legs of {longest}"
         return (
             f"The model explains these drives: {over} its errors are what its covariance "
             "promises, and nothing systematic is left in them."
@@ -158,8 +160,7 @@ def _against_promise(comparison: Comparison, kind: str, *, elsewhere: bool) -> s
         return told
     times = f"{math.sqrt(worst.nees):.1f} times"
     whose = times if asked.says == "too small" else f"{times} what is promised"
-    leg = leg_words(worst.median, worst.leg)
-    return f"{told}, but over legs of {leg} m {whose}"
+    return f"{told}, but over legs of {length_of(worst)} {whose}"
 
 
 def _errors(figures: LegFigures) -> str:
