@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -127,6 +128,29 @@ def test_a_straight_drive_is_never_refused(seed: int, counts_apart: float, per_t
     place = np.stack([0.3 * time, np.zeros_like(time)]) + random.normal(0.0, 1e-3, (2, time.size))
     seen = Reference(time, *place, random.normal(0.0, 2e-3, time.size))
     require_independent(Run("run", Path("run"), Ticks(time, *counts), seen), robot)
+
+
+@SEEDS
+@pytest.mark.parametrize("turn_rates", [(0.0, 0.4), (0.31,), (0.2, -0.37)])
+def test_a_steady_drive_is_never_refused(seed: int, turn_rates: Sequence[float]) -> None:
+    """A square, a circle, an eight by counters of 64 steps, read as often as the poses are.
+
+    On a line wheels in step round off the same, and equal parts of a steady arc do too.
+    """
+    random = np.random.default_rng(seed)
+    robot = replace(ROBOT, left_ticks_per_revolution=64.0, right_ticks_per_revolution=64.0)
+    time = np.arange(0.0, 60.0, 0.1)
+    rate = np.array(turn_rates)[(time / 6.0).astype(int) % len(turn_rates)]
+    speed = np.where(rate == 0.4, 0.0, 0.2)
+    sides = [np.cumsum(speed + side * 0.5 * robot.track * rate) * 0.1 for side in (-1.0, 1.0)]
+    counts = [side / robot.left_tick + random.uniform() for side in sides]
+    path = trajectory(robot, time, *counts)
+    ticks = Ticks(time, *(np.floor(each).astype(np.int64) for each in counts))
+    noise = random.normal(0.0, 1.0, (3, time.size))
+    seen = Reference(
+        time, path.x + 2e-4 * noise[0], path.y + 2e-4 * noise[1], path.yaw + 5e-4 * noise[2]
+    )
+    require_independent(Run("run", Path("run"), ticks, seen), robot)
 
 
 @SEEDS

@@ -11,6 +11,7 @@ any wheels' own noise is suspect.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -25,6 +26,9 @@ from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+"""Its multiples by squares are spread evenly within one, and follow no period."""
 
 
 class Closeness(NamedTuple):
@@ -137,25 +141,20 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     wheels = np.stack([np.diff(counters.at(times), axis=0) * ticks for times in moments])
     # Where it is not known, the sign of the motion is taken from the wheels.
     sign = 1.0 if known else np.where(wheels.sum(axis=-1) < 0.0, -1.0, 1.0)
-    best = min(float(_typical(sign * each, wheels).min()) for each in ways)
-    turned, turn_a_metre = np.inf, 0.0
+    steps = _roundings(run, robot)
+    apart, rounding = min(_residual(sign * each, wheels, steps) for each in ways)
+    turned = np.inf, 0.0
     if turning.sum() > rules.CIRCLE_FEWEST:
-        turned = float(_typical(turns[turning], wheels[:, turning]).min())
-        # The base that was entered may be off; how far both wheels roll apart for a turn is seen.
-        rolled_apart = float(np.abs(np.diff(wheels[-1][turning], axis=-1)).mean())
-        if rolled_apart > max(ticks):  # else it drives straight, and rounding is all there is
-            turn_a_metre = float(np.abs(turns[turning]).mean()) / rolled_apart
-    # A count is as long as the reference says: the radius that was entered may be 1000 times off.
-    rolled = 0.5 * float(np.abs(wheels[-1]).sum())
-    scale = float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 1.0
-    way = float(np.median(np.abs(ways[0])))
-    rounding = _rounding(run, robot)
-    # A way is half the sum of two readings, and wheels roll apart by their difference.
-    return Closeness(best, way, scale * rounding, turned, 2.0 * rounding * turn_a_metre)
+        turned = _residual(turns[turning], wheels[:, turning], steps)[0], 0.0
+    # On lines wheels in step round off the same, so only bends tell.
+    bends = turning & (np.abs(np.diff(wheels[-1], axis=-1))[:, 0] > max(ticks))
+    if bends.sum() > rules.CIRCLE_FEWEST:
+        turned = _residual(turns[bends], wheels[:, bends], steps)
+    return Closeness(apart, float(np.median(np.abs(ways[0]))), rounding, *turned)
 
 
 def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:
-    """Reference rows at intervals of `CIRCLE_WAY`, within the ticks' time span."""
+    """Reference rows at uneven intervals of some `CIRCLE_WAY`, within the ticks' time span."""
     inside = (reference.time >= counters.time[0]) & (reference.time <= counters.time[-1])
     rows: NDArray[np.intp] = np.flatnonzero(reference.has_position & inside)
     if rows.size == 0:
@@ -166,7 +165,10 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
     way = min(rules.CIRCLE_WAY, float(gone[-1]) / (rules.CIRCLE_FEWEST + 2))
     if way <= 0.0:
         return rows[:1]
-    new = np.concatenate([[True], np.diff(np.floor(gone / way)) > 0.0])
+    # Apart by half to three halves of it: what equal parts of a steady drive round off is the same.
+    number = np.arange(int(gone[-1] / way) + 1)
+    marks = way * (number + 0.5 * np.modf(GOLDEN * number**2)[0])
+    new = np.concatenate([[True], np.diff(np.searchsorted(marks, gone, side="right")) > 0])
     return np.asarray(rows[new])
 
 
@@ -189,10 +191,13 @@ def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[list[Floats], b
     return [np.diff(np.concatenate([[0.0], np.cumsum(each)])[at]) for each in steps_by], known
 
 
-def _typical(ways: Floats, wheels: Floats) -> Floats:
-    """Typical residual of the best wheel sizes, for each of d delays, (d,).
+def _residual(ways: Floats, wheels: Floats, steps: Floats) -> tuple[float, float]:
+    """Typical residual of the best wheel sizes at the best of d delays, and its rounding.
 
-    Least absolute deviations by reweighting, of paths (n,) or (d, n) over wheels (d, n, 2).
+    Least absolute deviations by reweighting, of paths (n,) or (d, n) over wheels (d, n, 2). The
+    rounding is that of two readings of both counters, whose steps are `steps` (2,) [m], by these
+    sizes: the radius that was entered may be 1000 times off, turns of a line go with no wheel, and
+    those of a circle with the sum of both.
     """
     ways = np.broadcast_to(ways, wheels.shape[:-1])
     weight = np.ones(ways.shape)
@@ -203,17 +208,18 @@ def _typical(ways: Floats, wheels: Floats) -> Floats:
         left = np.abs(ways - (wheels @ sizes)[..., 0])
         middle = np.median(left, axis=-1, keepdims=True)
         weight = 1.0 / np.maximum(left, 1e-12 + 1e-3 * middle)
-    return np.asarray(middle[..., 0] * MEDIAN_TO_SIGMA)
+    best = int(np.argmin(middle))
+    rounding = np.linalg.norm(sizes[best, :, 0] * steps) / math.sqrt(6.0)
+    return float(middle[best, 0]) * MEDIAN_TO_SIGMA, float(rounding)
 
 
-def _rounding(run: Run, robot: Robot) -> float:
-    """Standard deviation of a path length from two counter readings; 0 if not quantised."""
-    squares = []
+def _roundings(run: Run, robot: Robot) -> Floats:
+    """Steps of both counters [m]; zero if one is not quantised."""
+    found = []
     for counts, tick in ((run.ticks.left, robot.left_tick), (run.ticks.right, robot.right_tick)):
         steps = np.abs(np.diff(counts[np.isfinite(counts)]))
-        quantum = _quantum(steps[steps > 0])
-        squares.append((quantum * tick) ** 2 / 6.0)
-    return 0.5 * float(np.sqrt(sum(squares))) if all(squares) else 0.0
+        found.append(_quantum(steps[steps > 0]) * tick)
+    return np.array(found) if all(found) else np.zeros(2)
 
 
 def _quantum(steps: Counts) -> float:
