@@ -20,6 +20,7 @@ from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.likelihood import quantisation
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.simulation import (
     TrueRobot,
     free,
@@ -29,12 +30,17 @@ from werrimbi_odom.simulation import (
     write_run,
 )
 from werrimbi_odom.simulation.hidden import Peculiarity
+from werrimbi_odom.simulation.sensors import ReferenceSensor
 
 LATE = 0.04
 
 
 def driven(
-    folder: Path, counts: int, hidden: Sequence[Peculiarity] = ()
+    folder: Path,
+    counts: int,
+    hidden: Sequence[Peculiarity] = (),
+    reference: ReferenceSensor | None = None,
+    pace: float = 1.0,
 ) -> tuple[RobotFile, list[Run]]:
     """Four drives of a minute with so many counts in a turn."""
     each = float(counts)
@@ -47,9 +53,9 @@ def driven(
     robot = wo.read_robot(write_robot_file(true, folder / "robot.yaml"))
     drives = []
     for number in range(4):
-        speed = 0.25 + 0.05 * (number % 3)
+        speed = pace * (0.25 + 0.05 * (number % 3))
         manoeuvre = free(60.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
-        recording = record(true, manoeuvre, seed=100 + number, hidden=hidden)
+        recording = record(true, manoeuvre, seed=100 + number, hidden=hidden, reference=reference)
         drives.append(wo.read_run(write_run(recording, folder / str(number)), robot))
     return robot, drives
 
@@ -105,6 +111,34 @@ def test_counts_err_along_the_path_and_in_heading_and_never_sideways() -> None:
     assert quantisation(robot, np.array([np.nan]))[0] == pytest.approx(
         anywhere.mean(axis=0), abs=1e-12
     )
+
+
+@pytest.mark.parametrize("share", [0.0, 0.15, 0.35, 0.5, 0.75])
+def test_counts_err_less_between_messages(share: float) -> None:
+    """Drawn: whole counts of wheels at many speeds, and what is read of them between messages."""
+    random, time, fine = np.random.default_rng(1), np.arange(4001.0), np.arange(40001) / 10.0
+    told, errors = 0.0, []
+    for speed in np.geomspace(0.2, 10.0, 12):  # counts a message
+        rates = speed * (1.0 + 0.5 * np.sin(np.cumsum(random.normal(0.0, 0.05, fine.size))))
+        rolled = random.uniform() + np.cumsum(rates) / 10.0
+        counts = np.floor(np.interp(time, fine, rolled))
+        counters = Counters(time, counts, counts, 0.0, 0.0)
+        at = time[5:-5] + share
+        errors.append(np.var(np.interp(at, fine, rolled) - counters.at(at)[:, 0]))
+        told = float(counters.rounding_at(at).mean())
+    assert 12.0 * np.mean(errors) == pytest.approx(told, rel=0.06)
+
+
+@pytest.mark.parametrize("counts", [60, 200])
+def test_counts_hide_no_noise_of_the_reference(tmp_path: Path, counts: int) -> None:
+    """Half of it was told, and a sound robot's covariance said to be too small (NEES 1.6)."""
+    cameras = ReferenceSensor(27.3, sigma_xy=4e-4, sigma_yaw=1e-3)
+    robot, drives = driven(tmp_path, counts, reference=cameras, pace=0.3)
+    found = wo.compare(robot, drives).to_dict()
+    [told] = found["reference"]
+    assert told["sigma_xy"] == pytest.approx(4e-4, rel=0.15)
+    assert told["sigma_yaw"] == pytest.approx(1e-3, rel=0.15)
+    assert found["verdict"]["good"]
 
 
 def test_a_sound_robot_with_few_counts_is_told_to_be_sound() -> None:

@@ -27,9 +27,6 @@ from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-"""Its multiples by squares are spread evenly within one, and follow no period."""
-
 
 class Closeness(NamedTuple):
     """Agreement of path lengths between reference and wheels."""
@@ -142,14 +139,19 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     # Where it is not known, the sign of the motion is taken from the wheels.
     sign = 1.0 if known else np.where(wheels.sum(axis=-1) < 0.0, -1.0, 1.0)
     steps = _roundings(run, robot)
-    apart, rounding = min(_residual(sign * each, wheels, steps) for each in ways)
+    # A count is as long as the reference says: the radius that was entered may be 1000 times off.
+    rolled = 0.5 * float(np.abs(wheels[-1]).sum())
+    half = 0.5 * float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 0.5
+    apart, rounding = min(_residual(sign * each, wheels, steps, half) for each in ways)
     turned = np.inf, 0.0
     if turning.sum() > rules.CIRCLE_FEWEST:
-        turned = _residual(turns[turning], wheels[:, turning], steps)[0], 0.0
+        turned = _residual(turns[turning], wheels[:, turning], steps, 0.0)
     # On lines wheels in step round off the same, so only bends tell.
-    bends = turning & (np.abs(np.diff(wheels[-1], axis=-1))[:, 0] > max(ticks))
+    rolled_apart = np.abs(np.diff(wheels[-1], axis=-1))[:, 0]
+    bends = turning & (rolled_apart > max(ticks))
     if bends.sum() > rules.CIRCLE_FEWEST:
-        turned = _residual(turns[bends], wheels[:, bends], steps)
+        a_metre = float(np.abs(turns[bends]).mean() / rolled_apart[bends].mean())
+        turned = _residual(turns[bends], wheels[:, bends], steps, a_metre)
     return Closeness(apart, float(np.median(np.abs(ways[0]))), rounding, *turned)
 
 
@@ -166,8 +168,8 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
     if way <= 0.0:
         return rows[:1]
     # Apart by half to three halves of it: what equal parts of a steady drive round off is the same.
-    number = np.arange(int(gone[-1] / way) + 1)
-    marks = way * (number + 0.5 * np.modf(GOLDEN * number**2)[0])
+    number, golden = np.arange(int(gone[-1] / way) + 1), 0.5 * (math.sqrt(5.0) - 1.0)
+    marks = way * (number + 0.5 * np.modf(golden * number**2)[0])  # by no period
     new = np.concatenate([[True], np.diff(np.searchsorted(marks, gone, side="right")) > 0])
     return np.asarray(rows[new])
 
@@ -191,13 +193,13 @@ def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[list[Floats], b
     return [np.diff(np.concatenate([[0.0], np.cumsum(each)])[at]) for each in steps_by], known
 
 
-def _residual(ways: Floats, wheels: Floats, steps: Floats) -> tuple[float, float]:
+def _residual(ways: Floats, wheels: Floats, steps: Floats, size: float) -> tuple[float, float]:
     """Typical residual of the best wheel sizes at the best of d delays, and its rounding.
 
     Least absolute deviations by reweighting, of paths (n,) or (d, n) over wheels (d, n, 2). The
     rounding is that of two readings of both counters, whose steps are `steps` (2,) [m], by these
-    sizes: the radius that was entered may be 1000 times off, turns of a line go with no wheel, and
-    those of a circle with the sum of both.
+    sizes, or by `size` of both where it is less: turns of a circle go with the sum of both wheels,
+    and its path with their difference as well.
     """
     ways = np.broadcast_to(ways, wheels.shape[:-1])
     weight = np.ones(ways.shape)
@@ -209,8 +211,8 @@ def _residual(ways: Floats, wheels: Floats, steps: Floats) -> tuple[float, float
         middle = np.median(left, axis=-1, keepdims=True)
         weight = 1.0 / np.maximum(left, 1e-12 + 1e-3 * middle)
     best = int(np.argmin(middle))
-    rounding = np.linalg.norm(sizes[best, :, 0] * steps) / math.sqrt(6.0)
-    return float(middle[best, 0]) * MEDIAN_TO_SIGMA, float(rounding)
+    largest = [np.linalg.norm(each * steps) for each in (sizes[best, :, 0], size)]
+    return float(middle[best, 0]) * MEDIAN_TO_SIGMA, float(min(largest)) / math.sqrt(6.0)
 
 
 def _roundings(run: Run, robot: Robot) -> Floats:

@@ -7,8 +7,8 @@ smooth or grow with travel; noise of a reference does neither. So the noise is t
 third differences of measured minus predicted path over a few poses. The part that grows with the
 span (wheel noise) is removed by a line through several spans. Differences are taken in motion where
 possible, as a robot at rest shows a tracker at its best. The noise is never less than the
-quantisation of the written values. Where coarse counters hide it, the same differences of the
-measured path alone bound it: those hold how unevenly the robot moved, and no counts.
+quantisation of the written values. Coarse counters hide it. Then the same differences of the
+measured path alone tell it: those hold how unevenly the robot moved, and no counts.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def reference_noise(
     quantity is not measured.
     """
     reading = quantisation_variance(robot)
-    bounds = [0.0, 0.0]
+    alone = [(0.0, 0.0), (0.0, 0.0)]
     if kind == "incremental":
         errors = np.concatenate([_steps(item) for item in residuals])
         sigmas = [_growing(errors[:, part]) for part in ((0, 1), (2,))]
@@ -51,15 +51,21 @@ def reference_noise(
             _level([_position_differences(item) for item in residuals]),
             _level([_heading_differences(item) for item in residuals]),
         ]
-        bounds = [
-            _bound([_third(item.measured) for item in residuals]),
-            _bound([_third(item.measured_yaw) for item in residuals]),
+        alone = [
+            (
+                _roughness([item.measured for item in residuals]),
+                _roughness([item.predicted for item in residuals]),
+            ),
+            (
+                _roughness([item.measured_yaw for item in residuals]),
+                _roughness([item.predicted_yaw for item in residuals]),
+            ),
         ]
     positions = [item.measured.real for item in residuals]
     headings = [item.measured_yaw for item in residuals]
     return (
-        _less(sigmas[0], float(reading[0]), bounds[0], _rounding(positions)),
-        _less(sigmas[1], float(reading[2]), bounds[1], _rounding(headings)),
+        _less(sigmas[0], float(reading[0]), *alone[0], _rounding(positions)),
+        _less(sigmas[1], float(reading[2]), *alone[1], _rounding(headings)),
     )
 
 
@@ -233,21 +239,28 @@ def _third(measured: NDArray[np.complex128] | Floats) -> Floats:
     return found[np.isfinite(found)].view(np.float64)
 
 
-def _bound(runs: list[Floats]) -> float:
-    """Variance that the noise of a pose cannot exceed, by the reference alone."""
-    every = np.concatenate(runs)
+def _roughness(paths: Sequence[NDArray[Any]]) -> float:
+    """Variance of one pose by the third differences of paths alone; 0 if there are too few."""
+    every = np.concatenate([_third(path) for path in paths])
     return _variance(every) if every.size >= rules.DIFFERENCES else 0.0
 
 
-def _less(variance: float | None, reading: float, bound: float, rounding: float) -> float | None:
+def _less(
+    variance: float | None, reading: float, measured: float, counted: float, rounding: float
+) -> float | None:
     """Standard deviation without encoder quantisation, which the legs account for themselves.
 
     Counts that the driving interpolates err by less than that: taken off whole, nothing would be
-    left, whatever the noise.
+    left, whatever the noise. The measured path alone has the noise and the motion (`measured`), and
+    that by the counts has their rounding and the motion (`counted`): with the difference of both,
+    `variance`, they tell the noise as three clocks do (Gray and Allan, "A method for estimating the
+    frequency stability of an individual oscillator", 1974). It is no more than the measured path
+    has.
     """
     if variance is None:
         return None
-    least = min(bound, rules.NOISE_LEFT * variance)
+    between = max(0.5 * (variance + measured - counted), rules.NOISE_LEFT * variance)
+    least = min(measured, between, variance)
     return float(np.sqrt(max(variance - reading, least, rounding)))
 
 

@@ -180,6 +180,16 @@ class Concatenated:
         return np.concatenate([run.measured.time[1:] for run in self.runs])
 
     @property
+    def rounding(self) -> Floats:
+        """Variance of the counts' rounding at each leg's start and end, (2, m), relative to full.
+
+        Full is that at a message.
+        """
+        known = [run.counters.rounding_at(run.time[run.ends]) for run in self.runs]
+        sides = (slice(-1), slice(1, None))
+        return np.stack([np.concatenate([each[side] for each in known]) for side in sides])
+
+    @property
     def inside(self) -> NDArray[np.intp]:
         """Steps that belong to a leg."""
         both = zip(self.runs, self.steps, strict=False)

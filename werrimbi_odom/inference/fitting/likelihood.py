@@ -315,10 +315,10 @@ def quantisation_variance(robot: Robot) -> Floats:
 def quantisation(robot: Robot, heading: Floats) -> Floats:
     """Quantisation covariance of a pose from one reading of both counters (uniform), (m, 3, 3).
 
-    Counts err along the path and in heading, never sideways. So they do at a message. Between two,
-    as `between_messages` reads them, they err less: their variance is 0.74 to 0.91 of this one at
-    poses of 20 Hz and counts of 50 Hz, simulated, and this is too wide by as much. `heading` (m,):
-    of the robot, in the axes of the covariance [rad]; where it is NaN, the mean over all headings.
+    Counts err along the path and in heading, never sideways. So they do at a message. Between two
+    they err less (`Counters.rounding_at`), which fits leave out: how much depends on the speed, and
+    a delay for which it seems to be least would be preferred. `heading` (m,): of the robot, in the
+    axes of the covariance [rad]; where it is NaN, the mean over all headings.
     """
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
     along, yaw = 0.25 * (left + right), (left + right) / robot.track**2
@@ -335,13 +335,17 @@ def quantisation(robot: Robot, heading: Floats) -> Floats:
     return found
 
 
-def quantisation_of_legs(robot: Robot, relative: Floats) -> Floats:
+def quantisation_of_legs(
+    robot: Robot, relative: Floats, rounding: Sequence[float] | Floats = (1.0, 1.0)
+) -> Floats:
     """Quantisation covariance of the legs' errors, from the readings at both ends, (m, 3, 3).
 
-    `relative` (m, 3): predicted, in the frame of the reference at each leg's start.
+    `relative` (m, 3): predicted, in the frame of the reference at each leg's start. `rounding`:
+    shares of it at the starts and ends (`Concatenated.rounding`).
     """
     axis = view_of(robot.effects).yaw
     lever = lever_of(relative)
     begun = quantisation(robot, np.array([-axis]))
     ended = quantisation(robot, relative[:, 2] - axis)
-    return np.asarray(ended + lever @ begun @ lever.swapaxes(-1, -2))
+    first, last = (np.reshape(share, (-1, 1, 1)) for share in rounding)
+    return np.asarray(last * ended + first * (lever @ begun @ lever.swapaxes(-1, -2)))

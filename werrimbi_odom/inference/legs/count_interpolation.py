@@ -60,6 +60,18 @@ class Counters:
         """Counts at any times, (n, 2): left and right; see `between_messages`."""
         return between_messages(time, self.time, self.left, self.right)
 
+    def rounding_at(self, time: Floats) -> Floats:
+        """Variance of the counts' rounding at any times, relative to that at a message; (n,).
+
+        Between two messages both have their weights in `between_messages`, and what they round off
+        is partly made up for.
+        """
+        within = np.clip(time, self.time[0], self.time[-1])
+        before = np.clip(np.searchsorted(self.time, within) - 1, 0, self.time.size - 2)
+        share = (within - self.time[before]) / (self.time[before + 1] - self.time[before])
+        weight = share * share * (3.0 - 2.0 * share)
+        return np.asarray(1.0 - 2.0 * rules.ROUNDING_SHARED * weight * (1.0 - weight))
+
     @property
     def nodes(self) -> NDArray[np.intp]:
         """Indices of the messages that are nodes: every `every`-th one, and the last."""
