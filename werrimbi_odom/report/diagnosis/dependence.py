@@ -165,7 +165,8 @@ def _over_turns(cell: Dependence, turning: Turning) -> str:
     constant = cell.variable.name == CONSTANT
     moved = turning.moved(errors if constant else errors - np.average(errors, weights=size))
     usual, most = (length(float(each)) for each in (np.sqrt(np.mean(moved**2)), moved.max()))
-    over = "all turning" if turning.quarters() == turning.stretches else "a quarter turn"
+    whole = turning.quarters() == turning.stretches
+    over = "an unbroken part" if whole else "a quarter turn"
     up_to = "" if constant or usual == most else f", up to {most}"
     return f"{'' if constant else '±'}{usual} over {over} of these drives{up_to}"
 

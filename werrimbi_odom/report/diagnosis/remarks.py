@@ -273,7 +273,7 @@ def transform_to_mend(diagnosis: Diagnosis) -> list[str]:
         return []
     where = f"{found.entered.base} -> {found.entered.sensor}"
     should = [
-        f"{part} = {with_std(getattr(found.mended, part), std)} {unit}"
+        f"{part} = {_mended(getattr(found.mended, part), std)} {unit}"
         for (part, std), unit in zip(found.std.items(), ("m", "m", "rad"), strict=True)
     ]
     is_now = [f"{part} = {getattr(found.entered, part):.4g}" for part in found.std]
@@ -285,6 +285,11 @@ def transform_to_mend(diagnosis: Diagnosis) -> list[str]:
         f"{if_it} transform {where} (URDF, /tf_static) should be {listed(should)}, where it is "
         f"{listed(is_now)}. Mend it there, or add {listed(found.effects)}, but not both."
     ]
+
+
+def _mended(value: float, std: float) -> str:
+    """Part of a transform; to the millimetre where nothing was found of it."""
+    return with_std(value, std) if math.isfinite(std) else f"{value + 0.0:.3f}"
 
 
 def instead_of_held(diagnosis: Diagnosis) -> list[str]:
