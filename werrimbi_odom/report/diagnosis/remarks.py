@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
@@ -276,13 +277,20 @@ def transform_to_mend(diagnosis: Diagnosis) -> list[str]:
         f"{part} = {_mended(getattr(found.mended, part), std)} {unit}"
         for (part, std), unit in zip(found.std.items(), ("m", "m", "rad"), strict=True)
     ]
-    is_now = [f"{part} = {getattr(found.entered, part):.4g}" for part in found.std]
-    doubt = [name for name in found.effects if name in diagnosis.rivals]
-    if_it = (
-        f"If it is {listed(doubt)}, the" if diagnosis.verdict == "ambiguous" and doubt else "The"
+    is_now = [f"{part} = {getattr(found.entered, part) + 0.0:.4g}" for part in found.std]
+    others = dict.fromkeys(
+        other
+        for name in found.effects
+        for other in (
+            *find(name).twins,
+            *(diagnosis.rivals if name in diagnosis.rivals else ()),
+            *diagnosis.rivals_of_others.get(name, ()),
+        )
+        if other not in found.effects
     )
+    the = f"Unless it is {listed(list(others), 'or')}, the" if others else "The"
     return [
-        f"{if_it} transform {where} (URDF, /tf_static) should be {listed(should)}, where it is "
+        f"{the} transform {where} (URDF, /tf_static) should be {listed(should)}, where it is "
         f"{listed(is_now)}. Mend it there, or add {listed(found.effects)}, but not both."
     ]
 
