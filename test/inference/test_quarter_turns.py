@@ -75,3 +75,18 @@ def test_no_quarter_turn_spans_a_gap() -> None:
     turning = Turning(turn, np.zeros(100, dtype=np.intp), ((0, 40), (50, 97)))
     assert turning.quarters() == ((50, 96),)
     assert replace(turning, stretches=((0, 40),)).quarters() == ((0, 40),), "all there is"
+
+
+def test_an_error_of_the_whole_robot_as_it_turns_goes_with_nothing_of_one_wheel() -> None:
+    """It went with "the speed of the wheel", of which the left one's alone was looked at."""
+    laid = concatenated(match_for_fit([run_of(ROBOT, 1, 30)], ROBOT, 1.0))
+    cells = dependences(laid, fit_calibration(laid, ROBOT).point, CALIBRATION)
+    of_one = {(c.channel, c.amount.per) for c in cells if c.variable.name == "wheel_speed"}
+    assert of_one == {
+        ("left", "travel"),
+        ("right", "travel"),
+        ("along", "travel"),
+        ("along", "path"),
+    }
+    of_turns = {(c.channel, c.amount.per) for c in cells if c.variable.name == "speed"}
+    assert {("along", "turn"), ("sideways", "turn")} <= of_turns

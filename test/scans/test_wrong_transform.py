@@ -33,6 +33,7 @@ def test_of_a_wrong_transform_it_is_said_what_it_should_be(tmp_path: Path) -> No
     found = diagnose(runs, file.robot, COMMON)
     assert {"reference_lever_arm", "reference_yaw_offset"} <= set(found.found)
     (said,) = transform_to_mend(found)
+    assert said.startswith("Unless it is sideways_drift, the transform")
     number = r"(-?[\d.]+) ± ([\d.]+)"
     told = re.search(
         rf"transform base_link -> base_scan \(URDF, /tf_static\) should be x = {number} m, "

@@ -24,7 +24,6 @@ from werrimbi_odom.inference.diagnosis.quarter_turns import Turning, turning_of
 from werrimbi_odom.inference.diagnosis.step_jacobians import (
     AMOUNTS,
     BLOCK,
-    OF_WHEELS,
     Amount,
     StepJacobian,
     shares_of_steps,
@@ -215,7 +214,7 @@ class _Cells(NamedTuple):
 def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]]:
     """Cells with their changes of the legs (m, 3, amounts * k), in blocks that fit into memory."""
     path = path_of(point.model, runs)
-    of_wheels = [amount for amount in AMOUNTS if amount.channel in OF_WHEELS]
+    of_wheels = [amount for amount in AMOUNTS if amount.of_wheels]
     both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
     left, right = step_jacobians(runs, path, AMOUNTS, point)
     for begin in range(0, both.shape[0], BLOCK):
