@@ -61,7 +61,7 @@ def test_of_one_that_goes_with_the_speed_it_is_how_turns_differ() -> None:
 
 
 def test_where_a_robot_only_wobbles_an_error_per_radian_comes_to_little() -> None:
-    """On a line it was told as 889 mm each radian, where nothing turned by one."""
+    """889 mm each radian, where nothing turns by one to one side."""
     wobble = 2e-3 * (-1.0) ** np.arange(1000)
     turn = np.concatenate([wobble, np.full(100, 0.01 * math.pi)])
     turning = Turning(turn, np.zeros(1100, dtype=np.intp), ((0, 1100),))
