@@ -145,6 +145,14 @@ def test_totals_of_a_robot_that_is_carried_round_a_corner_are_totals() -> None:
     refuse_wrong_columns(replace(driven(0), ticks=ticks, reference=reference))
 
 
+def test_scans_of_a_robot_that_was_carried_are_no_mistake_of_columns() -> None:
+    """A TurtleBot3's third bag, a metre ahead and then carried round, was refused."""
+    carried = seen(driven(0), yaw=lambda it: -it.yaw)
+    with pytest.raises(InputError, match="clockwise"):
+        refuse_wrong_columns(carried)
+    refuse_wrong_columns(replace(carried, reference=replace(carried.reference, own_axes=True)))
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
     run = driven(seed)

@@ -15,6 +15,7 @@ from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
@@ -24,6 +25,7 @@ from werrimbi_odom.inference.comparison.prepared_runs import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
+from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of, fitted
 from werrimbi_odom.inference.diagnosis.uncertainty import variances_by_sign
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
@@ -38,10 +40,7 @@ from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.proposal import for_twins
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.remarks import (
-    of_a_lidar_askew,
-    or_the_reference_s_scale,
-)
+from werrimbi_odom.report.diagnosis.remarks import or_the_reference_s_scale
 from werrimbi_odom.report.number_format import quantity
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=5e-4, right_wheel_noise=5e-4)
@@ -270,7 +269,7 @@ def test_wheels_that_are_smaller_by_scans_may_be_ranges_that_are_short(scans: bo
     assert ("A lidar whose ranges are 4 % too short shows the same" in said) == scans
 
 
-def test_a_lidar_that_is_askew_where_it_sits_may_look_as_if_it_sat_elsewhere() -> None:
+def test_a_lidar_that_is_askew_where_it_sits_is_told_by_its_transform() -> None:
     """200 mm ahead by its transform, and turned by 50 mrad: 10 mm aside, where nothing is."""
     runs = []
     for run in (scan_drive(seed, 0.0) for seed in (7, 8, 9)):
@@ -278,12 +277,21 @@ def test_a_lidar_that_is_askew_where_it_sits_may_look_as_if_it_sat_elsewhere() -
         place = seen.x + 1j * seen.y + 0.2 * np.exp(1j * seen.yaw)
         axle = place - 0.2 * np.exp(1j * (seen.yaw + 0.05))
         turned = replace(seen, x=axle.real, y=axle.imag, yaw=seen.yaw + 0.05)
-        runs.append(replace(run, reference=turned))
+        runs.append(replace(run, reference=replace(turned, mount=Mount(0.2, 0.0, 0.0))))
     found = diagnose(runs, NOMINAL, COMMON)
     assert {"reference_yaw_offset", "reference_lever_arm"} <= set(found.found)
-    said = " ".join(of_a_lidar_askew(found))
-    assert "it may sit there exactly" in said
-    assert "5.0 mm aside for each 100 mm" in said
+    arm = values_of(found, "reference_lever_arm")["y"]
+    assert arm.value == pytest.approx(-0.01, abs=3.0 * arm.std)
+    told = mended_mount(found)
+    assert told is not None
+    true = {"x": 0.2, "y": 0.0, "yaw": 0.05}
+    for part, value in true.items():
+        assert 0.0 < told.std[part] < 2e-3
+        assert getattr(told.mended, part) == pytest.approx(value, abs=3.0 * told.std[part])
+    elsewhere = replace(runs[0].reference, mount=Mount(0.1, 0.0, 0.0))
+    drives = [replace(runs[0], reference=elsewhere), *runs[1:]]
+    every = concatenated(match_for_fit(drives, NOMINAL, leg=1.0))
+    assert every.mount is None, "no one transform holds for all drives"
 
 
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])

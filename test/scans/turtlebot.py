@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -57,13 +58,19 @@ class Recorded(NamedTuple):
     """One drive, in two ways."""
 
     bag: Path
-    """Wheels and scans, as anybody records them; no transform tells where the lidar sits."""
+    """Wheels and scans, as anybody records them, and what a transform says of the lidar's place."""
     run: Path
     """Wheels, and where the lidar truly was, to 0.5 mm and 0.5 mrad."""
 
 
-def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path, lidar: Lidar = LIDAR) -> Recorded:
-    """A drive of nobody's hands, in a room of its own."""
+def recorded(
+    manoeuvre: sim.Manoeuvre,
+    seed: int,
+    folder: Path,
+    lidar: Lidar = LIDAR,
+    entered: sim.AxlePose | None = None,
+) -> Recorded:
+    """A drive of nobody's hands, in a room of its own; `entered`: what a transform says."""
     path = sim.record(ROBOT, manoeuvre, seed=seed, start=sim.AxlePose(0.0, 0.0, 0.0)).true_path
     at = np.arange(0.01, path.t_s[-1], 0.05)
     step = 2.0 * math.pi / 4096.0
@@ -79,7 +86,7 @@ def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path, lidar: Lidar = L
         nothing,
         np.column_stack([at, at, np.zeros((at.size, 3))]),
         np.zeros((at.size, 3)),
-        lidar,
+        replace(lidar, mount=entered or lidar.mount),
         sweeps,
         sweeps.time + 1.0 / lidar.rate_hz,
     )
@@ -93,7 +100,7 @@ def recorded(manoeuvre: sim.Manoeuvre, seed: int, folder: Path, lidar: Lidar = L
     ):
         table = np.column_stack(columns)
         np.savetxt(run / f"{name}.csv", table, "%.7g", ",", header=head, comments="")
-    return Recorded(sim.write_field_bag(drive, ROBOT, folder, mounting=False), run)
+    return Recorded(sim.write_field_bag(drive, ROBOT, folder, mounting=entered is not None), run)
 
 
 def short(seed: int) -> sim.Manoeuvre:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.frames import MOVED, Chain, Edge, chain, frame, is_static
+from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.own_odometry import is_base
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
@@ -152,16 +153,6 @@ LEVEL = 0.985
 height of 1 m sees the floor within 6 m."""
 
 
-class Mount(NamedTuple):
-    """Pose of a level sensor on the robot's base: ahead, left [m], rotation [rad]."""
-
-    x: float
-    y: float
-    yaw: float
-    inverted: bool
-    """Mounted upside down, so left and right are swapped."""
-
-
 def mounting_chain(edges: Sequence[Edge], base: str, sensor: str) -> Chain | None:
     """Constant transforms from the robot's base to a sensor's frame; None if there are none."""
     fixed = [edge for edge in edges if edge.static or not edge.changes]
@@ -211,4 +202,5 @@ class MountingCollector:
                 f"{np.degrees(np.arccos(abs(up))):.0f}°: its scans are no plan of the floor; give "
                 "one that lies level, or mend the transforms"
             )
-        return Mount(float(where[0]), float(where[1]), float(yaw), up < 0.0)
+        ends = self._chain.parent, self._chain.child
+        return Mount(float(where[0]), float(where[1]), float(yaw), up < 0.0, *ends)

@@ -10,9 +10,10 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
-from werrimbi_odom.files.bag_chain import Mount, MountingCollector
+from werrimbi_odom.files.bag_chain import MountingCollector
 from werrimbi_odom.files.frames import Chain
 from werrimbi_odom.files.measured_topic import Measured
+from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.run import Collected, Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
@@ -45,7 +46,6 @@ class LidarCollector:
         self._name = source.name
         self._frame = source.child
         self._mounting = MountingCollector(mounting) if mounting else None
-        self._base = mounting.parent if mounting else ""
         self._matcher = AnyOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self._undirected = 0
@@ -85,8 +85,8 @@ class LidarCollector:
             else:
                 words = _lost(found) if self._echoes else _blind(found, self._reach)
             raise InputError(f"{self._place}: {words}")
-        mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
-        poses, covariances, walked = _of_base(found, mount)
+        mount = self._mounting.mount(self._place) if self._mounting else None
+        poses, covariances, walked = of_base(found, mount or Mount(0.0, 0.0, 0.0))
         # One number for both axes is that of the wider: the mean is too sure along a corridor.
         sigma_xy = np.sqrt(np.linalg.eigvalsh(covariances[:, :2, :2])[:, 1])
         sigma_yaw = np.sqrt(covariances[:, 2, 2])
@@ -110,13 +110,14 @@ class LidarCollector:
             sigma_yaw,
             kind="absolute",
             own_axes=True,
+            mount=mount,
             walked=walked,
             covariance=covariances,
         )
         return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
 
-    def _mounted(self, mount: Mount) -> str:
-        if self._mounting is None:
+    def _mounted(self, mount: Mount | None) -> str:
+        if self._mounting is None or mount is None:
             return (
                 f"frame {self._frame or 'of no name'}: no transform says where the lidar sits, so "
                 "its own path is compared (reference_lever_arm, reference_yaw_offset)"
@@ -124,7 +125,7 @@ class LidarCollector:
         down = ", upside down" if mount.inverted else ""
         sits = _beside(mount.x, "ahead of", "behind"), _beside(mount.y, "left of", "right of")
         return (
-            f"frame {self._base}: by {' and '.join(self._mounting.topics)} the lidar sits "
+            f"frame {mount.base}: by {' and '.join(self._mounting.topics)} the lidar sits "
             f"{sits[0]} and {sits[1]} it, turned by {np.degrees(mount.yaw):.1f}°{down}"
         )
 
@@ -133,7 +134,7 @@ def _beside(length: float, one: str, other: str) -> str:
     return f"{1e3 * abs(length):.0f} mm {one if length >= 0.0 else other}"
 
 
-def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
+def of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
     """Poses of the base (n, 3) from the origin on, covariances (n, 3, 3), and walks (n, 2)."""
     x, y, yaw = found.poses.T
     sense = np.array([1.0, -1.0, -1.0] if mount.inverted else [1.0, 1.0, 1.0])

@@ -187,7 +187,8 @@ def _degrees(ticks: Ticks, reference: Reference) -> str:
 
 
 def _no_heading(ticks: Ticks, reference: Reference) -> str:
-    chords = _chords(reference)
+    """By scans a heading and a path are of one measurement; where they differ, it was carried."""
+    chords = None if reference.own_axes and reference.gyro is None else _chords(reference)
     if chords is None:
         return ""
     course, yaw, when = chords

@@ -12,6 +12,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.model.counter_wraps import running_on
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
@@ -126,6 +127,8 @@ class Reference:
     own_axes: bool = field(default=False, kw_only=True)
     """The coordinate frame differs between drives, and between segments after a cut (scans without
     a map): drives have no common direction or position on the floor."""
+    mount: Mount | None = field(default=None, kw_only=True)
+    """Where a transform places the sensor, if these are the base's poses freed of that."""
     walked: Floats | None = field(default=None, kw_only=True)
     """Variances of a coordinate and of yaw that the map of the last metres has walked by each pose
     of scans, shape (m, 2) [m², rad²]; what matters is their growth."""
@@ -155,22 +158,19 @@ class Reference:
         """The same with stamps that are free of a delay [s]."""
         return self if delay == 0.0 else replace(self, time=self.time - delay)
 
-    def chosen(self, which: NDArray[np.bool_]) -> Reference:
-        """Select poses; `which` has shape (m,)."""
-        return Reference(
-            self.time[which],
-            self.x[which],
-            self.y[which],
-            self.yaw[which],
-            None if self.sigma_xy is None else self.sigma_xy[which],
-            None if self.sigma_yaw is None else self.sigma_yaw[which],
-            kind=self.kind,
-            own_axes=self.own_axes,
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Reference:
+        """Select poses; `which` has shape (m,), or is of rows."""
+        return replace(
+            self,
+            time=self.time[which],
+            x=self.x[which],
+            y=self.y[which],
+            yaw=self.yaw[which],
+            sigma_xy=None if self.sigma_xy is None else self.sigma_xy[which],
+            sigma_yaw=None if self.sigma_yaw is None else self.sigma_yaw[which],
             walked=None if self.walked is None else self.walked[which],
             covariance=None if self.covariance is None else self.covariance[which],
             gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
-            stamped_together=self.stamped_together,
-            one_rate=self.one_rate,
         )
 
 

@@ -20,10 +20,10 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.diagnosis.quarter_turns import Turning, turning_of
 from werrimbi_odom.inference.diagnosis.step_jacobians import (
     AMOUNTS,
     BLOCK,
-    OF_WHEELS,
     Amount,
     StepJacobian,
     shares_of_steps,
@@ -67,6 +67,8 @@ class Dependence:
     shares: tuple[Floats, Floats] | None = None
     """Size of the quantity `amount.per` in each step, for left and right wheel, (n,). An error per
     metre is zero while the robot stands. None: the same in each step."""
+    turning: Turning | None = None
+    """That of the drives, for an error of the place per radian."""
 
     @property
     def channel(self) -> str:
@@ -138,7 +140,9 @@ def dependences(
                 found.append((amount, cell.variable, cell.form, tested))
     spare = runs.data - frame.basis.shape[1] if runs.data < rules.NOISE_NUMBERS else math.inf
     whole = float(rest @ rest)
-    shares = shares_of_steps(path_of(point.model, runs), runs.drive(point.model.robot).duration)
+    path = path_of(point.model, runs)
+    shares = shares_of_steps(path, runs.drive(point.model.robot).duration)
+    turning = turning_of(runs, path.motion.turn)
     cells = [
         Dependence(
             amount,
@@ -151,6 +155,7 @@ def dependences(
             test.degrees,
             bonferroni(len(found), p_value_of_score(test.gain, test.degrees, whole, spare)),
             shares[amount],
+            turning if amount.per == "turn" and amount.channel != "heading" else None,
         )
         for amount, variable, form, test in found
     ]
@@ -209,7 +214,7 @@ class _Cells(NamedTuple):
 def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]]:
     """Cells with their changes of the legs (m, 3, amounts * k), in blocks that fit into memory."""
     path = path_of(point.model, runs)
-    of_wheels = [amount for amount in AMOUNTS if amount.channel in OF_WHEELS]
+    of_wheels = [amount for amount in AMOUNTS if amount.of_wheels]
     both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
     left, right = step_jacobians(runs, path, AMOUNTS, point)
     for begin in range(0, both.shape[0], BLOCK):

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
@@ -119,6 +120,12 @@ class Concatenated:
     def own_axes(self) -> bool:
         """Whether references start in axes of their own, so that runs share no direction."""
         return any(run.measured.own_axes for run in self.runs)
+
+    @property
+    def mount(self) -> Mount | None:
+        """Where transforms place the sensor; None if unknown, or not in one place in all runs."""
+        places = {run.measured.mount for run in self.runs}
+        return places.pop() if len(places) == 1 else None
 
     @property
     def of_one_rate(self) -> bool:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,26 +182,9 @@ def _gaps_between(record: AlignedRun, rows: NDArray[np.intp]) -> NDArray[np.bool
 
 def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
     """Some poses of a reference, without the stated noise of its absolute poses."""
-    columns: list[Any] = [reference.time, reference.x, reference.y, reference.yaw]
-    if rows.size < reference.time.size:
-        columns = [part[rows] for part in columns]
-    gyro = reference.gyro
-    if gyro is not None:
-        gyro = gyro._replace(turned=gyro.turned[rows])
-    if reference.own_axes:  # stated per scan match; a localiser states its absolute error
-        for sigma in (reference.sigma_xy, reference.sigma_yaw):
-            columns.append(None if sigma is None else sigma[rows])
-    walked, covariance = (
-        None if each is None else each[rows] for each in (reference.walked, reference.covariance)
-    )
-    return Reference(
-        *columns,
-        own_axes=reference.own_axes,
-        walked=walked,
-        covariance=covariance,
-        gyro=gyro,
-        one_rate=reference.one_rate,
-    )
+    seen = reference.chosen(rows) if rows.size < reference.time.size else reference
+    # Scans state it per match; a localiser states its absolute error.
+    return seen if seen.own_axes else replace(seen, sigma_xy=None, sigma_yaw=None)
 
 
 def typical_sigma(sigma: Floats | None) -> float | None:

@@ -13,6 +13,7 @@ from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.what_is_left import WhatIsLeft
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
@@ -60,6 +61,7 @@ def json_of(
         "outdated": [
             {"effect": name, "parameters": _values(diagnosis, name)} for name in diagnosis.outdated
         ],
+        "transform_to_mend": _transform(diagnosis),
         "set_up": [
             picked(finding, "effect values factor words twins")
             for finding in diagnosis.set_up.wrong
@@ -88,6 +90,22 @@ def json_of(
         "events": events_json(diagnosis.happened, diagnosis.robot.track),
         "events_alike": alike_json(diagnosis.happened),
         "could_have_been_seen": [_limit(sight) for sight in sights],
+    }
+
+
+def _transform(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    """What the transform of the reference's mount should be; None if nothing of it is wrong."""
+    found = mended_mount(diagnosis)
+    if found is None:
+        return None
+    return {
+        **picked(found.entered, "base sensor"),
+        "entered": {part: getattr(found.entered, part) for part in found.std},
+        **{
+            part: {"value": getattr(found.mended, part), "std": std}
+            for part, std in found.std.items()
+        },
+        "effects": list(found.effects),
     }
 
 

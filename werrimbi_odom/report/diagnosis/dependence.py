@@ -9,9 +9,11 @@ import math
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.quarter_turns import Turning
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.number_format import length
 from werrimbi_odom.report.style import escaped
 
 VARIABLES = {
@@ -132,7 +134,12 @@ def dependence_words(cell: Dependence) -> str:
 
 
 def strength_words(cell: Dependence) -> str:
-    """Size of the dependence: half the range of the error on these drives."""
+    """Size of the dependence: half the range of the error on these drives.
+
+    Of a place that is wrong by so much per radian, which no tape tells: what it comes to.
+    """
+    if cell.turning is not None:
+        return _over_turns(cell, cell.turning)
     values = _errors(cell)
     if cell.variable.name == CONSTANT:
         size = abs(float(values[0]))
@@ -147,6 +154,23 @@ def strength_words(cell: Dependence) -> str:
     return f"{sign}{_in_unit(cell, size)}"
 
 
+def _over_turns(cell: Dependence, turning: Turning) -> str:
+    """What an error per radian comes to over a quarter turn of the drives: usually, and at most.
+
+    Of one that goes with a variable, what it differs from its mean: a constant one is another cell.
+    """
+    side, size = functions_of(cell.variable)[cell.form][0], np.abs(turning.turn)
+    coefficients = np.atleast_2d(cell.coefficients)
+    errors = np.sum(side * coefficients[turning.run if cell.variable.per_run else 0], axis=-1)
+    constant = cell.variable.name == CONSTANT
+    moved = turning.moved(errors if constant else errors - np.average(errors, weights=size))
+    usual, most = (length(float(each)) for each in (np.sqrt(np.mean(moved**2)), moved.max()))
+    whole = turning.quarters() == turning.stretches
+    over = "an unbroken part" if whole else "a quarter turn"
+    up_to = "" if constant or usual == most else f", up to {most}"
+    return f"{'' if constant else '±'}{usual} over {over} of these drives{up_to}"
+
+
 def _in_unit(cell: Dependence, size: float) -> str:
     channel, per = cell.amount.channel, cell.amount.per
     if channel == "heading":
@@ -154,8 +178,6 @@ def _in_unit(cell: Dependence, size: float) -> str:
             return f"{_two_digits(100.0 * size)} %"
         each = "second" if per == "duration" else "metre"
         return f"{_two_digits(math.degrees(size))}° each {each}"
-    if per == "turn":
-        return f"{_two_digits(1e3 * size)} mm each radian"
     if channel == "sideways":
         return f"{_two_digits(1e3 * size)} mm each metre"
     return f"{_two_digits(100.0 * size)} %"

@@ -8,9 +8,11 @@ import math
 
 import numpy as np
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
+from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
@@ -24,10 +26,10 @@ from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
 from werrimbi_odom.report.number_format import (
     chance_words,
     error_words,
-    length,
     listed,
     quantity,
     two_digits,
+    with_std,
 )
 
 
@@ -265,20 +267,37 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def of_a_lidar_askew(diagnosis: Diagnosis) -> list[str]:
-    """What a lever arm across may be, where the lidar's place was taken from a transform.
-
-    The path of the base is that of the lidar less its place, in axes that are askew with it.
-    """
-    if not diagnosis.runs.own_axes or diagnosis.runs.has_gyro_headings:
+def transform_to_mend(diagnosis: Diagnosis) -> list[str]:
+    """What to write into the transform that says where the lidar sits, where it is wrong."""
+    found = mended_mount(diagnosis)
+    if found is None:
         return []
-    if not {"reference_yaw_offset", "reference_lever_arm"} <= set(diagnosis.found):
-        return []
-    angle = abs(values_of(diagnosis, "reference_yaw_offset")["angle"].value)
-    return [
-        "If a transform told where the lidar sits, it may sit there exactly: askew by this angle "
-        f"it is seen {length(0.1 * angle)} aside for each 100 mm that it sits ahead or behind."
+    where = f"{found.entered.base} -> {found.entered.sensor}"
+    should = [
+        f"{part} = {_mended(getattr(found.mended, part), std)} {unit}"
+        for (part, std), unit in zip(found.std.items(), ("m", "m", "rad"), strict=True)
     ]
+    is_now = [f"{part} = {getattr(found.entered, part) + 0.0:.4g}" for part in found.std]
+    others = dict.fromkeys(
+        other
+        for name in found.effects
+        for other in (
+            *find(name).twins,
+            *(diagnosis.rivals if name in diagnosis.rivals else ()),
+            *diagnosis.rivals_of_others.get(name, ()),
+        )
+        if other not in found.effects
+    )
+    the = f"Unless it is {listed(list(others), 'or')}, the" if others else "The"
+    return [
+        f"{the} transform {where} (URDF, /tf_static) should be {listed(should)}, where it is "
+        f"{listed(is_now)}. Mend it there, or add {listed(found.effects)}, but not both."
+    ]
+
+
+def _mended(value: float, std: float) -> str:
+    """Part of a transform; to the millimetre where nothing was found of it."""
+    return with_std(value, std) if math.isfinite(std) else f"{value + 0.0:.3f}"
 
 
 def instead_of_held(diagnosis: Diagnosis) -> list[str]:

@@ -170,7 +170,7 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
         *remarks.or_the_reference_s_scale(diagnosis),
-        *remarks.of_a_lidar_askew(diagnosis),
+        *remarks.transform_to_mend(diagnosis),
         *remarks.not_shown(advised),
     ]
 
@@ -203,7 +203,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
     lines += remarks.or_the_reference_s_scale(diagnosis)
-    lines += remarks.of_a_lidar_askew(diagnosis)
+    lines += remarks.transform_to_mend(diagnosis)
     lines += phrases.cost(advised, rivals[0])
     if (move := advised.manoeuvre) is not None:
         lines.append(f"Why: {move.why}.")
