@@ -115,15 +115,15 @@ def test_it_lasts_beside_a_reference_that_wanders() -> None:
 
 
 def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
-    train = [driven(seed, wanders, f"drive_{seed}") for seed in range(60, 64)]
-    holdout = [driven(seed, wanders, f"drive_{seed}") for seed in range(64, 66)]
-    found = diagnose(train, ROBOT, LIBRARY, holdout=holdout)
+    *train, held = [driven(seed, wanders, f"drive_{seed}") for seed in range(60, 64)]
+    effects = common("floor_slope", "anisotropic_floor", "reference_gyro_drift", "oval_left_wheel")
+    found = diagnose(train, ROBOT, effects, holdout=[held])
     assert found.wander is not None
     assert (found.verdict, found.found) == ("none", ())
 
 
 def test_what_one_drive_alone_shows_is_no_law_of_the_robot() -> None:
-    hot = [driven(seed, nothing, f"drive_{seed}") for seed in range(70, 74)]
+    hot = [driven(seed, nothing, f"drive_{seed}") for seed in range(71, 74)]
     hot.append(driven(74, nothing, "hot", hotter=0.02))
     found = diagnose(hot, ROBOT, COMMON, holdout=[driven(75, nothing, "apart")])
     assert (found.verdict, found.found) == ("none", ())
