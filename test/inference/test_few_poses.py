@@ -87,11 +87,11 @@ def to_and_fro(seed: int) -> Run:
 
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
-    return [to_and_fro(seed) for seed in range(12)]
+    return [to_and_fro(seed) for seed in range(9)]
 
 
 def diagnosed(runs: list[Run], robot: Robot) -> Diagnosis:
-    return diagnose(runs[:9], robot, SOME, holdout=runs[9:])
+    return diagnose(runs[:7], robot, SOME, holdout=runs[7:])
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +101,7 @@ def first(runs: list[Run]) -> Diagnosis:
 
 @pytest.fixture(scope="module")
 def kick(runs: list[Run]) -> Added:
-    return add_effects([find("castor_kick")], runs[:9], PLAIN, holdout=runs[9:])
+    return add_effects([find("castor_kick")], runs[:7], PLAIN, holdout=runs[7:])
 
 
 def test_of_four_drives_by_tape_nothing_is_beyond_chance(runs: list[Run]) -> None:
@@ -134,7 +134,7 @@ def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     runs: list[Run], first: Diagnosis
 ) -> None:
     assert first.verdict == "ambiguous"
-    added = add_effects([find(first.rivals[0])], runs[:9], PLAIN, holdout=runs[9:])
+    added = add_effects([find(first.rivals[0])], runs[:7], PLAIN, holdout=runs[7:])
     later = diagnosed(runs, added.robot)
     assert later.verdict == "none"
     others = later.rivals_of_held[first.rivals[0]]

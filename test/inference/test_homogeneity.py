@@ -194,7 +194,7 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     assert _chance(gain, 1, free, free, rest, parts) > 1e-3
 
 
-@pytest.mark.parametrize("degrees", [1, 2])
+@pytest.mark.parametrize("degrees", [1, pytest.param(2, marks=pytest.mark.evidence)])
 def test_what_each_part_draws_anew_lasts_as_rarely_as_is_said(degrees: int) -> None:
     """Where three of nine parts know nearly all: once in a hundred was once in thirteen."""
     random = np.random.default_rng(degrees)
