@@ -80,6 +80,14 @@ def no_line_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("werrimbi_odom.cli.progress.EVERY", float("inf"))
 
 
+@pytest.fixture
+def few_effects(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands of this process look for a part of the library: for what asks something else."""
+    from test.inference.driven import COMMON
+
+    monkeypatch.setattr("werrimbi_odom.effects.lookup.LIBRARY", COMMON)
+
+
 @pytest.fixture(scope="session")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
     """Some drives of what `werrimbi simulate` writes, made once for all tests: to be read alone."""

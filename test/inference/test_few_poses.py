@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from test.inference.driven import run_of
+from test.inference.driven import COMMON, run_of
 from test.model.drives import ROBOT as STEERED
 from test.model.drives import read
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
@@ -29,6 +30,7 @@ from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.as_json import json_of as json_of_added
@@ -170,8 +172,13 @@ def test_drives_that_tell_have_no_rivals_to_recall() -> None:
     assert found.rivals_of_held == {}
 
 
-@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.evidence), 2])
-def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
+@pytest.mark.parametrize(
+    ("seed", "effects"),
+    [(2, COMMON), *(pytest.param(n, LIBRARY, marks=pytest.mark.evidence) for n in (1, 2))],
+)
+def test_whatever_a_reference_says_no_number_is_beyond_sense(
+    seed: int, effects: Sequence[Effect]
+) -> None:
     """Poses by chance: what is printed of them stays within what the parameters allow."""
     random = np.random.default_rng(seed)
     runs = []
@@ -181,7 +188,7 @@ def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
         x, y = random.uniform(-2.0, 2.0, (2, 2))
         seen = replace(run.reference, x=x, y=y, yaw=random.uniform(-3.0, 3.0, 2))
         runs.append(replace(run, reference=seen))
-    found = diagnose(runs[:8], PLAIN, LIBRARY, holdout=runs[8:])
+    found = diagnose(runs[:8], PLAIN, effects, holdout=runs[8:])
     said = as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())) + as_text(
         tables_of(found)
     )
