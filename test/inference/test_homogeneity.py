@@ -55,10 +55,10 @@ def wanders(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return error * [0.004, 0.004, 0.008]
 
 
-def driven(seed: int, spoil: Spoil, name: str, hotter: float = 0.0) -> Run:
+def driven(seed: int, spoil: Spoil, name: str, hotter: float = 0.0, seconds: float = 60.0) -> Run:
     """A drive of a minute; `hotter` lets both wheels shrink as a channel grows."""
     random = np.random.default_rng(seed)
-    seen = drive(TRUE, wandering(random, 60.0, 25.0), random, every=2, hertz=25.0)
+    seen = drive(TRUE, wandering(random, seconds, 25.0), random, every=2, hertz=25.0)
     ticks, poses = seen.ticks, seen.reference
     channel = np.sin(ticks.time / 9.0 + seed)
     counted = 1.0 + hotter * channel

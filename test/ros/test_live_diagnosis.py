@@ -37,7 +37,7 @@ SERVICE = "compare_node/write_robot_file"
 
 
 def watched(
-    launch: Any, compare: Any, folder: Path, wide: float, seconds: float = 60.0
+    launch: Any, compare: Any, folder: Path, wide: float, seconds: float = 100.0
 ) -> tuple[Any, Comparing, Path, list[Any]]:
     """A drive of a robot whose base is `wide` times that of its file, looked at when it ends."""
     values = robot_file() | {"wheel_separation": TRUE.separation / wide}
