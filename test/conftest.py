@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import fcntl
+import gc
 import os
 import re
 import signal
@@ -68,10 +69,23 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: places[item.path])
 
 
+def pytest_collection_finish() -> None:
+    """What was imported stays: no collection of garbage looks through it again."""
+    gc.freeze()
+
+
 @pytest.fixture(autouse=True)
 def no_line_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     """What stderr holds does not depend on how busy the machine is."""
     monkeypatch.setattr("werrimbi_odom.cli.progress.EVERY", float("inf"))
+
+
+@pytest.fixture
+def few_effects(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands of this process look for a part of the library: for what asks something else."""
+    from test.inference.driven import COMMON
+
+    monkeypatch.setattr("werrimbi_odom.effects.lookup.LIBRARY", COMMON)
 
 
 @pytest.fixture(scope="session")

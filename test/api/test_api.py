@@ -178,6 +178,7 @@ CASES: dict[str, tuple[list[str], Any]] = {
 }  # fmt: skip
 
 
+@pytest.mark.usefixtures("few_effects")
 @pytest.mark.parametrize("case", CASES)
 def test_a_verb_says_what_the_command_says(
     drives: Path, case: str, monkeypatch: pytest.MonkeyPatch, werrimbi: Werrimbi

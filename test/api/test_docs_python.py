@@ -30,6 +30,7 @@ def test_the_five_lines_run_in_a_shell() -> None:
     assert min(sigmas) > 0.0, "variances on the diagonal"
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_the_blocks_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, simulated: Callable[..., Path]
 ) -> None:

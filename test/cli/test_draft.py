@@ -32,6 +32,7 @@ def runs(folder: Path) -> list[str]:
     return ["--robot", str(folder / "robot.yaml"), *found[:3], "--holdout", found[3]]
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_the_law_is_found_written_and_added(
     loaded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -66,6 +67,7 @@ def test_a_package_is_not_written_over(loaded: Path, tmp_path: Path, complaint: 
     assert "is not empty" in complaint("draft", *runs(loaded), "--out", tmp_path)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_where_nothing_is_missing_nothing_is_drafted(tmp_path: Path, complaint: Complaint) -> None:
     folder = written(tmp_path, [PLAIN] * 4)
     told = complaint("draft", *runs(folder), "--out", tmp_path / "package")

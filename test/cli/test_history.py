@@ -112,6 +112,7 @@ def test_without_stamps_the_files_own_dates_count_unless_they_were_copied(
     assert found["changes"] == []
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_diagnose_tells_the_same_change_before_its_verdict(
     months: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -132,11 +132,11 @@ def test_the_place_is_learnt_where_the_height_is_known(height: float) -> None:
 def test_a_bump_is_named_and_an_axle_off_its_centre_is_none() -> None:
     waves = [f"{kind}_{side}_wheel" for kind in ("eccentric", "oval") for side in ("left", "right")]
     effects = common("left_tread_bump", "right_tread_bump", *waves)
-    told = diagnose(bumpy(2e-3), PLAIN, effects)
+    told = diagnose(bumpy(2e-3)[:3], PLAIN, effects)
     assert (told.verdict, told.found) == ("named", ("left_tread_bump",))
     law = find("left_tread_bump")
     off = find("eccentric_left_wheel")
-    truth = [replace(PLAIN, effects=(off.using(amplitude=1e-3, phase=at),)) for at in PLACES]
+    truth = [replace(PLAIN, effects=(off.using(amplitude=1e-3, phase=at),)) for at in PLACES[:3]]
     runs = [runs_of(robot, (seed,), 60)[0] for seed, robot in enumerate(truth)]
     told = diagnose(runs, PLAIN, effects)
     assert (told.verdict, told.found) == ("named", ("eccentric_left_wheel",))
@@ -169,14 +169,14 @@ def test_it_is_named_and_lasts() -> None:
 def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> None:
     """It was *unknown*, or a reference askew: the rates, each drive's own, counted as none."""
     runs = []
-    for run, rate in zip(runs_of(PLAIN, (1, 2, 3, 4), 60), (8e-5, 12e-5, 10e-5, 9e-5), strict=True):
+    for run, rate in zip(runs_of(PLAIN, (1, 2, 3), 60), (8e-5, 12e-5, 10e-5), strict=True):
         assert run.reference is not None
         since = run.reference.time - run.ticks.time[0]
         bias = rate * SETTLES * (since - SETTLES * (1.0 - np.exp(-since / SETTLES)))
         runs.append(replace(run, reference=replace(run.reference, yaw=run.reference.yaw + bias)))
     drift = replace(find("reference_gyro_drift").using(), unknown=("rate",))
     holds = replace(PLAIN, effects=(drift,))
-    told = diagnose(runs[:3], holds, common("reference_gyro_drift"), holdout=runs[3:])
+    told = diagnose(runs[:2], holds, common("reference_gyro_drift"), holdout=runs[2:])
     assert told.verdict == "none"
     assert told.misfit is not None
     assert told.misfit.effect == "reference_gyro_drift"

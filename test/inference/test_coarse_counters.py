@@ -39,10 +39,11 @@ def driven(
     folder: Path,
     counts: int,
     hidden: Sequence[Peculiarity] = (),
+    drives: int = 3,
     reference: ReferenceSensor | None = None,
-    pace: float = 1.0,
+    rate: float = 50.0,
 ) -> tuple[RobotFile, list[Run]]:
-    """Four drives of a minute with so many counts in a turn."""
+    """Some drives of a minute with so many counts in a turn."""
     each = float(counts)
     true = TrueRobot(
         left_wheel_noise=4.0e-4,
@@ -51,13 +52,20 @@ def driven(
         right_ticks_per_revolution=each,
     )
     robot = wo.read_robot(write_robot_file(true, folder / "robot.yaml"))
-    drives = []
-    for number in range(4):
-        speed = pace * (0.25 + 0.05 * (number % 3))
+    runs = []
+    for number in range(drives):
+        speed = 0.25 + 0.05 * number
         manoeuvre = free(60.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
-        recording = record(true, manoeuvre, seed=100 + number, hidden=hidden, reference=reference)
-        drives.append(wo.read_run(write_run(recording, folder / str(number)), robot))
-    return robot, drives
+        recording = record(
+            true,
+            manoeuvre,
+            seed=100 + number,
+            hidden=hidden,
+            reference=reference,
+            ticks_rate_hz=rate,
+        )
+        runs.append(wo.read_run(write_run(recording, folder / str(number)), robot))
+    return robot, runs
 
 
 @pytest.mark.parametrize("counts", [20, pytest.param(40, marks=pytest.mark.evidence)])
@@ -65,7 +73,7 @@ def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     """Legs that were cut at the steps of the counters told 9 mm of backlash, for certain."""
     late = hide("reference_delay", LATE, seed=1).peculiarity
     file, drives = driven(tmp_path, counts, [late])
-    found = diagnose(drives[:3], file.robot, COMMON, holdout=drives[3:])
+    found = diagnose(drives[:2], file.robot, COMMON, holdout=drives[2:])
     assert found.found == ("reference_delay",)
     assert values_of(found, "reference_delay")["delay"].value == pytest.approx(LATE, rel=0.15)
 
@@ -76,15 +84,15 @@ def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
     slip = hide("longitudinal_slip", 0.04, seed=1).peculiarity
     file, drives = driven(tmp_path, counts, [slip])
     effects = common("longitudinal_slip", "coulomb_slip")
-    found = diagnose(drives[:3], file.robot, effects, holdout=drives[3:])
+    found = diagnose(drives[:2], file.robot, effects, holdout=drives[2:])
     assert found.effect == "longitudinal_slip"
     share = values_of(found, "longitudinal_slip")["coefficient"]
     assert abs(share.value - 0.04) < 3.0 * share.std < 0.02
 
 
 def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> None:
-    robot, drives = driven(tmp_path, 40)
-    found = wo.diagnose(robot, drives[:3], holdout=drives[3:])
+    robot, drives = driven(tmp_path, 40, drives=2)
+    found = wo.diagnose(robot, drives[:1], holdout=drives[1:])
     assert found.to_dict()["verdict"] == "none"
     words = " ".join(found.summary().split())
     assert "A count of a wheel is 7.9 mm" in words
@@ -133,7 +141,7 @@ def test_counts_err_less_between_messages(share: float) -> None:
 def test_counts_hide_no_noise_of_the_reference(tmp_path: Path, counts: int) -> None:
     """Half of it was told, and a sound robot's covariance said to be too small (NEES 1.6)."""
     cameras = ReferenceSensor(27.3, sigma_xy=4e-4, sigma_yaw=1e-3)
-    robot, drives = driven(tmp_path, counts, reference=cameras, pace=0.3)
+    robot, drives = driven(tmp_path, counts, reference=cameras, rate=10.0)
     found = wo.compare(robot, drives).to_dict()
     [told] = found["reference"]
     assert told["sigma_xy"] == pytest.approx(4e-4, rel=0.15)

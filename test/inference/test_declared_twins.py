@@ -87,7 +87,7 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     assert "So hang a plumb line from the mast's top" in said
 
     truth = replace(ROBOT, effects=(find("sideways_drift").using(angle=-0.02),))
-    found = diagnose(runs_of(truth, (1, 2, 3, 4), 60), ROBOT, [*COMMON, mast])
+    found = diagnose(runs_of(truth, (1, 2), 60), ROBOT, [*COMMON, mast])
     assert found.verdict == "ambiguous"
     assert set(found.rivals) == {"leaning_mast", "reference_yaw_offset"}
     proposed = next_manoeuvre(found)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, common, run_by, run_of, runs_of
+from test.inference.driven import COMMON, run_by, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
@@ -47,8 +47,12 @@ def test_a_mount_a_clock_and_a_drift_are_found_in_one_short_drive(tmp_path: Path
     x = x + DRIFT * np.cumsum(np.hypot(np.diff(x, prepend=x[0]), np.diff(y, prepend=y[0])))
     early = np.interp(seen.time + EARLY, seen.time, yaw) + ASKEW
     run = replace(run, reference=replace(seen, x=x, y=y, yaw=early))
-    others = ("sideways_drift", "reference_heading_delay", "floor_slope", "anisotropic_floor")
-    found = diagnose([run], file.robot, common(*others))
+    names = (
+        *("track_width", "lateral_slip", "sideways_drift", "floor_slope", "anisotropic_floor"),
+        *("reference_lever_arm", "reference_yaw_offset", "reference_delay"),
+        "reference_heading_delay",
+    )
+    found = diagnose([run], file.robot, [find(name) for name in names])
     assert {TWINS.get(name, name) for name in found.found} == {
         "reference_lever_arm",
         "reference_yaw_offset",
@@ -77,7 +81,7 @@ def test_the_more_important_is_told_first_though_half_of_its_law_is_not_determin
     assert found.final.importance["radius_by_channel"] > 1e3
 
 
-@pytest.mark.parametrize("after", [0.0, 1.0])
+@pytest.mark.parametrize("after", [pytest.param(0.0, marks=pytest.mark.evidence), 1.0])
 def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_another(
     after: float,
 ) -> None:

@@ -72,6 +72,11 @@ def _diagnosed(drives: Drives) -> Diagnosis:
     return diagnose(drives[0], drives[1], COMMON)
 
 
+def _happened(runs: list[Run], robot: Robot) -> Events:
+    """What a diagnosis tells of the first two of the drives."""
+    return diagnose(runs[:2], robot, COMMON[:4]).happened
+
+
 def _measured(run: Run, change: Callable[[Reference], Reference]) -> Run:
     assert run.reference is not None
     return replace(run, reference=change(run.reference))
@@ -109,7 +114,7 @@ def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: D
         )
         some = Ticks(ticks.time[kept], ticks.left[kept], ticks.right[kept])
         silent.append(replace(run, ticks=some))
-    assert _diagnosed((silent, robot)).happened.events == ()
+    assert _happened(silent, robot).events == ()
 
 
 @pytest.mark.parametrize(("scans", "lost"), [(True, 18.0), (True, 40.0), (False, 18.0)])
@@ -123,7 +128,7 @@ def test_where_scans_were_lost_a_push_may_be_theirs(
     kept = np.abs(pushed.reference.time - lost - 1.0) > 1.0
     seen = replace(pushed.reference.chosen(kept), own_axes=scans)
     cut = replace(pushed, reference=seen, taken_out=((lost, lost + 2.0),))
-    [event] = _diagnosed(([cut, *runs[1:]], robot)).happened.events
+    [event] = _happened([cut, *runs[1:]], robot).events
     assert event.beside_lost == (scans and lost == 18.0)
 
 
@@ -201,7 +206,7 @@ def test_a_kick_of_the_heading_is_told_by_a_gyro_alone(sound: Drives) -> None:
     runs, robot = sound
     kicked = [parts(_stepped(runs[0], 22.0, 0.0, -5.0 * NOISE_YAW), "yaw")]
     kicked += [parts(run, "yaw") for run in runs[1:]]
-    [event] = _diagnosed((kicked, robot)).happened.events
+    [event] = _happened(kicked, robot).events
     assert (event.channel, event.unit) == ("heading", "rad")
     assert event.time == pytest.approx(22.0, abs=0.2)
     assert event.size == pytest.approx(-5.0 * NOISE_YAW, abs=3.0 * event.std)
@@ -214,7 +219,7 @@ def test_a_reference_that_is_wrong_in_one_pose_jumped_and_came_back(sound: Drive
         return replace(seen, x=x)
 
     runs, robot = sound
-    [event] = _diagnosed(([_measured(runs[0], wrong), *runs[1:]], robot)).happened.events
+    [event] = _happened([_measured(runs[0], wrong), *runs[1:]], robot).events
     assert (event.channel, event.stays) == ("reference", False)
     assert event.time == pytest.approx(20.0, abs=0.06)
     assert event.size == pytest.approx(0.05, abs=4.0 * event.std)
@@ -242,8 +247,7 @@ def test_what_creeps_in_over_seconds_is_no_event(sound: Drives) -> None:
         return replace(seen, x=seen.x + 5.0 * NOISE_XY * np.clip((seen.time - 15.0) / 4.0, 0, 1))
 
     runs, robot = sound
-    found = _diagnosed(([_measured(runs[0], creeping), *runs[1:]], robot))
-    assert found.happened.events == ()
+    assert _happened([_measured(runs[0], creeping), *runs[1:]], robot).events == ()
 
 
 def test_events_of_the_engine_are_found_and_no_verdict_is_made_of_them(tmp_path: Path) -> None:
@@ -315,7 +319,7 @@ def test_where_a_reference_goes_wrong_is_no_floor(sound: Drives) -> None:
         return replace(seen, x=x)
 
     runs, robot = sound
-    found = _diagnosed(([_measured(runs[0], hidden), *runs[1:]], robot)).happened
+    found = _happened([_measured(runs[0], hidden), *runs[1:]], robot)
     assert found.alike is not None
     assert found.alike.of_reference
     assert found.left_out

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -39,6 +40,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.proposal import for_twins
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.remarks import or_the_reference_s_scale
 from werrimbi_odom.report.number_format import quantity
@@ -304,14 +306,21 @@ def test_no_reference_is_better_than_the_step_of_its_values(kind: ReferenceKind)
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param("absolute", marks=pytest.mark.evidence), "incremental"]
+    ("kind", "every", "effects"),
+    [
+        ("incremental", 5, common("reference_scale")),
+        *(
+            pytest.param(kind, every, LIBRARY, marks=pytest.mark.evidence)
+            for kind in ("incremental", "absolute")
+            for every in (1, 5)
+        ),
+    ],
 )
-@pytest.mark.parametrize("every", [pytest.param(1, marks=pytest.mark.evidence), 5])
 def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
-    kind: ReferenceKind, every: int
+    kind: ReferenceKind, every: int, effects: Sequence[Effect]
 ) -> None:
     runs = [gyro_drive(seed, late=0.08, stamps=2e-3, every=every) for seed in (20, 21, 22)]
-    found = diagnose(runs, NOMINAL, LIBRARY, EvaluationOptions(reference_kind=kind))
+    found = diagnose(runs, NOMINAL, effects, EvaluationOptions(reference_kind=kind))
     assert set(found.found) == {"reference_delay", "track_width"}
     first = found.effect == "track_width"
     assert found.rivals == (("track_width", "reference_scale") if first else ())

@@ -234,7 +234,7 @@ def test_noise_walk_and_memory_are_told_apart(runs: list[Run]) -> None:
 def test_a_part_put_aside_for_judging_does_not_lose_the_robot() -> None:
     """The reference went on all the while, so its memory is told as by whole drives."""
     robot = TRUE.entered()
-    kept, _ = set_aside(session(range(5), jumps=0))
+    kept, _ = set_aside(session(range(3), jumps=0))
     options = EvaluationOptions(reference_kind="local_map")
     back = calibrate(match_for_fit(kept, robot, 1.0), robot, options).noises["reference_reversion"]
     assert abs(back.value - 1.0 / MEMORY) < 2.0 * back.std
@@ -325,7 +325,7 @@ def test_a_wrong_base_shows_in_turns_and_not_in_the_lines_after_them(runs: list[
     robot = TRUE.entered()
     wrong = replace(robot, wheel_separation_multiplier=1.0 / 1.1)
     right, off = (
-        compare(runs[:3], one, EvaluationOptions(reference_kind="local_map"))
+        compare(runs[:2], one, EvaluationOptions(reference_kind="local_map"))
         .main.by_motion["line"]
         .figures
         for one in (robot, wrong)

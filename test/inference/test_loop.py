@@ -38,8 +38,10 @@ PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noi
 class Loop:
     """A diagnosis, what it advised added at once, and the diagnosis of the new robot file."""
 
-    def __init__(self, robot: Robot, train: Sequence[Run], holdout: Sequence[Run]) -> None:
-        self.drives = (train, holdout)
+    def __init__(
+        self, robot: Robot, train: Sequence[Run], holdout: Sequence[Run], library: Sequence[Effect]
+    ) -> None:
+        self.drives, self.library = (train, holdout), library
         self.first = self.diagnosed(robot)
         effects = [find(name) for name in self.first.found]
         self.added: Added = add_effects(effects, train, robot, holdout=holdout)
@@ -47,7 +49,7 @@ class Loop:
 
     def diagnosed(self, robot: Robot) -> Diagnosis:
         train, holdout = self.drives
-        return diagnose(train, robot, LIBRARY, holdout=holdout)
+        return diagnose(train, robot, self.library, holdout=holdout)
 
 
 def hidden(seed: int, *effects: str) -> Loop:
@@ -56,15 +58,15 @@ def hidden(seed: int, *effects: str) -> Loop:
     train, holdout = (
         [read_run(path, file) for path in runs_of(folder, part)] for part in ("train", "holdout")
     )
-    return Loop(file.robot, train, holdout)
+    return Loop(file.robot, train, holdout, LIBRARY)
 
 
 @pytest.fixture(scope="module")
 def wheel_and_clock() -> Loop:
     """The right wheel is 3 % larger, and the reference 60 ms late."""
     truth = replace(PLAIN, right_wheel_radius_multiplier=1.03)
-    runs = [later(run, 0.06) for run in driven(truth, (1, 2, 3, 4), seconds=60)]
-    return Loop(PLAIN, runs[:3], runs[3:])
+    runs = [later(run, 0.06) for run in driven(truth, (1, 2, 3), seconds=60)]
+    return Loop(PLAIN, runs[:2], runs[2:], COMMON)
 
 
 def test_a_wrong_wheel_and_a_late_clock_come_to_rest_at_the_truth(wheel_and_clock: Loop) -> None:
@@ -110,9 +112,9 @@ def test_what_is_found_is_added_and_nothing_more_is_named(
 
 def test_what_does_not_earn_its_place_is_refused_by_name() -> None:
     truth = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.02),))
-    runs = driven(truth, (1, 2, 3, 4), seconds=60)
+    runs = driven(truth, (1, 2, 3), seconds=60)
     effects = [find("lateral_slip"), find("left_backlash")]
-    found = add_effects(effects, runs[:3], PLAIN, holdout=runs[3:])
+    found = add_effects(effects, runs[:2], PLAIN, holdout=runs[2:])
     assert set(found.objections) == {"left_backlash"}
     assert found.without["lateral_slip"] > 1.5 * found.holdout.sides.after
     assert found.without["left_backlash"] == pytest.approx(found.holdout.sides.after, rel=0.02)
@@ -128,8 +130,8 @@ def test_what_does_not_earn_its_place_is_refused_by_name() -> None:
 def test_mistakes_of_set_up_and_effects_are_added_together() -> None:
     swapped, slip = find("wheels_swapped"), find("lateral_slip")
     truth = replace(PLAIN, effects=(swapped.using(), slip.using(creep=0.02)))
-    runs = driven(truth, (1, 2, 3, 4))
-    found = add_effects([swapped, slip], runs[:3], PLAIN, holdout=runs[3:])
+    runs = driven(truth, (1, 2, 3), seconds=60)
+    found = add_effects([swapped, slip], runs[:2], PLAIN, holdout=runs[2:])
     assert found.objections == {}
     assert found.chances["wheels_swapped"] is None
     assert found.chances["lateral_slip"] == pytest.approx(0.0, abs=1e-9)
@@ -162,10 +164,10 @@ def _law(form: int) -> Effect:
 
 def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     truth = replace(PLAIN, effects=(_law(2).using(softness=0.2),))
-    runs = driven(truth, (1, 2, 3, 4, 5), seconds=60)
+    runs = driven(truth, (1, 2, 3), seconds=60)
     line = _law(1)
-    robot = add_effects([line], runs[:4], PLAIN, holdout=runs[4:]).robot
-    found = diagnose(runs[:4], robot, [*COMMON, line], holdout=runs[4:])
+    robot = add_effects([line], runs[:2], PLAIN, holdout=runs[2:]).robot
+    found = diagnose(runs[:2], robot, [*COMMON, line], holdout=runs[2:])
     assert found.verdict == "none"
     assert found.misfit is not None
     assert found.misfit.effect == "soft_tyres"

@@ -203,9 +203,10 @@ def _written_robot(path: Path, base: float = 1.0, effect: Effect | None = None) 
 
 
 def test_the_files_say_the_same_by_every_verb(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Through the command line: drives with gaps, a robot file whose phase is not known."""
+    monkeypatch.setattr("werrimbi_odom.effects.lookup.LIBRARY", (*COMMON, ECCENTRIC))
     robot = _written_robot(tmp_path / "robot.yaml", 1.01, ECCENTRIC)
     folders = []
     for run in drives((50, 51, 52), UNKNOWN_PHASE):

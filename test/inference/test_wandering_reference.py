@@ -26,7 +26,7 @@ EFFECTS = [find(name) for name in (*NAMES, "unequal_wheel_radii", "wheel_radius_
 
 def seen_by_a_localiser(robot: Robot) -> Diagnosis:
     return diagnose(
-        session(range(40, 43), jumps=0, seconds=60.0), robot, EFFECTS, EvaluationOptions()
+        session(range(40, 43), jumps=0, seconds=45.0), robot, EFFECTS, EvaluationOptions()
     )
 
 
@@ -60,7 +60,7 @@ def test_a_mount_askew_is_not_taken_for_wander() -> None:
     """The wander, fitted without it, grows and lasts until it is most of that angle."""
     turned = [
         replace(run, reference=replace(run.reference, yaw=run.reference.yaw + 0.03))
-        for run in session(range(40, 43), jumps=0, seconds=60.0)
+        for run in session(range(40, 43), jumps=0, seconds=45.0)
         if run.reference is not None
     ]
     found = diagnose(turned, TRUE.entered(), [*EFFECTS, find("reference_yaw_offset")])
@@ -73,10 +73,10 @@ def test_a_mount_askew_is_not_taken_for_wander() -> None:
 def test_motion_capture_that_errs_alike_is_no_unknown_law() -> None:
     """Here it was one of the distance: errors that are alike go with something by chance."""
     drives = [
-        driven(seed, lambda time, random: 0.2 * wanders(time, random), f"drive_{seed}")
-        for seed in range(106, 112)
+        driven(seed, lambda at, random: 0.2 * wanders(at, random), f"drive_{seed}", seconds=25.0)
+        for seed in range(209, 212)
     ]
-    found = diagnose(drives[:4], ROBOT, EFFECTS, holdout=drives[4:])
+    found = diagnose(drives[:2], ROBOT, EFFECTS[:2], holdout=drives[2:])
     assert (found.verdict, found.found) == ("none", ())
     assert found.wander is not None
 
@@ -85,9 +85,9 @@ def test_motion_capture_that_errs_alike_for_seconds_is_told() -> None:
     """By a fifth of what a camera's map does, which is no more than the noise of its poses."""
     drives = [
         driven(seed, lambda time, random: 0.2 * wanders(time, random), f"drive_{seed}")
-        for seed in range(80, 86)
+        for seed in range(80, 84)
     ]
-    found = diagnose(drives[:4], ROBOT, EFFECTS, holdout=drives[4:])
+    found = diagnose(drives[:3], ROBOT, EFFECTS, holdout=drives[3:])
     assert found.wander is not None
     assert (found.verdict, found.found) == ("none", ())
     assert 0.5 < found.wander.heading / 1.6e-3 < 2.0
@@ -97,7 +97,7 @@ def test_motion_capture_that_errs_alike_for_seconds_is_told() -> None:
 
 @pytest.mark.parametrize("hotter", [0.0, 0.02])
 def test_independent_errors_stay_absolute_whatever_the_library_lacks(hotter: float) -> None:
-    drives = [driven(seed, nothing, f"drive_{seed}", hotter) for seed in range(90, 94)]
+    drives = [driven(seed, nothing, f"drive_{seed}", hotter) for seed in range(90, 93)]
     found = diagnose(drives, ROBOT, EFFECTS, holdout=[driven(94, nothing, "apart", hotter)])
     assert found.verdict == ("unknown" if hotter else "none")
     assert found.wander is None

@@ -69,7 +69,7 @@ def assert_same_state(one: Odometer, other: Odometer) -> None:
     assert one.distance == other.distance
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(
     records(),
     st.sampled_from([0, 3, 64]),

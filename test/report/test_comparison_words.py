@@ -226,7 +226,10 @@ def test_the_longest_stretches_are_told_in_their_order() -> None:
     assert rest == "So are 3 more such stretches, 1.5 s in all."
 
 
-@pytest.mark.parametrize(("name", "size"), [("floor_slope", 0.005), ("lateral_slip", 0.004)])
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [pytest.param("floor_slope", 0.005, marks=pytest.mark.evidence), ("lateral_slip", 0.004)],
+)
 def test_no_motion_is_as_promised_that_errs_more_at_any_length(
     name: str, size: float, tmp_path: Path
 ) -> None:

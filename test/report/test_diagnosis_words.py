@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, run_of
+from test.inference.driven import run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -252,8 +252,9 @@ def test_drives_that_no_mount_fits_are_not_said_to_be_lost() -> None:
         assert run.reference is not None
         turned = replace(run.reference, yaw=run.reference.yaw + angle)
         runs.append(replace(run, reference=turned))
-    found = diagnose(runs, ROBOT, COMMON)
-    told = AdvisedDiagnosis(found, None, (), changes=changes_between(found, COMMON))
+    effects = [find(name) for name in ("track_width", "reference_yaw_offset", "reference_delay")]
+    found = diagnose(runs, ROBOT, effects)
+    told = AdvisedDiagnosis(found, None, (), changes=changes_between(found, effects))
     words = " ".join(as_text(words_of(told, NextSteps())).split())
     assert "Between run_1 and run_2 the reference came to be mounted otherwise" in words
     assert "No mount of the reference fits all of these drives" in words

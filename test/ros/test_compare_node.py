@@ -132,7 +132,7 @@ def compare(tmp_path: Path) -> Iterator[Any]:
         each.process.kill()
 
 
-def recorded(seed: int, seconds: float = 70.0) -> Any:
+def recorded(seed: int, seconds: float = 50.0) -> Any:
     """A drive of the true robot."""
     random = np.random.default_rng(seed)
     return drive(

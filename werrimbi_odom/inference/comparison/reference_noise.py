@@ -41,31 +41,34 @@ def reference_noise(
     quantity is not measured.
     """
     reading = quantisation_variance(robot)
-    alone = [(0.0, 0.0), (0.0, 0.0)]
+    positions = [item.measured.real for item in residuals]
+    headings = [item.measured_yaw for item in residuals]
+    roundings = _rounding(positions), _rounding(headings)
     if kind == "incremental":
         errors = np.concatenate([_steps(item) for item in residuals])
         sigmas = [_growing(errors[:, part]) for part in ((0, 1), (2,))]
-        reading = 2.0 * reading
+        reading, least = 2.0 * reading, [0.0, 0.0]
     else:
-        sigmas = [
-            _level([_position_differences(item) for item in residuals]),
-            _level([_heading_differences(item) for item in residuals]),
-        ]
-        alone = [
-            (
-                _roughness([item.measured for item in residuals]),
-                _roughness([item.predicted for item in residuals]),
+        places = [_position_differences(item) for item in residuals]
+        turns = [_heading_differences(item) for item in residuals]
+        sigmas = [_level(places), _level(turns)]
+        least = [
+            _least(
+                float(reading[0]),
+                [item[1][0] for item in places if 1 in item],
+                [_third(item.measured) for item in residuals],
+                [_third(item.predicted) for item in residuals],
             ),
-            (
-                _roughness([item.measured_yaw for item in residuals]),
-                _roughness([item.predicted_yaw for item in residuals]),
+            _least(
+                float(reading[2]),
+                [item[1][0] for item in turns if 1 in item],
+                [_third(item.measured_yaw) for item in residuals],
+                [_third(item.predicted_yaw) for item in residuals],
             ),
         ]
-    positions = [item.measured.real for item in residuals]
-    headings = [item.measured_yaw for item in residuals]
     return (
-        _less(sigmas[0], float(reading[0]), *alone[0], _rounding(positions)),
-        _less(sigmas[1], float(reading[2]), *alone[1], _rounding(headings)),
+        _less(sigmas[0], float(reading[0]), max(least[0], roundings[0])),
+        _less(sigmas[1], float(reading[2]), max(least[1], roundings[1])),
     )
 
 
@@ -239,29 +242,32 @@ def _third(measured: NDArray[np.complex128] | Floats) -> Floats:
     return found[np.isfinite(found)].view(np.float64)
 
 
-def _roughness(paths: Sequence[NDArray[Any]]) -> float:
-    """Variance of one pose by the third differences of paths alone; 0 if there are too few."""
-    every = np.concatenate([_third(path) for path in paths])
-    return _variance(every) if every.size >= rules.DIFFERENCES else 0.0
+def _least(
+    reading: float, left: Sequence[Floats], measured: Sequence[Floats], counted: Sequence[Floats]
+) -> float:
+    """Least variance of a pose by third differences between neighbours, whatever the counts err.
+
+    The measured path alone has the noise and the motion (`measured`), and that by the counts has
+    their rounding and the motion (`counted`). Where that rounding (`reading`) may be all that the
+    difference of both has (`left`), the three tell the noise as three clocks do (Gray and Allan, "A
+    method for estimating the frequency stability of an individual oscillator", 1974). It is no more
+    than the measured path has.
+    """
+    if min(sum(map(len, each)) for each in (left, measured, counted)) < rules.DIFFERENCES:
+        return 0.0
+    both, seen, told = (_variance(np.concatenate(each)) for each in (left, measured, counted))
+    some = rules.NOISE_LEFT * both
+    between = 0.5 * (both + seen - told) if reading > some else some
+    return min(seen, max(between, some), both)
 
 
-def _less(
-    variance: float | None, reading: float, measured: float, counted: float, rounding: float
-) -> float | None:
+def _less(variance: float | None, reading: float, least: float) -> float | None:
     """Standard deviation without encoder quantisation, which the legs account for themselves.
 
     Counts that the driving interpolates err by less than that: taken off whole, nothing would be
-    left, whatever the noise. The measured path alone has the noise and the motion (`measured`), and
-    that by the counts has their rounding and the motion (`counted`): with the difference of both,
-    `variance`, they tell the noise as three clocks do (Gray and Allan, "A method for estimating the
-    frequency stability of an individual oscillator", 1974). It is no more than the measured path
-    has.
+    left, whatever the noise.
     """
-    if variance is None:
-        return None
-    between = max(0.5 * (variance + measured - counted), rules.NOISE_LEFT * variance)
-    least = min(measured, between, variance)
-    return float(np.sqrt(max(variance - reading, least, rounding)))
+    return None if variance is None else float(np.sqrt(max(variance - reading, least)))
 
 
 def _rounding(values: Sequence[Floats]) -> float:
