@@ -111,7 +111,11 @@ def test_what_is_published_is_semi_definite_whatever_rounding_made_of_it(entries
         expected = given_in.matrix()
         gone = expected.diagonal() < sys.float_info.min
         expected[gone], expected[:, gone] = 0.0, 0.0
-        np.testing.assert_allclose(rounded.matrix(), expected, rtol=1e-9, atol=5e-324)
+        # A covariance beside variances that are 1e8 times as large is known to their rounding.
+        unit = np.sqrt(expected.diagonal())
+        beside = np.abs(rounded.matrix() - expected) <= 1e-15 * np.outer(unit, unit)
+        close = np.isclose(rounded.matrix(), expected, rtol=1e-9, atol=5e-324)
+        assert (close | beside).all()
 
 
 @given(BLOCKS, SCALES)
