@@ -143,15 +143,15 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     rolled = 0.5 * float(np.abs(wheels[-1]).sum())
     half = 0.5 * float(np.abs(ways[0]).sum()) / rolled if rolled > 0.0 else 0.5
     apart, rounding = min(_residual(sign * each, wheels, steps, half) for each in ways)
-    turned = np.inf, 0.0
-    if turning.sum() > rules.CIRCLE_FEWEST:
-        turned = _residual(turns[turning], wheels[:, turning], steps, 0.0)
     # On lines wheels in step round off the same, so only bends tell.
     rolled_apart = np.abs(np.diff(wheels[-1], axis=-1))[:, 0]
-    bends = turning & (rolled_apart > max(ticks))
+    bends, a_metre = turning & (rolled_apart > max(ticks)), 0.0
     if bends.sum() > rules.CIRCLE_FEWEST:
+        turning = bends
         a_metre = float(np.abs(turns[bends]).mean() / rolled_apart[bends].mean())
-        turned = _residual(turns[bends], wheels[:, bends], steps, a_metre)
+    turned = np.inf, 0.0
+    if turning.sum() > rules.CIRCLE_FEWEST:
+        turned = _residual(turns[turning], wheels[:, turning], steps, a_metre)
     return Closeness(apart, float(np.median(np.abs(ways[0]))), rounding, *turned)
 
 

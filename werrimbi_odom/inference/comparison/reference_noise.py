@@ -52,19 +52,11 @@ def reference_noise(
         places = [_position_differences(item) for item in residuals]
         turns = [_heading_differences(item) for item in residuals]
         sigmas = [_level(places), _level(turns)]
+        gone = [item.predicted for item in residuals]
+        turned = [item.predicted_yaw for item in residuals]
         least = [
-            _least(
-                float(reading[0]),
-                [item[1][0] for item in places if 1 in item],
-                [_third(item.measured) for item in residuals],
-                [_third(item.predicted) for item in residuals],
-            ),
-            _least(
-                float(reading[2]),
-                [item[1][0] for item in turns if 1 in item],
-                [_third(item.measured_yaw) for item in residuals],
-                [_third(item.predicted_yaw) for item in residuals],
-            ),
+            _least(float(reading[0]), places, [item.measured for item in residuals], gone),
+            _least(float(reading[2]), turns, headings, turned),
         ]
     return (
         _less(sigmas[0], float(reading[0]), max(least[0], roundings[0])),
@@ -243,19 +235,26 @@ def _third(measured: NDArray[np.complex128] | Floats) -> Floats:
 
 
 def _least(
-    reading: float, left: Sequence[Floats], measured: Sequence[Floats], counted: Sequence[Floats]
+    reading: float,
+    left: Sequence[Differences],
+    measured: Sequence[NDArray[Any]],
+    counted: Sequence[NDArray[Any]],
 ) -> float:
     """Least variance of a pose by third differences between neighbours, whatever the counts err.
 
     The measured path alone has the noise and the motion (`measured`), and that by the counts has
     their rounding and the motion (`counted`). Where that rounding (`reading`) may be all that the
-    difference of both has (`left`), the three tell the noise as three clocks do (Gray and Allan, "A
-    method for estimating the frequency stability of an individual oscillator", 1974). It is no more
-    than the measured path has.
+    differences of both have (`left`), the three tell the noise as three clocks do (Gray and Allan,
+    "A method for estimating the frequency stability of an individual oscillator", 1974). It is no
+    more than the measured path has.
     """
-    if min(sum(map(len, each)) for each in (left, measured, counted)) < rules.DIFFERENCES:
+    sides = (
+        [item[1][0] for item in left if 1 in item],
+        *([_third(path) for path in paths] for paths in (measured, counted)),
+    )
+    if min(sum(map(len, each)) for each in sides) < rules.DIFFERENCES:
         return 0.0
-    both, seen, told = (_variance(np.concatenate(each)) for each in (left, measured, counted))
+    both, seen, told = (_variance(np.concatenate(each)) for each in sides)
     some = rules.NOISE_LEFT * both
     between = 0.5 * (both + seen - told) if reading > some else some
     return min(seen, max(between, some), both)

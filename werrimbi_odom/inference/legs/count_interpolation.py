@@ -66,9 +66,7 @@ class Counters:
         Between two messages both have their weights in `between_messages`, and what they round off
         is partly made up for.
         """
-        within = np.clip(time, self.time[0], self.time[-1])
-        before = np.clip(np.searchsorted(self.time, within) - 1, 0, self.time.size - 2)
-        share = (within - self.time[before]) / (self.time[before + 1] - self.time[before])
+        _, _, share = _place(time, self.time)
         weight = share * share * (3.0 - 2.0 * share)
         return np.asarray(1.0 - 2.0 * rules.ROUNDING_SHARED * weight * (1.0 - weight))
 
@@ -229,10 +227,7 @@ def between_messages(time: Floats, known: Floats, *columns: Floats) -> Floats:
     robot stands. Slopes at the messages are those of Fritsch and Butland (SIAM J. Sci. Stat.
     Comput. 5, 1984), computed only where needed.
     """
-    within = np.clip(time, known[0], known[-1])
-    before = np.clip(np.searchsorted(known, within, side="right") - 1, 0, known.size - 2)
-    width = known[before + 1] - known[before]
-    share = (within - known[before]) / width
+    before, width, share = _place(time, known)
     rest = 1.0 - share
     found = []
     for values in columns:
@@ -244,6 +239,14 @@ def between_messages(time: Floats, known: Floats, *columns: Floats) -> Floats:
             + width * share * rest * (start * rest - end * share)
         )
     return np.stack(found, axis=-1)
+
+
+def _place(time: Floats, known: Floats) -> tuple[NDArray[np.intp], Floats, Floats]:
+    """Interval of each time (n,): index and width, and what share of it has gone by."""
+    within = np.clip(time, known[0], known[-1])
+    before = np.clip(np.searchsorted(known, within, side="right") - 1, 0, known.size - 2)
+    width = known[before + 1] - known[before]
+    return before, width, (within - known[before]) / width
 
 
 def _slope(time: Floats, values: Floats, at: NDArray[np.intp]) -> Floats:
