@@ -77,6 +77,18 @@ def test_errors_that_are_told_are_those_of_the_file(runs: list[Run]) -> None:
     )
 
 
+def test_drives_held_out_that_err_far_more_are_to_be_fitted_too(runs: list[Run]) -> None:
+    """A slippery spot that one of seven drives touched: "there is nothing to add", beside 10 mm."""
+    found = diagnosed(runs, holding(0.04))
+    for held_out, times, said in ((True, 3.0, True), (True, 1.5, False), (False, 3.0, False)):
+        unlike = replace(found.holdout, before=times * found.train.before)
+        told = AdvisedDiagnosis(replace(found, holdout=unlike), None, (), held_out=held_out)
+        words_told = " ".join(as_text(words_of(told, NextSteps())).split())
+        assert ("Next: fit some of the drives held out too" in words_told) is said
+        assert ("nothing to add" in words_told) is not said
+        assert ("so they are not noise alone" in words_told) is (times > 2.0)
+
+
 def test_events_that_come_with_starts_are_no_noise(runs: list[Run]) -> None:
     """The model was said to explain the drives, and, below, to lack a law."""
     alike = Alike("start or stop", 8, 8, (math.nan, math.nan), 1e-6, of_reference=False)

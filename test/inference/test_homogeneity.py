@@ -26,6 +26,7 @@ from werrimbi_odom.inference.diagnosis.homogeneity import (
     homogeneity_of_effect,
     lasting,
 )
+from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
@@ -304,6 +305,59 @@ def test_a_delay_is_named_of_one_short_drive(seed: int) -> None:
         holdout=[late(seed + 1, 0.1)],
     )
     assert "reference_delay" in found.found
+
+
+def regular(seed: int) -> Run:
+    """Drives to and fro with spins, wheels as regular as a simulator's; a gyro finer than counts.
+
+    A count of 0.7 mm is 1.4 mrad, and the gyro tells 0.3 mrad.
+    """
+    random = np.random.default_rng(seed)
+    time = np.arange(0.0, 60.0, 0.02)
+    spins = (time % 12.0) > 10.5
+    window = np.convolve(np.ones(21), np.ones(21)) / 21**2
+    ahead, about = (
+        np.convolve(np.pad(speed, 20, mode="edge"), window, "valid")
+        for speed in (
+            np.where(spins, 0.0, np.clip(3.0 * np.sin(0.7 * time), -0.8, 0.8)),
+            1.0 * spins,
+        )
+    )
+    ways = [0.02 * (ahead + side * REGULAR.track * about) for side in (-1.0, 1.0)]
+    true = [way + 4e-4 * np.sqrt(np.abs(way)) * random.normal(size=way.size) for way in ways]
+    counts = [
+        np.floor(np.cumsum(way) / REGULAR.left_tick + random.uniform()).astype(np.int64)
+        for way in ways
+    ]
+    yaw = np.cumsum(true[1] - true[0]) / REGULAR.track
+    seen = np.arange(2, time.size - 2, 5)
+    wander = np.cumsum(1e-4 * random.normal(size=seen.size))
+    told = np.interp(time[seen] + 0.004, time, yaw) + wander
+    told += 2e-4 * random.normal(size=seen.size)
+    nowhere = np.full(seen.size, np.nan)
+    reference = Reference(time[seen] + 0.004, nowhere, nowhere, told)
+    return Run(str(seed), Path(str(seed)), Ticks(time, *counts), reference)
+
+
+REGULAR = Robot(0.53, 0.0825, 720.0, 720.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+
+
+def test_a_law_of_several_times_the_turn_is_the_rounding_of_the_counts() -> None:
+    """On straight drives counted turns and heading errors are the same roundings."""
+    options = EvaluationOptions(reference_kind="incremental")
+    runs = concatenated(match_for_fit([regular(20 + each) for each in range(4)], REGULAR, 1.0))
+    point = fit_calibration(runs, REGULAR, options).point
+    cells = [
+        cell
+        for cell in dependences(runs, point, CALIBRATION)
+        if cell.amount == Amount("heading", "turn")
+        and cell.variable.name == "yaw_rate_size"
+        and cell.form == "curve"
+    ]
+    (told,) = lasting(runs, point, CALIBRATION, cells)
+    assert told.cell.p_value < 1e-8, "it is there"
+    assert np.abs(told.cell.coefficients).max() > 3.0, "and is nothing that a wheel does"
+    assert told.p_value == 1.0
 
 
 def test_axes_that_begin_anew_have_no_common_direction() -> None:

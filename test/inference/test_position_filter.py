@@ -12,6 +12,7 @@ import pytest
 from test.inference.positions import FRAME, positions_of_a_point
 from test.model.drives import ROBOT
 from werrimbi_odom.inference.comparison.position_filter import position_errors
+from werrimbi_odom.inference.comparison.residuals import chained, fitted_heading
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
@@ -47,6 +48,28 @@ def test_an_error_along_the_way_turns_nobody(noises: tuple[float, float]) -> Non
     assert np.abs(found.heading).max() < 0.02
     assert found.error[1:, 0] == pytest.approx(-0.07, abs=0.01)
     assert np.abs(found.error[1:, 1]).max() < 0.02
+
+
+def test_a_spin_on_the_spot_takes_no_heading_away() -> None:
+    """Drives that begin with a spin, by satellites (8 mm): legs of 1 m after it ended 33 cm off."""
+    noise, size, nothing = 8e-3, [], np.zeros((8, 3, 3))
+    relative = np.array([[0.02, 0.01, 1.5], *[[1.0, 0.0, 0.3]] * 7])
+    path = chained(relative)[0]
+    for seed in range(40):
+        random = np.random.default_rng(seed)
+        seen = path + noise * random.normal(size=(2, path.size)).T @ [1.0, 1j]
+        places = np.stack([seen.real, seen.imag], axis=-1)
+        heading = np.array([fitted_heading(path, seen)])
+        ends = np.array([0, 8])
+        standing = np.zeros(8, dtype=np.bool_)
+        found = position_errors(
+            relative, nothing, nothing, places[:-1], places[1:], noise**2, ends, heading, standing
+        )
+        size.append(np.linalg.norm(found.error[1:, :2], axis=1))
+        # of no leg more is promised than of its own noise and of a heading by a whole leg of 1 m
+        assert found.reference[2:, 0, 0] == pytest.approx(2.0 * noise**2, rel=0.5)
+    assert np.sqrt(np.mean(np.square(size))) < 2.0 * np.sqrt(2.0) * noise
+    assert np.max(size) < 6.0 * np.sqrt(2.0) * noise
 
 
 SPINS, BENDS = [1.0, -1.0, 1.0, -1.0], [0.3, -0.3, 0.2]

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import of_each_run, residual_innovations
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
-from werrimbi_odom.inference.linear import DETERMINED, nuisance, score_test
+from werrimbi_odom.inference.linear import DETERMINED, Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.model.pose import Floats
 
@@ -107,8 +107,29 @@ def lasting(
         gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
         of_all = by_run.sum(axis=1)
         p_value = _chance(gain, cell.degrees, free, of_all, rest, parts, noise_known(runs, parts))
+        if p_value < rules.SURE and not _within_reach(runs, point, cell, frame, rest):
+            p_value = 1.0
         alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), of_all)
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
+
+
+def _within_reach(
+    runs: Concatenated, point: Point, cell: Dependence, frame: Nuisance, rest: Floats
+) -> bool:
+    """Whether errors that wheels can have explain most of what a cell does.
+
+    On straight drives the counted turns are the rounding of the counts. So are the heading errors,
+    and a law of four times the turn explains them.
+    """
+    if cell.variable.per_run:
+        return True
+    most = cell.amount.most
+    errors = [side @ cell.coefficients for side in functions_of(cell.variable)[cell.form]]
+    if all(np.max(np.abs(side), initial=0.0) <= most for side in errors):
+        return True
+    limited = [np.clip(side, -most, most)[:, None] for side in errors]
+    left_by = rest + frame.residual(pattern_of(runs, point, cell, limited))[:, 0]
+    return float(rest @ rest - left_by @ left_by) > rules.WITHIN_REACH * cell.gain
 
 
 def _added_up(columns: Floats, of: Sequence[str]) -> Floats:
@@ -117,19 +138,26 @@ def _added_up(columns: Floats, of: Sequence[str]) -> Floats:
     return np.stack([columns[:, [name == each for each in of]].sum(axis=1) for name in names], 1)
 
 
-def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
-    """Change of the whitened innovations for a dependence of a cell's form, (3 m, k)."""
-    own = unexpected(runs, point).marks(change_of(runs, point, cell))[..., :-1]
+def pattern_of(
+    runs: Concatenated, point: Point, cell: Dependence, functions: Sequence[Floats] | None = None
+) -> Floats:
+    """Change of the whitened innovations for a dependence of a cell's form, (3 m, k).
+
+    `functions`: in place of the form's, those of the left and of the right wheel, (n, k) each.
+    """
+    own = unexpected(runs, point).marks(change_of(runs, point, cell, functions))[..., :-1]
     if cell.variable.per_run:
         own = of_each_run(runs, own)
     return np.asarray(own.reshape(3 * runs.count, -1))
 
 
-def change_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
+def change_of(
+    runs: Concatenated, point: Point, cell: Dependence, functions: Sequence[Floats] | None = None
+) -> Floats:
     """Change of the legs for a dependence of a cell's form, (m, 3, k), the same in all runs."""
     path = path_of(point.model, runs)
     sides = zip(
-        functions_of(cell.variable)[cell.form],
+        functions or functions_of(cell.variable)[cell.form],
         step_jacobians(runs, path, [cell.amount], point),
         strict=True,
     )

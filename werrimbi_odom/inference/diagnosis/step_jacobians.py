@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
@@ -49,6 +50,12 @@ class Amount:
         """Whether a robot seen in a mirror has the same error; not one of one wheel."""
         aside = self.channel in ("sideways", "heading")
         return self.channel not in ("left", "right") and aside == (self.per == "turn")
+
+    @property
+    def most(self) -> float:
+        """Largest error per unit of the quantity that a robot can have."""
+        per_metre = self.channel == "heading" and self.per in ("travel", "path")
+        return rules.MOST_TURN if per_metre else rules.MOST_ERROR
 
 
 AMOUNTS = (

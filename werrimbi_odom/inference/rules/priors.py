@@ -65,7 +65,7 @@ mark on the floor is hit to 2 mm, and two of them, 0.57 m apart on the robot, gi
 
 UNKNOWN_HEADING = 1.0
 """Prior variance of a heading that is fitted to the positions of a drive [rad²]: a radian, so that
-it has no influence."""
+it has no influence. The largest of one that aligns a drive with them."""
 
 CALIBRATION_BOUNDS = (0.25, 4.0)
 """Bounds of the multipliers of base and radii. Skidding wheels turn a robot as on a base of 1.5

@@ -67,11 +67,7 @@ _RARE = 0.02
 """Share of the path at both ends of a variable's range that is too rare to report."""
 
 
-_MOST, _MOST_TURN = 1.0, 2.0 * math.pi
-"""Largest errors that are reported: 1 m per m, 1 rad per rad, and one turn per metre. Larger ones
-come from steps in which the amount was almost zero."""
 _UNTOLD = "by more than wheels can do, for hardly any of it was driven"
-_TURNS_PER_METRE = {("heading", "travel"), ("heading", "path")}
 
 
 def short_name(variable: str) -> str:
@@ -148,7 +144,7 @@ def strength_words(cell: Dependence) -> str:
     else:
         low, high = _quantiles(values, _weights(cell), np.array([_RARE, 1.0 - _RARE]))
         size = 0.5 * float(high - low)
-    if size > (_MOST_TURN if (cell.channel, cell.amount.per) in _TURNS_PER_METRE else _MOST):
+    if size > cell.amount.most:
         return _UNTOLD
     sign = "" if cell.variable.name == CONSTANT else "±"
     return f"{sign}{_in_unit(cell, size)}"

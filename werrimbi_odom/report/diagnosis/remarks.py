@@ -355,13 +355,21 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def like_noise(diagnosis: Diagnosis) -> str:
-    """That held-out errors look like noise, or that they are larger than those of the fitted."""
-    held, fitted = diagnosis.holdout, diagnosis.train
-    if held.before > rules.UNLIKE * fitted.before:
-        error = error_words(fitted.before, fitted.unit)
-        return f"; on what was fitted they are {error}, so they are not noise alone"
-    return ", and they look like noise"
+def like_noise(advised: AdvisedDiagnosis, *, noise: bool) -> str:
+    """That held-out errors look like noise, or that they are larger than those of the fitted.
+
+    `noise`: whether the fitted drives leave noise.
+    """
+    if not unlike_the_fitted(advised.diagnosis):
+        return ", and they look like noise." if noise else "."
+    fitted = advised.diagnosis.train
+    error = error_words(fitted.before, fitted.unit)
+    return f"; on what was fitted they are {error}, so they are not noise alone."
+
+
+def unlike_the_fitted(diagnosis: Diagnosis) -> bool:
+    """Whether held-out errors are far larger than those of the fitted drives."""
+    return diagnosis.holdout.before > rules.UNLIKE * diagnosis.train.before
 
 
 def drowned(advised: AdvisedDiagnosis) -> list[str]:

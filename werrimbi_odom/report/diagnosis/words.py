@@ -118,8 +118,8 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines = [f"Nothing is missing that these drives could show{ending}", *old, *_rest(advised)]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
-        like = remarks.like_noise(diagnosis) if noise else ""
-        lines.append(f"Its errors on {phrases.judged(advised)} are {errors}{like}.")
+        like = remarks.like_noise(advised, noise=noise)
+        lines.append(f"Its errors on {phrases.judged(advised)} are {errors}{like}")
         lines += large
     lines += remarks.instead_of_held(diagnosis)
     if wanders:
@@ -139,6 +139,12 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             *lines,
             "Next: fit them anew, together with all calibration:",
             f"    {steps.add(diagnosis.outdated)}",
+        ]
+    if advised.held_out and remarks.unlike_the_fitted(diagnosis):
+        return [
+            *lines,
+            "Next: fit some of the drives held out too, and hold out others: something happens on "
+            "them that the fitted ones hardly show.",
         ]
     lines.append(
         "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
