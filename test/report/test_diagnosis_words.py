@@ -90,12 +90,11 @@ def test_what_was_put_aside_and_errs_far_more_is_not_noise_alone() -> None:
     """A half turn by a gyro whose stamps jitter: 4.12° put aside, 0.88° fitted."""
     fitted, aside = (Sides(math.radians(each), math.radians(each), "rad") for each in (0.88, 4.12))
     odd: Any = SimpleNamespace(train=fitted, holdout=aside)
-    told: Any = SimpleNamespace(diagnosis=odd)
     words = "; on what was fitted they are 0.88°, so they are not noise alone."
-    assert [like_noise(told, noise=noise) for noise in (True, False)] == [words, words]
+    assert [like_noise(odd, noise=noise) for noise in (True, False)] == [words, words]
     odd.holdout = Sides(1.5 * fitted.before, 1.5 * fitted.after, "rad")
-    assert like_noise(told, noise=True) == ", and they look like noise."
-    assert like_noise(told, noise=False) == "."
+    assert like_noise(odd, noise=True) == ", and they look like noise."
+    assert like_noise(odd, noise=False) == "."
 
 
 def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(

@@ -98,13 +98,14 @@ errs). Of a barely significant dependence (chi-squared of 60 for 14 parameters) 
 for 12, once in 5000 by chance, and are tested at a hundredth (`SURE_WHEN_ASKED`)."""
 
 MOST_ERROR, MOST_TURN = 1.0, 2.0 * math.pi
-"""Largest errors that are reported: 1 m per m, 1 rad per rad, and one turn per metre. Larger ones
-come from steps in which the amount was almost zero."""
+"""Largest errors that a robot can have: 1 m per m, 1 rad per rad, and one turn per metre. Larger
+ones come from steps in which the amount was almost zero."""
 
 WITHIN_REACH = 0.8
 """Share of a dependence's gain that it has without larger errors, below which it is none. Chosen:
-one of four times the counted turn, where that is the rounding of the counts, keeps 0.44; of a law
-with an odd value where hardly anything was driven nearly all is kept."""
+one of four times the counted turn, where that is the rounding of the counts, keeps 0.44 at most (a
+quarter of it, 2 / 4 - 1 / 16); of a law with an odd value where hardly anything was driven nearly
+all is kept."""
 
 CELLS_ASKED = 20
 """Most significant dependences that are tested for homogeneity: each costs a pass of the filter,

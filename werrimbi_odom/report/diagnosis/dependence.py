@@ -66,7 +66,6 @@ _AMOUNTS = {
 _RARE = 0.02
 """Share of the path at both ends of a variable's range that is too rare to report."""
 
-
 _UNTOLD = "by more than wheels can do, for hardly any of it was driven"
 
 

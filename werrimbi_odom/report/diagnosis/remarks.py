@@ -355,15 +355,14 @@ def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def like_noise(advised: AdvisedDiagnosis, *, noise: bool) -> str:
+def like_noise(diagnosis: Diagnosis, *, noise: bool) -> str:
     """That held-out errors look like noise, or that they are larger than those of the fitted.
 
     `noise`: whether the fitted drives leave noise.
     """
-    if not unlike_the_fitted(advised.diagnosis):
+    if not unlike_the_fitted(diagnosis):
         return ", and they look like noise." if noise else "."
-    fitted = advised.diagnosis.train
-    error = error_words(fitted.before, fitted.unit)
+    error = error_words(diagnosis.train.before, diagnosis.train.unit)
     return f"; on what was fitted they are {error}, so they are not noise alone."
 
 

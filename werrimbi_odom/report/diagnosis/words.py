@@ -118,7 +118,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines = [f"Nothing is missing that these drives could show{ending}", *old, *_rest(advised)]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
-        like = remarks.like_noise(advised, noise=noise)
+        like = remarks.like_noise(diagnosis, noise=noise)
         lines.append(f"Its errors on {phrases.judged(advised)} are {errors}{like}")
         lines += large
     lines += remarks.instead_of_held(diagnosis)
