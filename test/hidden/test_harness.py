@@ -359,6 +359,7 @@ SCALE = ("track_width", "reference_scale")
         (["floor_slope"], "localiser", said("unknown"), "wrong"),
         (["radius_by_channel"], "localiser", said("unknown"), "missed"),
         (["radius_by_channel"], "localiser", said("named", "track_width"), "wrong"),
+        (["radius_by_channel"], "localiser", said("named", "wheel_radius_scale"), "named"),
     ],
 )  # fmt: skip
 def test_what_a_verdict_by_an_ordinary_reference_is_worth(

@@ -98,10 +98,11 @@ def lasting(
     prediction = predict_all(point.model, runs)
     frame, rest = residual_innovations(runs, point, numbers, prediction)
     parts = parts_of_innovations(runs, rest)
-    if parts is None:
-        yield from (Lasting(cell, 0.0, None) for cell in cells)
-        return
     for cell in cells:
+        if parts is None:
+            reach = _within_reach(runs, point, cell, frame, rest)
+            yield Lasting(cell, 0.0 if reach else 1.0, None)
+            continue
         free = frame.residual(pattern_of(runs, point, cell))
         by_run = free.reshape(rest.size, len(runs.runs) if cell.variable.per_run else 1, -1)
         gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
