@@ -100,37 +100,40 @@ def lasting(
     parts = parts_of_innovations(runs, rest)
     for cell in cells:
         if parts is None:
-            reach = _within_reach(runs, point, cell, frame, rest)
-            yield Lasting(cell, 0.0 if reach else 1.0, None)
+            shown = _shown_by_the_robot(runs, point, cell, frame, rest)
+            yield Lasting(cell, 0.0 if shown else 1.0, None)
             continue
         free = frame.residual(pattern_of(runs, point, cell))
         by_run = free.reshape(rest.size, len(runs.runs) if cell.variable.per_run else 1, -1)
         gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
         of_all = by_run.sum(axis=1)
         p_value = _chance(gain, cell.degrees, free, of_all, rest, parts, noise_known(runs, parts))
-        if p_value < rules.SURE and not _within_reach(runs, point, cell, frame, rest):
+        if p_value < rules.SURE and not _shown_by_the_robot(runs, point, cell, frame, rest):
             p_value = 1.0
         alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), of_all)
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
-def _within_reach(
+def _shown_by_the_robot(
     runs: Concatenated, point: Point, cell: Dependence, frame: Nuisance, rest: Floats
 ) -> bool:
-    """Whether errors that wheels can have explain most of what a cell does.
+    """Whether most of what a cell does is no rounding of the counts.
 
-    On straight drives the counted turns are the rounding of the counts. So are the heading errors,
-    and a law of four times the turn explains them.
+    On straight drives that rounding is the counted turn, and the heading error with the opposite
+    sign (errors in variables; Fuller 1987): a law of the turn explains it, often one of several
+    times the turn. So errors that wheels can have must explain it, and in legs that turned by more.
     """
     if cell.variable.per_run:
         return True
-    most = cell.amount.most
+    most, robot = cell.amount.most, point.model.robot
     errors = [side @ cell.coefficients for side in functions_of(cell.variable)[cell.form]]
-    if all(np.max(np.abs(side), initial=0.0) <= most for side in errors):
-        return True
     limited = [np.clip(side, -most, most)[:, None] for side in errors]
     left_by = rest + frame.residual(pattern_of(runs, point, cell, limited))[:, 0]
-    return float(rest @ rest - left_by @ left_by) > rules.WITHIN_REACH * cell.gain
+    gain = np.reshape(rest**2 - left_by**2, (runs.count, 3)).sum(axis=1)
+    if cell.amount.per == "turn" or (runs.headings_alone and cell.amount.channel == "along"):
+        rounding = 2.0 * (robot.left_tick + robot.right_tick) / robot.track
+        gain = gain[np.abs(predict_all(point.model, runs).turn) > rounding]
+    return float(gain.sum()) > rules.SHOWN_BY_THE_ROBOT * cell.gain
 
 
 def _added_up(columns: Floats, of: Sequence[str]) -> Floats:

@@ -101,9 +101,10 @@ MOST_ERROR, MOST_TURN = 1.0, 2.0 * math.pi
 """Largest errors that a robot can have: 1 m per m, 1 rad per rad, and one turn per metre. Larger
 ones come from steps in which the amount was almost zero."""
 
-WITHIN_REACH = 0.8
-"""Share of a dependence's gain that it has without larger errors, below which it is none. Chosen:
-one of four times the counted turn, where that is the rounding of the counts, keeps 0.44 at most (a
+SHOWN_BY_THE_ROBOT = 0.6
+"""Share of a dependence's gain that it has without larger errors and, one of the turn, by legs that
+turn by more than the rounding of the counts (a count of each wheel at either end); below, it is
+none. Chosen: one of four times the counted turn, where that is the rounding, keeps 0.44 at most (a
 quarter of it, 2 / 4 - 1 / 16); of a law with an odd value where hardly anything was driven nearly
 all is kept."""
 
