@@ -34,7 +34,7 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.remarks import not_shown
+from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
 
 TRUE = WhiteNoiseRobot()
 ROBOT = TRUE.entered(0.05)

@@ -42,7 +42,7 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.proposal import for_twins
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.remarks import or_the_reference_s_scale
+from werrimbi_odom.report.diagnosis.reference_remarks import or_the_reference_s_scale
 from werrimbi_odom.report.number_format import quantity
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=5e-4, right_wheel_noise=5e-4)

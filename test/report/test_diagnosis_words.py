@@ -26,13 +26,8 @@ from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.adding.words import _headline
 from werrimbi_odom.report.diagnosis import as_json, phrases, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
-from werrimbi_odom.report.diagnosis.remarks import (
-    drowned,
-    instead_of_held,
-    like_noise,
-    nearest,
-    not_shown,
-)
+from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
+from werrimbi_odom.report.diagnosis.remarks import drowned, instead_of_held, like_noise, nearest
 from werrimbi_odom.report.diagnosis.words import NextSteps, how_long, words_of
 from werrimbi_odom.report.terminal import as_text
 

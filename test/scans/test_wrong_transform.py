@@ -16,7 +16,7 @@ from werrimbi_odom import simulation as sim
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.remarks import transform_to_mend
+from werrimbi_odom.report.diagnosis.reference_remarks import transform_to_mend
 
 
 def test_of_a_wrong_transform_it_is_said_what_it_should_be(tmp_path: Path) -> None:

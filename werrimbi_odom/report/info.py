@@ -15,7 +15,8 @@ from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
-from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
+from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS
+from werrimbi_odom.report.info_words import words_of
 from werrimbi_odom.report.number_format import counted, picked
 from werrimbi_odom.report.phrases import left_out_json
 

@@ -28,9 +28,10 @@ from werrimbi_odom.inference.diagnosis.effect_support import (
     support_of,
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.fit_statistics import wald_statistic
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, wald_statistic
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter

@@ -17,7 +17,8 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
     sizes_needed,
     with_sizes,
 )
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, grain_of
+from werrimbi_odom.inference.diagnosis.fit_statistics import grain_of
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
 from werrimbi_odom.inference.distributions import upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated

@@ -1,25 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Remarks on a diagnosis: what remains, objections, and what the drives cannot show."""
+"""Remarks on a diagnosis: what remains, and objections."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
-from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
-from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
-from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
@@ -29,7 +23,6 @@ from werrimbi_odom.report.number_format import (
     listed,
     quantity,
     two_digits,
-    with_std,
 )
 
 
@@ -94,32 +87,6 @@ def left_is_noise(advised: AdvisedDiagnosis) -> list[str]:
             "something slower is in it."
         )
     return ["".join(lines)]
-
-
-def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
-    """That effects of the floor are not among those asked for, where axes begin anew."""
-    if not diagnosis.runs.own_axes:
-        return []
-    return [
-        "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched scans "
-        "begin anew with each drive. Motion capture or a localiser's map shows it."
-    ]
-
-
-def wandering(diagnosis: Diagnosis) -> list[str]:
-    """Remark that the reference was taken as absolute, and wanders."""
-    wander = diagnosis.wander
-    if wander is None:
-        return []
-    return [
-        "But: the reference is not absolute. Its error wanders, by "
-        f"{error_words(wander.place_in_a_second, 'm')} and "
-        f"{error_words(wander.heading_in_a_second, 'rad')} in a second, and by "
-        f"{error_words(wander.place, 'm')} and {error_words(wander.heading, 'rad')} in the long "
-        f"run (some {two_digits(wander.seconds)} s), as a localiser's does. That explains these "
-        "drives far better than poses that err one by one. So all of this is reckoned with it, as "
-        "by --reference-kind local_map; compare and add want that option too."
-    ]
 
 
 def scatter(advised: AdvisedDiagnosis) -> list[str]:
@@ -187,117 +154,6 @@ def otherwise(diagnosis: Diagnosis) -> list[str]:
             "of held-out drives where there are no others."
         )
     return lines
-
-
-def not_shown(advised: AdvisedDiagnosis) -> list[str]:
-    """Effects that would not have been detected, and what would show them."""
-    # Named effects were detected, with more than their typical size.
-    found = advised.diagnosis.found
-    hidden = [sight for sight in advised.sights if sight.hidden and sight.effect not in found]
-    if not hidden:
-        return []
-    by_drive = [
-        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
-    ]
-    lines = []
-    if by_drive:
-        lines.append(
-            f"These drives cannot show whether there is, of usual size, {listed(by_drive, 'or')}."
-        )
-    needing = [sight.effect for sight in hidden if sight.needs_more]
-    if needing:
-        lines.append(
-            f"No drive shows {listed(needing)} with such a reference; one "
-            f"{_better_reference(advised.diagnosis)}."
-        )
-    return lines
-
-
-def _better_reference(diagnosis: Diagnosis) -> str:
-    """What motion capture has over the reference of these drives, which may be one."""
-    runs, point = diagnosis.runs, diagnosis.final.point
-    if runs.own_axes:
-        return "that measures finely, in axes of the floor, does (motion capture)"
-    if not np.isfinite(runs.start).all(axis=1).any():
-        return "that measures positions and headings does (motion capture, scans)"
-    _, interval = rates_of(runs)
-    as_often = interval < math.sqrt(2.0) * rules.MOTION_CAPTURE_INTERVAL
-    if point.options.reference_kind != "absolute" or not as_often:
-        return "that measures more finely, and more often, does (motion capture)"
-    xy, yaw = (math.sqrt(float(part[0])) for part in (point.variances.xy, point.variances.yaw))
-    return (
-        f"that errs by {error_words(rules.MOTION_CAPTURE_XY, 'm')} and "
-        f"{error_words(rules.MOTION_CAPTURE_YAW, 'rad')} would: the poses of this one are off by "
-        f"{error_words(xy, 'm')} and {error_words(yaw, 'rad')} each, as fitted"
-    )
-
-
-def coarse_counters(diagnosis: Diagnosis) -> list[str]:
-    """Of counters whose steps show from message to message, what is not asked."""
-    if not diagnosis.runs.has_coarse_counters:
-        return []
-    count = max(diagnosis.robot.left_tick, diagnosis.robot.right_tick)
-    return [
-        f"A count of a wheel is {error_words(count, 'm')}, and a message brings a few at "
-        "most: how hard the robot starts is told roughly by that. Laws that bend with the "
-        "acceleration (coulomb_slip) are not looked for, and would look like longitudinal_slip."
-    ]
-
-
-def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
-    """What looks the same as a size that was found, as the reference's own scale is not known."""
-    runs, found = diagnosis.runs, diagnosis.found
-    by_headings = runs.headings_alone and "track_width" in found
-    if not by_headings and not (runs.own_axes and "wheel_radius_scale" in found):
-        return []
-    size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
-    share = f"{100.0 * abs(size - 1.0):.2g} %"
-    if by_headings:
-        larger = "larger" if size > 1.0 else "smaller"
-        return [
-            f"Headings know the wheels' size over the base alone: wheels that are both {share} "
-            f"{larger} than entered look the same to them as that base. A straight line of 10 m "
-            "beside a tape tells."
-        ]
-    if not is_ordinary(size):
-        return []
-    return [
-        f"A lidar whose ranges are {share} too {'long' if size > 1.0 else 'short'} shows the same: "
-        "a wall at a taped distance, or a straight line of 10 m beside a tape, tells."
-    ]
-
-
-def transform_to_mend(diagnosis: Diagnosis) -> list[str]:
-    """What to write into the transform that says where the lidar sits, where it is wrong."""
-    found = mended_mount(diagnosis)
-    if found is None:
-        return []
-    where = f"{found.entered.base} -> {found.entered.sensor}"
-    should = [
-        f"{part} = {_mended(getattr(found.mended, part), std)} {unit}"
-        for (part, std), unit in zip(found.std.items(), ("m", "m", "rad"), strict=True)
-    ]
-    is_now = [f"{part} = {getattr(found.entered, part) + 0.0:.4g}" for part in found.std]
-    others = dict.fromkeys(
-        other
-        for name in found.effects
-        for other in (
-            *find(name).twins,
-            *(diagnosis.rivals if name in diagnosis.rivals else ()),
-            *diagnosis.rivals_of_others.get(name, ()),
-        )
-        if other not in found.effects
-    )
-    the = f"Unless it is {listed(list(others), 'or')}, the" if others else "The"
-    return [
-        f"{the} transform {where} (URDF, /tf_static) should be {listed(should)}, where it is "
-        f"{listed(is_now)}. Mend it there, or add {listed(found.effects)}, but not both."
-    ]
-
-
-def _mended(value: float, std: float) -> str:
-    """Part of a transform; to the millimetre where nothing was found of it."""
-    return with_std(value, std) if math.isfinite(std) else f"{value + 0.0:.3f}"
 
 
 def instead_of_held(diagnosis: Diagnosis) -> list[str]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
-from werrimbi_odom.report.diagnosis import phrases, remarks
+from werrimbi_odom.report.diagnosis import phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.number_format import chance_words
 
@@ -54,7 +54,7 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
                 f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
                 "the one may go with the other because of how it was driven."
             )
-    lines += remarks.floor_not_asked(diagnosis)
+    lines += reference_remarks.floor_not_asked(diagnosis)
     lines += remarks.nearest(diagnosis, bool(cells))
     lines += remarks.at_bounds_told(diagnosis)
     lines += remarks.left_is_noise(advised)

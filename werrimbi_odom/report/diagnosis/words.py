@@ -19,7 +19,7 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
-from werrimbi_odom.report.diagnosis import phrases, remarks
+from werrimbi_odom.report.diagnosis import phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.unknown import mounted_anew, unknown_words
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
@@ -48,13 +48,13 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
         *tell[diagnosis.verdict](advised, steps),
         *remarks.otherwise(diagnosis),
     ]
-    suspect = either_side(diagnosis.ahead_or_behind) + remarks.wandering(diagnosis)
+    suspect = either_side(diagnosis.ahead_or_behind) + reference_remarks.wandering(diagnosis)
     if not mounted_anew(advised):
         suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(advised), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
-    left_out += remarks.without_events(advised) + remarks.coarse_counters(diagnosis)
+    left_out += remarks.without_events(advised) + reference_remarks.coarse_counters(diagnosis)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out
@@ -82,7 +82,9 @@ def _changes(advised: AdvisedDiagnosis) -> list[str]:
     last = max(drives.index(change.surely_from) for change in advised.changes)
     alone = " That alone may be why no effect explains them all."
     floor = (
-        [] if advised.diagnosis.verdict == "unknown" else remarks.floor_not_asked(advised.diagnosis)
+        []
+        if advised.diagnosis.verdict == "unknown"
+        else reference_remarks.floor_not_asked(advised.diagnosis)
     )
     what, one = "The robot", "one robot, the mean of both"
     now = f"For what it is now, ask again with the drives from {drives[last]} on alone."
@@ -133,7 +135,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "How well that is known: the table says from which size on each effect would have been "
             "seen."
         )
-    lines += remarks.not_shown(advised)
+    lines += reference_remarks.not_shown(advised)
     if old:
         return [
             *lines,
@@ -175,9 +177,9 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         *_remainder(advised),
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
-        *remarks.or_the_reference_s_scale(diagnosis),
-        *remarks.transform_to_mend(diagnosis),
-        *remarks.not_shown(advised),
+        *reference_remarks.or_the_reference_s_scale(diagnosis),
+        *reference_remarks.transform_to_mend(diagnosis),
+        *reference_remarks.not_shown(advised),
     ]
 
 
@@ -208,8 +210,8 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         if effect is not None:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
-    lines += remarks.or_the_reference_s_scale(diagnosis)
-    lines += remarks.transform_to_mend(diagnosis)
+    lines += reference_remarks.or_the_reference_s_scale(diagnosis)
+    lines += reference_remarks.transform_to_mend(diagnosis)
     lines += phrases.cost(advised, rivals[0])
     if (move := advised.manoeuvre) is not None:
         lines.append(f"Why: {move.why}.")
