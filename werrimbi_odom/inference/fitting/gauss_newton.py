@@ -29,8 +29,7 @@ def gauss_newton(
         design = stacked(runs, point, numbers, prediction)
         best = min(best, float(np.sum(design.white**2)))
         step = step_within(design, ways)
-        # No parameter, nor any combination, is then 0.01 standard deviations from the minimum.
-        if fall_within_reach(design, step) < 1e-4:
+        if is_small(design, step):
             return point, number > 0
         for shorter in _shorter_steps(design, ways, step):
             tried = replace(point, model=moved(point.model, design, shorter))
@@ -45,14 +44,6 @@ def gauss_newton(
         if gained < 1e-3:
             return point, number > 0
     return point, True
-
-
-def fall_within_reach(design: Design, step: Floats) -> float:
-    """Fall of the squared innovations by a least-squares step, if they were linear.
-
-    That is the square of the step in standard deviations (the Newton decrement).
-    """
-    return float(np.sum((design.flat()[1] @ step) ** 2))
 
 
 def is_small(design: Design, step: Floats) -> bool:
