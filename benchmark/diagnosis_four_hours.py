@@ -20,6 +20,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -44,7 +45,7 @@ def main() -> None:
     with ProcessPoolExecutor(1) as pool:  # what making it takes is not counted
         run = pool.submit(made, hours).result()
     before = time.process_time()
-    found = diagnose([run], Robot(0.35, 0.05, 2000.0, 2000.0), LIBRARY)
+    found = with_one_blas_thread(diagnose)([run], Robot(0.35, 0.05, 2000.0, 2000.0), LIBRARY)
     spent = time.process_time() - before
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     print(f"{run.ticks.rows} readings in {hours:g} hours: {found.verdict} {', '.join(found.found)}")

@@ -3,7 +3,8 @@
 """Seconds for a diagnosis of an hour of driving at 50 Hz, against a quarter of an hour.
 
 Both are drives of five minutes through the physics engine with a reference at 20 Hz, made once and
-kept for this call alone. All effects of the library are candidates. Growth of 4 is linear.
+kept for this call alone. All effects of the library are candidates. Growth of 4 is linear. Linear
+algebra has one thread, as in `werrimbi diagnose`.
 
 Then what a diagnosis asks for most often, all legs of the hour predicted with their noise, against
 the same in plain Python, tick by tick; both must say the same.
@@ -26,6 +27,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from benchmark.per_tick import PerTick
+from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
@@ -88,7 +90,9 @@ def main() -> None:
     walls, cpus = [], []
     for count in (DRIVES // 4, DRIVES):
         wall, cpu = time.perf_counter(), time.process_time()
-        found = diagnose(runs[:count], file.robot, LIBRARY, EvaluationOptions(limits=file.limits))
+        found = with_one_blas_thread(diagnose)(
+            runs[:count], file.robot, LIBRARY, EvaluationOptions(limits=file.limits)
+        )
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
         walls.append(wall)
         cpus.append(cpu)

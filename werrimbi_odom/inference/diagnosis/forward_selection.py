@@ -13,7 +13,7 @@ from typing import Any
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
@@ -149,6 +149,13 @@ def search_round(
     def fitted_from(runs: Concatenated, start: Point, score: Score) -> Fitted:
         return fitted_beside(runs, before, start, score, given)
 
+    wanders = point.options.reference_kind == "local_map"
+
+    def worth_it(score: Score) -> bool:
+        # Beside a wander, or without the calibration, a score tells too little of the fit.
+        blind = wanders or score.candidate.name in instead
+        return blind or may_pay(score, before, runs.data)
+
     def best_fit(score: Score, runs: Concatenated) -> list[Fitted]:
         variants = {
             other.variant: other
@@ -156,6 +163,7 @@ def search_round(
             if other.candidate.name == score.candidate.name
             and other.variant != score.variant
             and other.gain > rules.SAME_BY_RUN * score.gain
+            and worth_it(other)
         }
         options = [(point, each) for each in (score, *variants.values())]
         if score.candidate.name in instead:
@@ -165,9 +173,8 @@ def search_round(
         return [cheapest_of(fits)] if fits else []
 
     tried = []
-    wanders = point.options.reference_kind == "local_map"
     floor = rules.SCORE_FLOOR_BESIDE_WANDER if wanders else rules.SCORE_FLOOR
-    chosen = worth_fitting(ordered, floor)
+    chosen = [score for score in worth_fitting(ordered, floor) if worth_it(score)]
     any_seen = any(chance_of_score(score, before, len(looked_at)) < rules.SURE for score in ordered)
     for score in ordered:
         looked = [] if score in chosen else [looked_for(runs, point, score)]
@@ -300,3 +307,10 @@ def worth_fitting(
         for score in ordered[: rules.SHORTLISTED]
         if score.gain > rules.WORTH_A_FIT * top and score.gain > score.degrees + floor
     ][:most]
+
+
+def may_pay(score: Score, before: Fitted, data: int) -> bool:
+    """Whether a fit may pay for its numbers, though it gain some times its score (`HALF_PAID`)."""
+    of_one = before.penalty_of_own if score.candidate.per_run else before.penalty_of_one
+    gain = fall_of_cost(score.gain, data, before.squares)
+    return gain > rules.HALF_PAID * score.degrees * of_one
