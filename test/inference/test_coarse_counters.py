@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.evidence import in_evidence
 from test.inference.driven import COARSE, COMMON, common, of_coarse_counts
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
@@ -68,7 +69,7 @@ def driven(
     return robot, runs
 
 
-@pytest.mark.parametrize("counts", [20, pytest.param(40, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("counts", [20, in_evidence(40)])
 def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     """Legs that were cut at the steps of the counters told 9 mm of backlash, for certain."""
     late = hide("reference_delay", LATE, seed=1).peculiarity
@@ -78,7 +79,7 @@ def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     assert values_of(found, "reference_delay")["delay"].value == pytest.approx(LATE, rel=0.15)
 
 
-@pytest.mark.parametrize("counts", [100, pytest.param(60, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("counts", [100, in_evidence(60)])
 def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
     """Accelerations of single messages are of the counters' steps: a late clock explained more."""
     slip = hide("longitudinal_slip", 0.04, seed=1).peculiarity
