@@ -80,7 +80,7 @@ def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(
     """
     slip = find("longitudinal_slip").using(coefficient=0.04, turning=turning)
     truth = replace(PLAIN, effects=(slip,))
-    runs = runs_of(truth, (1, 2, 3, 4), 40)
+    runs = runs_of(truth, (1, 2, 3, 4), 30)
     others = ("coulomb_slip", "lateral_slip", "reference_delay", "reference_heading_delay")
     library = tuple(find(each) for each in ("longitudinal_slip", *others))
     named = diagnose(runs[:3], PLAIN, library, holdout=runs[3:])

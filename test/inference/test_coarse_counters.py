@@ -43,8 +43,9 @@ def driven(
     drives: int = 3,
     reference: ReferenceSensor | None = None,
     rate: float = 50.0,
+    seconds: float = 60.0,
 ) -> tuple[RobotFile, list[Run]]:
-    """Some drives of a minute with so many counts in a turn."""
+    """Some drives with so many counts in a turn."""
     each = float(counts)
     true = TrueRobot(
         left_wheel_noise=4.0e-4,
@@ -56,7 +57,9 @@ def driven(
     runs = []
     for number in range(drives):
         speed = 0.25 + 0.05 * number
-        manoeuvre = free(60.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
+        manoeuvre = free(
+            seconds, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed
+        )
         recording = record(
             true,
             manoeuvre,
@@ -92,7 +95,7 @@ def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
 
 
 def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> None:
-    robot, drives = driven(tmp_path, 40, drives=2)
+    robot, drives = driven(tmp_path, 40, drives=2, seconds=40.0)
     found = wo.diagnose(robot, drives[:1], holdout=drives[1:])
     assert found.to_dict()["verdict"] == "none"
     words = " ".join(found.summary().split())
@@ -142,7 +145,7 @@ def test_counts_err_less_between_messages(share: float) -> None:
 def test_counts_hide_no_noise_of_the_reference(tmp_path: Path, counts: int) -> None:
     """Half of it was told, and a sound robot's covariance said to be too small (NEES 1.6)."""
     cameras = ReferenceSensor(27.3, sigma_xy=4e-4, sigma_yaw=1e-3)
-    robot, drives = driven(tmp_path, counts, reference=cameras, rate=10.0)
+    robot, drives = driven(tmp_path, counts, reference=cameras, rate=10.0, seconds=40.0)
     found = wo.compare(robot, drives).to_dict()
     [told] = found["reference"]
     assert told["sigma_xy"] == pytest.approx(4e-4, rel=0.15)
