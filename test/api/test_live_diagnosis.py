@@ -30,7 +30,7 @@ def test_what_set_in_is_told_by_the_younger_half_alone(tmp_path: Path) -> None:
     """All of it is unknown, or a mean of two robots."""
     write_robot_file(TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4), tmp_path / "r")
     file = wo.read_robot(tmp_path / "r")
-    drives = [driven(SOUND, "older_half", 1, 50.0), driven(WIDER, "younger_half", 2, 50.0)]
+    drives = [driven(SOUND, "older_half", 1, 30.0), driven(WIDER, "younger_half", 2, 30.0)]
     whole = wo.diagnose(file, drives)
     assert whole.to_dict()["changes"], "else there is nothing to be told"
     now, of = of_now(whole, file, drives, {})

@@ -21,6 +21,7 @@ import pytest
 
 from test.cli.commands import RECORDING
 from test.command_line import ROOT, WERRIMBI, Said, Werrimbi, ran, started
+from test.evidence import in_evidence
 from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import progress
 from werrimbi_odom.cli.options import EXAMPLES
@@ -221,7 +222,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("compare", "ascii"),
         ("odom", "utf-8"),
         *(
-            pytest.param(verb, encoding, marks=pytest.mark.evidence)
+            in_evidence(verb, encoding)
             for verb, encoding in [
                 *((verb, "ascii") for verb in ("diagnose", "odom", "calibrate fit", "fleet")),
                 ("compare", "utf-8"),

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from test.effects.tracks import RADIUS, gone
+from test.evidence import in_evidence
 
 pytest.importorskip("mujoco")
 
@@ -141,7 +142,7 @@ def test_without_anything_odd_dead_reckoning_is_true(brisk: bool) -> None:
 
 @pytest.mark.parametrize(
     "brisk",
-    [True, pytest.param(False, marks=pytest.mark.evidence)],
+    [True, in_evidence(False)],
     ids=["brisk", "calm"],
 )
 @pytest.mark.parametrize(("odd", "law", "times"), CASES, ids=lambda item: getattr(item, "name", ""))

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from test.evidence import in_evidence
 from test.report.browser import visit
 from werrimbi_odom.report.fleet import Fleet, Row, fleet_json, headline, words_of
 from werrimbi_odom.report.fleet_page import cells, fleet_figure, fleet_table, write_fleet_page
@@ -186,7 +187,7 @@ def test_errors_a_hundred_times_apart_are_drawn_on_a_logarithmic_axis() -> None:
     assert fleet_figure(Fleet((BAD,))) is None
 
 
-@pytest.mark.parametrize("dark", [False, pytest.param(True, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("dark", [False, in_evidence(True)])
 def test_the_page_draws_itself_without_a_complaint(tmp_path: Path, dark: bool) -> None:
     browser = find_browser()
     if browser is None:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import of_headings, run_by, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
@@ -69,7 +70,7 @@ def test_a_size_is_stated_no_finer_than_its_law() -> None:
         assert 0.028 * value < each.std < 0.06 * value
 
 
-@pytest.mark.parametrize("turning", [0.4, pytest.param(1.0, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("turning", [0.4, in_evidence(1.0)])
 def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(
     turning: float,
 ) -> None:
@@ -79,7 +80,7 @@ def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(
     """
     slip = find("longitudinal_slip").using(coefficient=0.04, turning=turning)
     truth = replace(PLAIN, effects=(slip,))
-    runs = runs_of(truth, (1, 2, 3, 4), 40)
+    runs = runs_of(truth, (1, 2, 3, 4), 30)
     others = ("coulomb_slip", "lateral_slip", "reference_delay", "reference_heading_delay")
     library = tuple(find(each) for each in ("longitudinal_slip", *others))
     named = diagnose(runs[:3], PLAIN, library, holdout=runs[3:])

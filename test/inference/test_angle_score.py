@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import common, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
@@ -101,9 +102,7 @@ def test_what_changes_nothing_has_no_score() -> None:
 # -- bumps ------------------------------------------------------------------------------------
 
 
-HEIGHTS = pytest.mark.parametrize(
-    "height", [pytest.param(1.5e-3, marks=pytest.mark.evidence), -1.5e-3]
-)
+HEIGHTS = pytest.mark.parametrize("height", [in_evidence(1.5e-3), -1.5e-3])
 
 
 @HEIGHTS

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.api.drives import read_robot
@@ -71,8 +72,8 @@ MEASURED = pytest.mark.parametrize(
     "keep",
     [
         headings,
-        pytest.param(poses, marks=pytest.mark.evidence),
-        pytest.param(positions, marks=pytest.mark.evidence),
+        in_evidence(poses),
+        in_evidence(positions),
     ],
 )
 
@@ -90,7 +91,7 @@ def test_the_reference_of_another_drive_is_said_to_be_that(
     assert "On the robot" not in words
 
 
-@pytest.mark.parametrize("noise", [0.0, pytest.param(1e-5, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("noise", [0.0, in_evidence(1e-5)])
 def test_a_gyro_that_is_dead_is_said_to_show_no_turn(noise: float) -> None:
     random = np.random.default_rng(5)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, common, of_headings, run_by, run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.inference.test_late_clock import later
@@ -122,9 +123,7 @@ def test_what_drives_do_not_determine_does_not_stay_where_its_score_sent_it() ->
     assert fit.point.model.robot.wheel_separation_multiplier == pytest.approx(1.0, abs=0.01)
 
 
-@pytest.mark.parametrize(
-    "point", [pytest.param(0.063 - 0.04j, marks=pytest.mark.evidence), -0.02 + 0.06j]
-)
+@pytest.mark.parametrize("point", [in_evidence(0.063 - 0.04j), -0.02 + 0.06j])
 def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: complex) -> None:
     circle = positions_of_a_point("circle", [0.3] * 5, [0.3] * 5, point)
     found = diagnose([circle], ROBOT, COMMON)
@@ -142,7 +141,7 @@ def test_on_one_circle_at_one_speed_many_effects_are_rivals_of_unequal_wheels() 
     assert {"unequal_wheel_radii", "load_transfer"} <= set(found.rivals)
 
 
-@pytest.mark.parametrize("seed", [0, pytest.param(2, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("seed", [0, in_evidence(2)])
 def test_two_sizes_that_do_nearly_the_same_start_within_what_is_physical(seed: int) -> None:
     # Left turns at nearly one rate: what `sharpness` adds, `sense` takes away, but for little.
     law = find("turn_dependent_track").using(sharpness=0.02, sense=0.0)
@@ -208,7 +207,7 @@ def coarsely_counted(seed: int) -> Run:
     return Run(f"coarse_{seed}", Path(f"coarse_{seed}"), ticks, reference)
 
 
-@pytest.mark.parametrize("first", [0, pytest.param(6, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("first", [0, in_evidence(6)])
 def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
     """Twenty counts a turn: the score at null ended 4 ms from none, and slip was named instead."""
     runs = [coarsely_counted(first + number) for number in range(3)]
@@ -245,7 +244,7 @@ def test_each_drive_s_own_delay_is_looked_for() -> None:
     assert found == pytest.approx(late, rel=0.3)
 
 
-@pytest.mark.parametrize("seed", [30, pytest.param(50, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("seed", [30, in_evidence(50)])
 def test_a_bump_is_fitted_beside_the_flat_across_from_it(seed: int) -> None:
     """Once a turn they are the same; the flat alone was fitted, with another radius beside it."""
     robot = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

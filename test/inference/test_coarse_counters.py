@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.evidence import in_evidence
 from test.inference.driven import COARSE, COMMON, common, of_coarse_counts
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
@@ -42,8 +43,9 @@ def driven(
     drives: int = 3,
     reference: ReferenceSensor | None = None,
     rate: float = 50.0,
+    seconds: float = 60.0,
 ) -> tuple[RobotFile, list[Run]]:
-    """Some drives of a minute with so many counts in a turn."""
+    """Some drives with so many counts in a turn."""
     each = float(counts)
     true = TrueRobot(
         left_wheel_noise=4.0e-4,
@@ -55,7 +57,9 @@ def driven(
     runs = []
     for number in range(drives):
         speed = 0.25 + 0.05 * number
-        manoeuvre = free(60.0, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
+        manoeuvre = free(
+            seconds, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed
+        )
         recording = record(
             true,
             manoeuvre,
@@ -68,7 +72,7 @@ def driven(
     return robot, runs
 
 
-@pytest.mark.parametrize("counts", [20, pytest.param(40, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("counts", [20, in_evidence(40)])
 def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     """Legs that were cut at the steps of the counters told 9 mm of backlash, for certain."""
     late = hide("reference_delay", LATE, seed=1).peculiarity
@@ -78,7 +82,7 @@ def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     assert values_of(found, "reference_delay")["delay"].value == pytest.approx(LATE, rel=0.15)
 
 
-@pytest.mark.parametrize("counts", [100, pytest.param(60, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("counts", [100, in_evidence(60)])
 def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
     """Accelerations of single messages are of the counters' steps: a late clock explained more."""
     slip = hide("longitudinal_slip", 0.04, seed=1).peculiarity
@@ -91,7 +95,7 @@ def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
 
 
 def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> None:
-    robot, drives = driven(tmp_path, 40, drives=2)
+    robot, drives = driven(tmp_path, 40, drives=2, seconds=40.0)
     found = wo.diagnose(robot, drives[:1], holdout=drives[1:])
     assert found.to_dict()["verdict"] == "none"
     words = " ".join(found.summary().split())
@@ -141,7 +145,7 @@ def test_counts_err_less_between_messages(share: float) -> None:
 def test_counts_hide_no_noise_of_the_reference(tmp_path: Path, counts: int) -> None:
     """Half of it was told, and a sound robot's covariance said to be too small (NEES 1.6)."""
     cameras = ReferenceSensor(27.3, sigma_xy=4e-4, sigma_yaw=1e-3)
-    robot, drives = driven(tmp_path, counts, reference=cameras, rate=10.0)
+    robot, drives = driven(tmp_path, counts, reference=cameras, rate=10.0, seconds=40.0)
     found = wo.compare(robot, drives).to_dict()
     [told] = found["reference"]
     assert told["sigma_xy"] == pytest.approx(4e-4, rel=0.15)

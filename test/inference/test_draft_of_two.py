@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
@@ -96,17 +97,11 @@ def values_of(found: Draft) -> Mapping[str, float]:
 @pytest.mark.parametrize(
     ("hidden", "law", "gain"),
     [
-        pytest.param(
-            "slide_by_tilt_and_payload=0.04",
-            "sideways = {} * |v| * payload_kg * tilt_rad",
-            -0.04,
-            marks=pytest.mark.evidence,
+        in_evidence(
+            "slide_by_tilt_and_payload=0.04", "sideways = {} * |v| * payload_kg * tilt_rad", -0.04
         ),
-        pytest.param(
-            "one_tyre_by_load_over_pressure=0.3",
-            "{} * v * payload_kg / {}_tyre_kpa",
-            -0.3,
-            marks=pytest.mark.evidence,
+        in_evidence(
+            "one_tyre_by_load_over_pressure=0.3", "{} * v * payload_kg / {}_tyre_kpa", -0.3
         ),
     ],
 )
@@ -169,9 +164,7 @@ def test_a_law_of_one_variable_remains_one() -> None:
     assert found.law.startswith("along = -0.0041 * v * (load_kg - ")
 
 
-@pytest.mark.parametrize(
-    "seed", [20, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in (10, 30))]
-)
+@pytest.mark.parametrize("seed", [20, *(in_evidence(seed) for seed in (10, 30))])
 def test_where_nothing_is_hidden_no_law_of_two_is_found(seed: int) -> None:
     runs = drives_of((), [seed, seed + 1, seed + 2])
     diagnosis = diagnose(runs, ROBOT, LIBRARY, holdout=drives_of((), [seed + 3]))

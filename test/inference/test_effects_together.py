@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_by, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
@@ -81,7 +82,7 @@ def test_the_more_important_is_told_first_though_half_of_its_law_is_not_determin
     assert found.final.importance["radius_by_channel"] > 1e3
 
 
-@pytest.mark.parametrize("after", [pytest.param(0.0, marks=pytest.mark.evidence), 1.0])
+@pytest.mark.parametrize("after", [in_evidence(0.0), 1.0])
 def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_another(
     after: float,
 ) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_of
 from test.model.drives import ROBOT as STEERED
 from test.model.drives import read
@@ -45,7 +46,7 @@ KICKING = find("castor_kick").using(angle=0.0, alternating=0.008, length=0.04)
 SOME = [find(name) for name in ("castor_kick", "left_backlash", "right_backlash", "encoder_skew")]
 
 
-@pytest.mark.parametrize("seed", [2, pytest.param(5, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("seed", [2, in_evidence(5)])
 def test_of_few_data_the_noise_itself_is_hardly_known(seed: int) -> None:
     """Twenty numbers that scatter ten times as stated tell by how much to a fifth, and no better.
 
@@ -174,7 +175,7 @@ def test_drives_that_tell_have_no_rivals_to_recall() -> None:
 
 @pytest.mark.parametrize(
     ("seed", "effects"),
-    [(2, COMMON), *(pytest.param(n, LIBRARY, marks=pytest.mark.evidence) for n in (1, 2))],
+    [(2, COMMON), *(in_evidence(n, LIBRARY) for n in (1, 2))],
 )
 def test_whatever_a_reference_says_no_number_is_beyond_sense(
     seed: int, effects: Sequence[Effect]

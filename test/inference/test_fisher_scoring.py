@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
 
 Floats = np.ndarray
@@ -20,7 +21,7 @@ def costs(rows: Floats, seen: Floats, shares: Floats) -> Floats:
 
 @pytest.mark.parametrize(
     "seed",
-    [*range(6), *(pytest.param(seed, marks=pytest.mark.evidence) for seed in range(6, 20))],
+    [*range(6), *(in_evidence(seed) for seed in range(6, 20))],
 )
 def test_the_minimum_is_found_where_one_of_two_noises_hides_behind_the_other(seed: int) -> None:
     random = np.random.default_rng(seed)

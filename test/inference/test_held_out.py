@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_of, runs_of
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT
@@ -55,7 +56,7 @@ def plain(runs: list[Run]) -> Diagnosis:
     return diagnosed(runs[:3], runs[3:])
 
 
-@pytest.mark.parametrize("spoil", [late, pytest.param(swapped, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("spoil", [late, in_evidence(swapped)])
 def test_held_out_drives_recorded_otherwise_change_nothing_that_is_found(
     runs: list[Run], plain: Diagnosis, spoil: Spoilt
 ) -> None:
@@ -108,7 +109,7 @@ def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
 FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
 
-@pytest.mark.parametrize("seed", [19, pytest.param(22, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("seed", [19, in_evidence(22)])
 def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     """A clock off by 0.6 s, exchanged wheels and half a base, in 22 s of positions of 3 cm.
 

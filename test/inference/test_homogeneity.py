@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, common, run_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
@@ -95,9 +96,7 @@ def nothing(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return np.zeros((time.size, 3))
 
 
-@pytest.mark.parametrize(
-    "first", [30, *(pytest.param(first, marks=pytest.mark.evidence) for first in (10, 20))]
-)
+@pytest.mark.parametrize("first", [30, *(in_evidence(first) for first in (10, 20))])
 def test_what_a_wandering_reference_shows_does_not_last(first: int) -> None:
     found = chances(range(first, first + 5), wanders)
     assert found[0][1] < 1e-5, "by the map alone it would be beyond any chance"
@@ -195,7 +194,7 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     assert _chance(gain, 1, free, free, rest, parts) > 1e-3
 
 
-@pytest.mark.parametrize("degrees", [1, pytest.param(2, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("degrees", [1, in_evidence(2)])
 def test_what_each_part_draws_anew_lasts_as_rarely_as_is_said(degrees: int) -> None:
     """Where three of nine parts know nearly all: once in a hundred was once in thirteen."""
     random = np.random.default_rng(degrees)
@@ -295,7 +294,7 @@ def test_parts_of_a_short_drive_agree_on_a_delay_by_the_law_at_the_fit(seed: int
     assert homogeneity_of_effect(laid, fit, fit.names[-1]) < 1e-4
 
 
-@pytest.mark.parametrize("seed", [0, pytest.param(20, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("seed", [0, in_evidence(20)])
 def test_a_delay_is_named_of_one_short_drive(seed: int) -> None:
     found = diagnose(
         [late(seed, 0.1)],

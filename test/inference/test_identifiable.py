@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, common, of_headings, parts, runs_of
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
@@ -180,9 +181,7 @@ def toy_drive(seed: int) -> Run:
     )
 
 
-@pytest.mark.parametrize(
-    "seed", [1, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in (2, 3))]
-)
+@pytest.mark.parametrize("seed", [1, *(in_evidence(seed) for seed in (2, 3))])
 def test_a_toy_robot_s_sizes_are_found_whatever_its_messages_wait_for(seed: int) -> None:
     found = diagnose([toy_drive(seed)], TOY, LIBRARY)
     assert found.verdict == "named"
@@ -257,7 +256,7 @@ def test_scans_state_how_well_they_are_matched_and_nothing_of_their_stamps(stamp
     assert figures_of(prepared, NOMINAL).nees == pytest.approx(1.0, abs=0.25)
 
 
-@pytest.mark.parametrize("scans", [True, pytest.param(False, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("scans", [True, in_evidence(False)])
 def test_wheels_that_are_smaller_by_scans_may_be_ranges_that_are_short(scans: bool) -> None:
     """Beyond 3.5 m those of a real Neato grow by 4 % too little."""
     runs = []
@@ -310,7 +309,7 @@ def test_no_reference_is_better_than_the_step_of_its_values(kind: ReferenceKind)
     [
         ("incremental", 5, common("reference_scale")),
         *(
-            pytest.param(kind, every, LIBRARY, marks=pytest.mark.evidence)
+            in_evidence(kind, every, LIBRARY)
             for kind in ("incremental", "absolute")
             for every in (1, 5)
         ),
@@ -339,7 +338,7 @@ def test_a_gyros_own_scale_is_told_beside_a_base_that_is_found_second() -> None:
     assert found.rivals_of_others == {"track_width": ("reference_scale",)}
 
 
-@pytest.mark.parametrize("scale", [1.02, pytest.param(0.85, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("scale", [1.02, in_evidence(0.85)])
 def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: float) -> None:
     """By headings alone no drive can tell them; where positions are measured too, it can."""
     random = np.random.default_rng(31)
@@ -368,7 +367,7 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
 @pytest.mark.parametrize(
     ("name", "size"),
     [
-        pytest.param("right_backlash", {"travel": 5e-3}, marks=pytest.mark.evidence),
+        in_evidence("right_backlash", {"travel": 5e-3}),
         ("longitudinal_slip", {"coefficient": 0.02}),
     ],
 )

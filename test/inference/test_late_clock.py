@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, common, run_by, run_of
 from test.inference.test_gyro_bias import BIAS, INCREMENTAL, by_gyro, short_drive
 from test.model.drives import ROBOT
@@ -74,10 +75,10 @@ def test_the_robot_files_delay_moves_no_leg() -> None:
 @pytest.mark.parametrize(
     ("delay", "aside"),
     [
-        pytest.param(1.0, "part_2", marks=pytest.mark.evidence),
-        pytest.param(-0.5, "part_2", marks=pytest.mark.evidence),
-        pytest.param(0.5, "part_2", marks=pytest.mark.evidence),
-        pytest.param(2.0, "part_0", marks=pytest.mark.evidence),
+        in_evidence(1.0, "part_2"),
+        in_evidence(-0.5, "part_2"),
+        in_evidence(0.5, "part_2"),
+        in_evidence(2.0, "part_0"),
     ],
 )
 def test_a_late_gyro_is_all_that_is_wrong_with_the_sound_kobuki(delay: float, aside: str) -> None:
@@ -104,9 +105,7 @@ def square(seed: int) -> Run:
     return later(by_gyro(speed, rate, 1.0, 0.0, seed), 0.06)
 
 
-@pytest.mark.parametrize(
-    "seed", [1, *(pytest.param(n, marks=pytest.mark.evidence) for n in (2, 3))]
-)
+@pytest.mark.parametrize("seed", [1, *(in_evidence(n) for n in (2, 3))])
 def test_of_one_square_a_late_gyro_is_named(seed: int) -> None:
     """It was *unknown*, with the acceleration.
 
@@ -180,9 +179,7 @@ def test_where_nothing_is_measured_no_motion_is_compared(delay: float) -> None:
     assert _lag_in(silent) == pytest.approx((lag, gain))
 
 
-@pytest.mark.parametrize(
-    "seed", [5, *(pytest.param(n, marks=pytest.mark.evidence) for n in (15, 39))]
-)
+@pytest.mark.parametrize("seed", [5, *(in_evidence(n) for n in (15, 39))])
 def test_rare_positions_show_no_lag_that_is_not_there(seed: int) -> None:
     """A line from pose to pose was compared with wheels that turn in between.
 
@@ -204,7 +201,7 @@ def _lag_in(run: Run) -> tuple[float, float]:
     return lag_of([record])
 
 
-@pytest.mark.parametrize("delay", [LATE, pytest.param(-LATE, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("delay", [LATE, in_evidence(-LATE)])
 def test_a_jump_is_left_out_of_a_fit_by_another_clock(delay: float) -> None:
     """The delay as fitted is another than that by which drives were cut.
 

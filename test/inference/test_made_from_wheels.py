@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import of_headings
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -23,9 +24,7 @@ from werrimbi_odom.model.trajectory import trajectory
 ROBOT = Robot(0.16, 0.033, 4096.0, 4096.0)
 OTHER = Robot(0.18, 0.0335, 4096.0, 4096.0)
 """What a driver's own odometry may take the robot for."""
-SEEDS = pytest.mark.parametrize(
-    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in (2, 3))]
-)
+SEEDS = pytest.mark.parametrize("seed", [0, 1, *(in_evidence(seed) for seed in (2, 3))])
 NAMED = "/odom: odom -> base_link is the robot's own odometry, made from its wheels"
 
 

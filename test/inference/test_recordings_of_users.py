@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, of_headings, parts, run_of, runs_of
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
@@ -91,7 +92,7 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     assert found.found == (() if away < 3.0 else ("track_width",))
 
 
-@pytest.mark.parametrize("factor", [57.3, pytest.param(1.0 / 2.1, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("factor", [57.3, in_evidence(1.0 / 2.1)])
 def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: float) -> None:
     """`add track_width` writes a multiplier of 1/57.3 where degrees were entered.
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -61,8 +62,8 @@ def test_a_sound_reference_has_no_remark() -> None:
     ("name", "strength"),
     [
         ("reference_delay", 0.1),
-        pytest.param("reference_lever_arm", 0.15, marks=pytest.mark.evidence),
-        pytest.param("left_missed_ticks", 0.05, marks=pytest.mark.evidence),
+        in_evidence("reference_lever_arm", 0.15),
+        in_evidence("left_missed_ticks", 0.05),
     ],
 )
 def test_what_a_robot_has_is_no_fault_of_its_reference(name: str, strength: float) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import runs_of
 from test.inference.set_up_mistakes import (
     DELAYS,
@@ -60,10 +61,7 @@ NAMES = ("train/square_ccw", "train/free_calm", "train/eights_and_spins")
 def thinned(names: Iterable[Any], kept: Container[str]) -> list[Any]:
     """Names, of which those that are not kept are tried in `make evidence` alone."""
     return [
-        pytest.param(name, marks=pytest.mark.evidence)
-        if isinstance(name, str) and name not in kept
-        else name
-        for name in names
+        in_evidence(name) if isinstance(name, str) and name not in kept else name for name in names
     ]
 
 
@@ -81,7 +79,7 @@ EVERY_OTHER = thinned(
 )
 """Each factor once, of the radius or of the base, and half of those of one side's counters."""
 WIRED = thinned(WIRING, ("swapped", "both reversed"))
-MOUNT_90 = pytest.param("mount 90", marks=pytest.mark.evidence)
+MOUNT_90 = in_evidence("mount 90")
 Search = Callable[[str], tuple[list[Run], SetUp]]
 
 
@@ -177,11 +175,11 @@ def test_millimetres_are_told_beside_half_a_base_and_swapped_wheels(session: lis
     ("unit", "size"),
     [
         ("centimetres", 100.0),
-        pytest.param("inches", 39.3701, marks=pytest.mark.evidence),
-        pytest.param("feet", 3.28084, marks=pytest.mark.evidence),
+        in_evidence("inches", 39.3701),
+        in_evidence("feet", 3.28084),
     ],
 )
-@pytest.mark.parametrize("poses", [pytest.param(True, marks=pytest.mark.evidence), False])
+@pytest.mark.parametrize("poses", [in_evidence(True), False])
 def test_positions_in_another_unit_are_to_be_converted(
     session: list[Run], unit: str, size: float, poses: bool
 ) -> None:
@@ -248,14 +246,14 @@ def test_an_effect_that_the_file_holds_already_is_changed_not_doubled(session: l
 @pytest.mark.parametrize(
     "effect",
     [
-        pytest.param("reference_lever_arm", marks=pytest.mark.evidence),
+        in_evidence("reference_lever_arm"),
         "reference_delay",
-        pytest.param("reference_yaw_offset", marks=pytest.mark.evidence),
-        pytest.param("floor_slope", marks=pytest.mark.evidence),
-        pytest.param("turn_dependent_track", marks=pytest.mark.evidence),
-        pytest.param("track_width", marks=pytest.mark.evidence),
-        pytest.param("left_missed_ticks", marks=pytest.mark.evidence),
-        pytest.param("slippery_spot", marks=pytest.mark.evidence),
+        in_evidence("reference_yaw_offset"),
+        in_evidence("floor_slope"),
+        in_evidence("turn_dependent_track"),
+        in_evidence("track_width"),
+        in_evidence("left_missed_ticks"),
+        in_evidence("slippery_spot"),
     ],
 )
 def test_an_ordinary_effect_is_no_mistake(tmp_path: Path, effect: str) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import of_headings
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
@@ -82,10 +83,7 @@ def diagnosed(
     ("seed", "effects"),
     [
         (6, SOME),
-        *(
-            pytest.param(seed, LIBRARY, marks=pytest.mark.evidence)
-            for seed in (6, 10, *range(15, 24))
-        ),
+        *(in_evidence(seed, LIBRARY) for seed in (6, 10, *range(15, 24))),
     ],
 )
 def test_three_arcs_are_too_few_to_name_an_effect(seed: int, effects: Sequence[Effect]) -> None:
@@ -95,7 +93,7 @@ def test_three_arcs_are_too_few_to_name_an_effect(seed: int, effects: Sequence[E
     assert "reference_delay" in found.found
 
 
-@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("seed", [0, in_evidence(1)])
 def test_what_the_arcs_of_many_drives_have_in_common_is_named(seed: int) -> None:
     found = diagnosed(seed, 8, 0.07)
     assert {"turn_dependent_track", "load_transfer"} & {*found.found, *found.rivals}

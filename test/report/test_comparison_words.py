@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from test.evidence import in_evidence
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
 from werrimbi_odom.files.read_run import read_run
@@ -228,7 +229,7 @@ def test_the_longest_stretches_are_told_in_their_order() -> None:
 
 @pytest.mark.parametrize(
     ("name", "size"),
-    [pytest.param("floor_slope", 0.005, marks=pytest.mark.evidence), ("lateral_slip", 0.004)],
+    [in_evidence("floor_slope", 0.005), ("lateral_slip", 0.004)],
 )
 def test_no_motion_is_as_promised_that_errs_more_at_any_length(
     name: str, size: float, tmp_path: Path

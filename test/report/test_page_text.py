@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from plotly.offline import get_plotlyjs_version
 
+from test.evidence import in_evidence
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import save
 from werrimbi_odom.report.document import Document, Paragraph, Shown, Table, paragraphs
@@ -98,7 +99,7 @@ def test_pictures_without_a_browser_say_what_to_install(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("kind", [pytest.param("pdf", marks=pytest.mark.evidence), "png"])
+@pytest.mark.parametrize("kind", [in_evidence("pdf"), "png"])
 def test_pictures_for_a_paper_are_a_file_a_figure(tmp_path: Path, kind: str) -> None:
     import plotly.graph_objects as go
 

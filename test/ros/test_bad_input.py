@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -191,9 +193,7 @@ def test_the_counters_are_reset_in_mid_drive(node: Any) -> None:
     assert "resets (1)" in words
 
 
-@pytest.mark.parametrize(
-    "bits", [16, *(pytest.param(bits, marks=pytest.mark.evidence) for bits in (8, 32))]
-)
+@pytest.mark.parametrize("bits", [16, *(in_evidence(bits) for bits in (8, 32))])
 def test_counters_wrap_in_both_directions(
     launch: Callable[..., Any], robot: dict[str, Any], bits: int
 ) -> None:

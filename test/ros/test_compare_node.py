@@ -81,6 +81,10 @@ class Comparing:
             stderr=subprocess.PIPE,
             text=True,
         )
+
+    def listen(self) -> Comparing:
+        """Keep what it publishes from now on."""
+        launched = self.launched
         self.errors = launched.keep(Vector3Stamped, "compare_node/error")
         self.poses = launched.keep(PoseWithCovarianceStamped, "compare_node/error_with_covariance")
         self.figures = {
@@ -90,6 +94,7 @@ class Comparing:
         self.told: defaultdict[str, list[Any]] = defaultdict(list)
         self.said = self.told["honesty of the covariance"]
         launched._listen(DiagnosticArray, "/diagnostics", self._note)
+        return self
 
     def _note(self, array: Any) -> None:
         for status in array.status:
@@ -125,7 +130,8 @@ def compare(tmp_path: Path) -> Iterator[Any]:
 
     def start(launched: Any, *arguments: str, **parameters: Any) -> Comparing:
         started.append(Comparing(launched, tmp_path, *arguments, **parameters))
-        return started[-1]
+        # One that is not heard in time is ended too: it would live on in a domain that others get.
+        return started[-1].listen()
 
     yield start
     for each in started:

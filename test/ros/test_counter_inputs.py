@@ -14,6 +14,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 
 from sensor_msgs.msg import JointState
@@ -71,7 +73,7 @@ def test_radians_of_an_unknown_encoder(launch: Callable[..., Any]) -> None:
     assert "no ticks_per_revolution" in node.stderr()
 
 
-@pytest.mark.parametrize("bits", [pytest.param(0, marks=pytest.mark.evidence), 16])
+@pytest.mark.parametrize("bits", [in_evidence(0), 16])
 def test_several_wheels_on_a_side_are_averaged(
     launch: Callable[..., Any], robot: Robot, bits: int
 ) -> None:
@@ -122,7 +124,7 @@ def test_one_of_two_drivers_restarts(launch: Callable[..., Any], robot: Robot) -
 
 @pytest.mark.parametrize(
     ("kind", "message"),
-    [pytest.param("int32_pair", Int32, marks=pytest.mark.evidence), ("int64_pair", Int64)],
+    [in_evidence("int32_pair", Int32), ("int64_pair", Int64)],
 )
 def test_two_topics(launch: Callable[..., Any], robot: Robot, kind: str, message: type) -> None:
     node = launch(robot | {"input_type": kind})

@@ -16,6 +16,8 @@ from typing import Any
 
 import pytest
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import Twist
@@ -296,9 +298,7 @@ def test_another_on_cmd_vel_stops_it_and_keeps_it_from_starting(played: PlayedRo
     raise AssertionError(played.state())
 
 
-@pytest.mark.parametrize(
-    "end", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.evidence)]
-)
+@pytest.mark.parametrize("end", [signal.SIGINT, in_evidence(signal.SIGTERM)])
 def test_told_to_end_it_stops_the_robot_first_and_moves_nothing_when_it_is_back(
     played: PlayedRobot, end: int
 ) -> None:

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import PoseStamped
@@ -156,7 +158,7 @@ def model_path(ticks: Ticks, *effects: Any) -> Trajectory:
     return trajectory(Robot(0.35, 0.05, 2000.0, 1000.0, effects=effects), *ticks)
 
 
-@pytest.mark.parametrize("kind", ["imu", pytest.param("pose_stamped", marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("kind", ["imu", in_evidence("pose_stamped")])
 def test_the_phase_of_a_wheel_is_learnt_from_a_topic(
     launch: Any, robot: dict[str, Any], kind: str
 ) -> None:

@@ -15,6 +15,8 @@ from typing import Any
 
 import pytest
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import TransformStamped
@@ -29,7 +31,7 @@ Robot = dict[str, Any]
 Launch = Callable[..., Any]
 
 
-@pytest.mark.parametrize("name", ["SIGINT", pytest.param("SIGTERM", marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("name", ["SIGINT", in_evidence("SIGTERM")])
 def test_a_signal_ends_it_well_in_the_midst_of_work(
     launch: Launch, robot: Robot, name: str
 ) -> None:
@@ -44,7 +46,7 @@ def test_a_signal_ends_it_well_in_the_midst_of_work(
     assert "Traceback" not in node.stderr()
 
 
-@pytest.mark.parametrize("name", [pytest.param("SIGINT", marks=pytest.mark.evidence), "SIGTERM"])
+@pytest.mark.parametrize("name", [in_evidence("SIGINT"), "SIGTERM"])
 def test_a_signal_ends_it_well_while_it_starts(
     start_node: Callable[..., subprocess.Popen[str]], robot: Robot, name: str
 ) -> None:
@@ -130,9 +132,7 @@ def test_the_transform_goes_out_where_tf2_ros_is(
     assert not math.isclose(position.x, 0.0)
 
 
-@pytest.mark.parametrize(
-    "node", ["odom_node", pytest.param("compare_node", marks=pytest.mark.evidence)]
-)
+@pytest.mark.parametrize("node", ["odom_node", in_evidence("compare_node")])
 def test_what_is_no_argument_of_ros_is_told(node: str) -> None:
     """Where rclpy leaves it unread: a parameter file that nobody reads costs an afternoon."""
 

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
@@ -49,26 +51,17 @@ def test_an_unknown_key_names_the_nearest_known_one(refused: Refused) -> None:
     ("wrong", "words"),
     [
         ({"wheel_radius": -0.05}, "wheel_radius must be a number greater than 0 (m), not -0.05"),
-        pytest.param(
-            {"wheel_radius": "5 cm"},
-            "wheel_radius must be a number (m), not '5 cm'",
-            marks=pytest.mark.evidence,
-        ),
+        in_evidence({"wheel_radius": "5 cm"}, "wheel_radius must be a number (m), not '5 cm'"),
         ({"encoder_bits": 12}, "encoder_bits must be one of 0, 8, 16, 32 (bits), not 12"),
-        pytest.param(
-            {"enable_odom_tf": "yes please"},
-            "enable_odom_tf must be true or false",
-            marks=pytest.mark.evidence,
-        ),
+        in_evidence({"enable_odom_tf": "yes please"}, "enable_odom_tf must be true or false"),
         ({"left_wheel_names": [1, 2]}, "left_wheel_names must be a list of names"),
         ({"effects": ["drift"]}, "unknown effect drift; the nearest known one is radius_drift"),
         ({"enable_odom_tf": True}, "enable_odom_tf needs tf2_ros, which is not installed here"),
         ({"slip_imu_topic": "1imu"}, "'1imu' is not the name of a topic: topic name token must"),
         ({"use_sim_time": 3}, "'use_sim_time'"),
-        pytest.param(
+        in_evidence(
             {"qos_overrides": {"/joint_states": {"subscription": {"depth": "deep"}}}},
             "QoS override of joint_states",
-            marks=pytest.mark.evidence,
         ),
         (
             {"qos_overrides": {"/odom": {"publisher": {"reliability": "perhaps"}}}},

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
+
 pytest.importorskip("rclpy")
 pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[all])")
 
@@ -184,17 +186,13 @@ def test_several_effects_can_be_hidden() -> None:
 @pytest.mark.parametrize(
     ("node", "words", "says"),
     [
-        pytest.param(
+        in_evidence(
             "simulated_robot",
             ["-p", "real_time_factor:=2.0"],
             "real_time_factor 2 needs publish_clock: true",
-            marks=pytest.mark.evidence,
         ),
-        pytest.param(
-            "simulated_robot",
-            ["-p", "seeds:=2"],
-            "unknown parameter seeds: did you mean seed?",
-            marks=pytest.mark.evidence,
+        in_evidence(
+            "simulated_robot", ["-p", "seeds:=2"], "unknown parameter seeds: did you mean seed?"
         ),
         (
             "simulated_robot",

@@ -11,6 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.scans.drives import Matched, in_circles, rms, seen
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
 from werrimbi_odom.scans.sweep import Sweep
@@ -59,15 +60,15 @@ def matched(sweeps: Iterable[Sweep], matcher: AnyOrder | ScanMatcher) -> AnyOrde
 
 @pytest.mark.parametrize(
     "lidar",
-    [pytest.param(Lidar(), marks=pytest.mark.evidence), POOR],
+    [in_evidence(Lidar()), POOR],
     ids=["ordinary", "poor"],
 )
 @pytest.mark.parametrize(
     ("stated", "order"),
     [
-        pytest.param(list, "stated", marks=pytest.mark.evidence),
+        in_evidence(list, "stated"),
         (backwards, "last to first"),
-        pytest.param(backwards_in_time, "stated", marks=pytest.mark.evidence),
+        in_evidence(backwards_in_time, "stated"),
         (at_once, "first to last"),
     ],
 )

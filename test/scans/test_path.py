@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
+from test.evidence import in_evidence
 from test.scans.drives import (
     Matched,
     ahead,
@@ -28,7 +29,7 @@ from werrimbi_odom.simulation.engine import PERIOD, AxlePose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, scanned
 
 
-@pytest.mark.parametrize("beams", [218, pytest.param(681, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("beams", [218, in_evidence(681)])
 def test_a_metre_in_a_room(beams: int) -> None:
     lidar = Lidar(beams=beams) if beams == 218 else Lidar(beams=beams, noise=0.01, noise_share=0.0)
     found = matched(in_circles(25.0), rooms.living_room(people=beams == 218), lidar)
@@ -86,10 +87,10 @@ def test_walls_that_are_no_lines_leave_poses_as_sure_as_they_say() -> None:
 @pytest.mark.parametrize(
     "written",
     [
-        *(pytest.param(each, marks=pytest.mark.evidence) for each in (np.inf, np.nan, 0.0, -1.0)),
+        *(in_evidence(each) for each in (np.inf, np.nan, 0.0, -1.0)),
         4.0,
         3.95,
-        pytest.param(5.0, marks=pytest.mark.evidence),
+        in_evidence(5.0),
     ],
 )
 def test_whatever_is_written_for_beams_without_an_echo_they_have_none(written: float) -> None:
@@ -212,9 +213,7 @@ def test_where_scans_do_not_hold_the_robot_there_are_no_poses(room: Room, why: s
     assert max(found.path.flags, key=lambda each: found.path.flags[each]) == why
 
 
-@pytest.mark.parametrize(
-    ("rate", "seed"), [(5.0, 0), pytest.param(10.0, 1, marks=pytest.mark.evidence)]
-)
+@pytest.mark.parametrize(("rate", "seed"), [(5.0, 0), in_evidence(10.0, 1)])
 def test_dents_that_go_with_the_lidar_do_not_hold_it_along_a_corridor(
     rate: float, seed: int
 ) -> None:

@@ -14,6 +14,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 import werrimbi_odom as wo
+from test.evidence import in_evidence
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.read_run import read_run
@@ -150,9 +151,7 @@ def test_the_positions_of_the_localiser_are_proposed_with_the_headings_of_the_gy
     assert "It is taken." in " ".join(alone.split())
 
 
-@pytest.mark.parametrize(
-    "factor", [*(pytest.param(each, marks=pytest.mark.evidence) for each in (0.0, 57.3)), -1.0]
-)
+@pytest.mark.parametrize("factor", [*(in_evidence(each) for each in (0.0, 57.3)), -1.0])
 def test_a_gyro_that_contradicts_the_localiser_is_not_proposed(
     tmp_path: Path, factor: float
 ) -> None:

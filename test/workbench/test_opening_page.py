@@ -15,6 +15,7 @@ import pytest
 
 from test.axe import RUN, axe_script
 from test.command_line import WERRIMBI, started
+from test.evidence import in_evidence
 from test.workbench.conftest import PATIENCE
 from test.workbench.session import written
 
@@ -55,7 +56,7 @@ def held(tmp_path: Path) -> Iterator[tuple[str, int]]:
         process.communicate()
 
 
-@pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("scheme", ["light", in_evidence("dark")])
 def test_paths_and_progress_are_there_before_anything_is_compared(
     held: tuple[str, int], browser: Any, scheme: str
 ) -> None:

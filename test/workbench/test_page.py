@@ -14,6 +14,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from test.command_line import WERRIMBI, ran
+from test.evidence import in_evidence
 from test.workbench.conftest import PATIENCE, Looked, Served
 from test.workbench.session import HIDDEN, RATIO, ROBOT
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -52,7 +53,7 @@ def press(looked: Looked, key: str, how: str) -> None:
     ("how", "file"),
     [
         ("clicks", "robot_new.yaml"),
-        pytest.param("keys", "robot_new_2.yaml", marks=pytest.mark.evidence),
+        in_evidence("keys", "robot_new_2.yaml"),
     ],
 )
 def test_the_hidden_effect_is_found_added_and_saved(
