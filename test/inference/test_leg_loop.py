@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The filter's loop by arrays, leg by leg, and as machine code: one filter."""
+"""The filters' loops by arrays, leg by leg, and as machine code: one filter each."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import ModuleType
 from unittest.mock import patch
 
 import numpy as np
@@ -12,7 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from werrimbi_odom.inference.fitting import leg_loop
+from werrimbi_odom.inference.fitting import correlated_loop, leg_loop
+from werrimbi_odom.inference.fitting.correlated_filter import (
+    GaussMarkovError,
+    GyroHeading,
+    filtered_with_correlated_error,
+)
 from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, filtered
 from werrimbi_odom.model.compiled import compiled
 
@@ -42,25 +48,57 @@ def of_any_drive(random: np.random.Generator, sets: int, alike: bool) -> FilterI
     )
 
 
-def by(way: Callable[..., None] | None, legs: FilterInput) -> FilterResult:
-    with patch.object(leg_loop, "compiled", lambda function: way):
-        return filtered(legs)
+def of_any_reference(
+    random: np.random.Generator, legs: FilterInput, gyro: bool
+) -> GaussMarkovError:
+    """An error that wanders, with gaps in which a localiser lost the robot."""
+    sets, count = legs.noise.shape[:2]
+    gap = legs.skip & (random.random(count) < 0.5)
+    laid = None
+    if gyro:
+        turn, duration = random.normal(size=count), random.uniform(0.1, 2.0, count)
+        laid = GyroHeading(turn, duration, random.uniform(0.0, 1e-4, sets))
+    return GaussMarkovError(
+        random.uniform(1e-6, 1e-2, (sets, 3)),
+        random.uniform(0.0, 1.0, (sets, count)),
+        gap,
+        gap & (random.random(count) < 0.5),
+        float(random.choice([0.0, 0.1])),
+        laid,
+    )
 
 
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
-def test_arrays_and_single_numbers_are_one_filter(seed: int, sets: int, alike: bool) -> None:
-    legs = of_any_drive(np.random.default_rng(seed), sets, alike)
-    arrays = by(None, legs)
-    ways = [leg_loop.loop_over_scalars, compiled(leg_loop.loop_over_scalars)]
-    for way in ways if ways[1] is not None else ways[:1]:
-        numbers = by(way, legs)
+def agree(module: ModuleType, filter_of: Callable[[], FilterResult]) -> None:
+    """The loop of a module is one filter, in arrays and in scalars, by Python and by machine."""
+    ways = [None, module.loop_over_scalars, compiled(module.loop_over_scalars)]
+    found = []
+    for way in ways if ways[2] is not None else ways[:2]:
+        with patch.object(module, "compiled", lambda function, way=way: way):
+            found.append(filter_of())
+    arrays, *others = found
+    for numbers in others:
         np.testing.assert_allclose(numbers.value, arrays.value, rtol=1e-8, atol=1e-9)
         rounding = 1e-15 * leg_loop.UNMEASURED  # of what was not measured, turned into the others
         np.testing.assert_allclose(numbers.covariance, arrays.covariance, rtol=1e-8, atol=rounding)
         for name in ("enter", "carry", "leave"):
             here, there = getattr(numbers.ways, name), getattr(arrays.ways, name)
             np.testing.assert_allclose(here, there, rtol=1e-7, atol=1e-8)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
+def test_arrays_and_single_numbers_are_one_filter(seed: int, sets: int, alike: bool) -> None:
+    legs = of_any_drive(np.random.default_rng(seed), sets, alike)
+    agree(leg_loop, lambda: filtered(legs))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
+def test_so_they_are_of_a_reference_whose_error_wanders(seed: int, sets: int, gyro: bool) -> None:
+    random = np.random.default_rng(seed)
+    legs = of_any_drive(random, sets, alike=False)
+    wander = of_any_reference(random, legs, gyro)
+    agree(correlated_loop, lambda: filtered_with_correlated_error(legs, wander))
 
 
 @settings(max_examples=60, deadline=None)
@@ -81,6 +119,7 @@ def test_changes_are_carried_on_alike(seed: int, columns: int, states: int) -> N
         np.testing.assert_allclose(change, plain, rtol=1e-9, atol=1e-12)
 
 
-def test_the_machine_code_is_there_where_numba_is() -> None:
+@pytest.mark.parametrize("module", [leg_loop, correlated_loop])
+def test_the_machine_code_is_there_where_numba_is(module: ModuleType) -> None:
     pytest.importorskip("numba")
-    assert compiled(leg_loop.loop_over_scalars) is not None
+    assert compiled(module.loop_over_scalars) is not None

@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.fitting.correlated_loop import CorrelatedLoop, run_loop
 from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, Ways, in_rounds
-from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, rows_before, turn_into
-from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, rows_before
+from werrimbi_odom.model.pose import Floats
 
 ANEW = 1e2
 """Variance [m², rad²] of an unknown quantity: the error after a jump, the pose after a gap."""
@@ -98,46 +99,35 @@ def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) 
     known, jumped = np.isfinite(finish), (legs.skip & ~wander.gap)[leg]
     finish = np.where(known, finish, 0.0)
     doubted = reading[:, leg] + UNMEASURED * (~known[:, None, :] * np.eye(3))
-    lost = ANEW * (known & wander.gap[leg, None])
+    lost = np.where(known & wander.gap[leg, None], ANEW, 0.0)
     over = wander.lost & ~np.append(wander.lost[1:], False)  # a gap is one leg per pose in it
     throws = np.array([True, True, laid is None])  # a gyro does not jump
     anew = ANEW * (jumped[:, None] & known & throws) + _LOST * over[leg, None]
     kept, added = wander.kept_of_each()[:, leg], wander.added()[:, leg]
 
-    values, covariances = np.zeros((sets, count, 3)), np.empty((sets, count, 3, 3))
-    turns, moves = np.empty((sets, count, 3, 3)), np.zeros((sets, count, size, size))
-    moves[:] = np.eye(size)
+    values, covariances = np.empty((sets, count, 3)), np.empty((sets, count, 3, 3))
+    turns, less = np.empty((sets, count, 3, 3)), np.empty((count, size, size))
+    moves = np.tile(np.eye(size), (sets, count, 1, 1))
     moves[..., np.arange(3, 6), np.arange(3, 6)] = kept
     if laid is not None:
         moves[..., 5, 6], moves[..., 5, 7] = laid.turn[leg], laid.duration[leg]
-    less = np.empty((count, size, size))
-    pose, own = np.arange(3), np.arange(3, 6)
-    for now in map(slice, bounds[:-1], bounds[1:]):
-        still = now.stop - now.start
-        state, spread = state[:, :still], spread[:, :still]
-        turn, move = turns[:, now], moves[:, now]
-        turn_into(turn, state[..., 2])
-        step = (turn @ relative[now, :, None])[..., 0]
-        move[..., 0, 2], move[..., 1, 2] = -step[..., 1], step[..., 0]
-        carried = (move[..., 3:, 3:] @ state[..., 3:, None])[..., 0]
-        state = np.concatenate([state[..., :3] + step, carried], -1)
-        spread = move @ spread @ move.swapaxes(-1, -2)
-        spread[..., :3, :3] += turn @ noise[:, now] @ turn.swapaxes(-1, -2)
-        spread[..., pose, pose] += lost[now]
-        spread[..., own, own] += added[:, now] + anew[now]
-        seen = spread[..., :3] + spread[..., 3:6]
-        total = seen[..., :3, :] + seen[..., 3:6, :] + doubted[:, now]
-        new = np.where(known[now], finish[now] - state[..., :3] - state[..., 3:6], 0.0)
-        new[..., 2] = wrap_all(new[..., 2])
-        values[:, now], covariances[:, now] = new, total
-        gain = seen @ np.linalg.inv(total)
-        state = state + (gain @ new[..., None])[..., 0]
-        spread = spread - gain @ seen.swapaxes(-1, -2)
-        spread = 0.5 * (spread + spread.swapaxes(-1, -2))
-        counted = gain[0] * known[now, None, :]
-        less[now] = np.eye(size)
-        less[now, :, :3] -= counted
-        less[now, :, 3:6] -= counted
+    run_loop(
+        CorrelatedLoop(
+            *(bounds, state, spread),
+            relative=relative,
+            noise=noise,
+            finish=finish,
+            known=known,
+            reading=doubted,
+            lost=lost,
+            anew=added + anew,
+            moves=moves,
+            values=values,
+            covariances=covariances,
+            turns=turns,
+            less=less,
+        )
+    )
     skipped = legs.skip[leg]
     values[:, skipped] = 0.0
     place = np.empty(count, dtype=np.intp)
