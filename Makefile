@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+TRY := $(VENV)/.ready-to-try
 
 # An environment of ROS wheels exports these to its children; ours must find its own.
 unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
@@ -20,17 +21,22 @@ help:  ## this list
 
 setup: $(READY)  ## the environment .venv with everything in it
 
-# pip would compile all 260 packages; Python compiles the modules in use when it first imports them.
-$(READY): setup.py setup.cfg constraints.txt
+$(READY): EXTRAS := all
+$(READY): SIZE := 260 packages, about 1.3 GB when unpacked, two minutes
+$(TRY): EXTRAS := ros,workbench,simulation,fast,gps
+$(TRY): SIZE := 180 packages, about 0.9 GB when unpacked, a minute
+
+# pip would compile all packages; Python compiles the modules in use when it first imports them.
+$(READY) $(TRY): setup.py setup.cfg constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
-	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI, once:"
-	@echo "some 260 packages, about 1.4 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
+	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI$(if $(filter all,$(EXTRAS)), and what tests need) come from PyPI, once:"
+	@echo "some $(SIZE). All of pip's words: $(VENV)/setup.log"
 	@$(PYTHON) -m venv $(VENV)
 	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off --no-compile \
-	    --constraint constraints.txt --editable '.[all]' 2>&1; echo "pip ended with $$?"; } \
+	    --constraint constraints.txt --editable '.[$(EXTRAS)]' 2>&1; echo "pip ended with $$?"; } \
 	  | tee $(VENV)/setup.log | $(PYTHON) -u -c "$$PROGRESS" \
 	  || { tail -n 20 $(VENV)/setup.log; exit 1; }
-	@touch $@
+	@touch $(TRY) $@
 
 # What pip says, as one line that counts.
 define PROGRESS
@@ -59,7 +65,7 @@ sys.exit(code)
 endef
 export PROGRESS
 
-demo: setup  ## ticks through the real node, then a robot that finds out what it lacks; ROBOT=robot.yaml RUN=folder-or-bag for your own
+demo: $(TRY)  ## ticks through the real node, then a robot that finds out what it lacks; ROBOT=robot.yaml RUN=folder-or-bag for your own
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones

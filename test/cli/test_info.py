@@ -133,6 +133,26 @@ def test_without_sizes_it_says_what_to_measure(
     assert main(words) == 2  # it is not overwritten
 
 
+def test_counts_of_a_turn_that_nothing_tells_are_a_placeholder_and_no_distance_is_told(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    write_run(tmp_path / "drive", held(run_of(ROBOT, 1, 40), 20.0, 26.0)[0])
+    sizes = tmp_path / "controllers.yaml"
+    sizes.write_text(
+        "diff_drive_controller:\n  ros__parameters:\n"
+        "    left_wheel_names: [a]\n    right_wheel_names: [b]\n"
+        f"    wheel_separation: {ROBOT.wheel_separation}\n    wheel_radius: {ROBOT.wheel_radius}\n"
+    )
+    out = tmp_path / "robot.yaml"
+    printed = werrimbi("info", tmp_path / "drive", "--robot", sizes, "--out", out).words
+    assert f"4096 in {out} is a placeholder. Enter left_ticks_per_revolution" in printed
+    assert "it went" not in printed, "by 4096 counts a turn any distance is nonsense"
+    written = out.read_text()
+    assert written.count("ticks_per_revolution: 4096.0  # a placeholder: enter the counts") == 2
+    out.write_text(written.replace("4096.0  # a placeholder: enter the", "2000.0  # "))
+    assert "it went" in werrimbi("info", tmp_path / "drive", "--robot", out).words
+
+
 def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

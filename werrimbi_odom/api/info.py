@@ -123,7 +123,7 @@ def _look(
         one, first = _held(path, other, source, first, ticks_topic, reference_topic)
         held.append(one)
     title = f"A first robot file, from {paths[0].name}: check base and radius with a ruler"
-    sizes = source is not None or first.has_sizes
+    sizes = source is not None or (first.has_sizes and not first.lacks_ticks)
     given, parameters = (None, robot) if source is None else (robot, None)
     return Info(tuple(held), first, given, None, title, sizes, parameters)
 
@@ -140,6 +140,8 @@ def _held(
     separate = None if other is None else _separate(other, source, reference_topic)
     if bag is None:
         topic = separate.name if separate is not None else None
+        if source is None:
+            first = replace(first, counted=True)
         file = source or robot_file_of(first)
         run = read_run(path, file, reference=other, reference_topic=topic)
         held = Held(path, None, None, separate, {}, run, "", other=other)
@@ -270,6 +272,7 @@ def _gyro(references: Sequence[Measured], reference: Measured | None) -> Measure
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
     """Counts per turn from the steps of the joint angles, if visible."""
+    first = replace(first, counted=wheels.gives == "counts")
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first
     turn = 2.0 * math.pi
@@ -297,7 +300,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     try:
         if recorded.reference is not None:
             refuse_unjudgeable(recorded, robot)
-            if source is not None or first.has_sizes:
+            if source is not None or (first.has_sizes and not first.lacks_ticks):
                 if words := words_about_ways(recorded, robot):
                     return replace(held, problem=f"{recorded.path}: {words}")
                 require_independent(recorded, robot, limits)

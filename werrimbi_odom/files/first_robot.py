@@ -15,7 +15,8 @@ from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.wheel_joints import SIDES
 from werrimbi_odom.model.pose import Floats
 
-_UNKNOWN_TICKS = 4096.0
+PLACEHOLDER_TICKS = 4096.0
+"""Counts of a turn that are written where nothing tells them."""
 _OFTEN, _BY_ONE, _NEIGHBOURS = 0.05, 0.1, 5
 """Angles are quantised if the number of counts differs between successive messages in at least this
 share of them, and by one in this share of those; or if this many numbers of counts differ by
@@ -35,6 +36,8 @@ class FirstRobot:
     right: tuple[str, ...] = ()
     ticks: float | None = None
     """Steps of a wheel's angle, or counts, per turn."""
+    counted: bool = False
+    """Whether the wheels are counters, so that all distances depend on `ticks`."""
     bits: int = 0
     """Width at which the counters wrap; 0: they do not wrap."""
     more: Mapping[str, float] | None = None
@@ -49,9 +52,16 @@ class FirstRobot:
         """Whether the sizes needed for a robot file are known."""
         return self.radius is not None and self.separation is not None
 
+    @property
+    def lacks_ticks(self) -> bool:
+        """Whether a placeholder stands for the counts of a turn, and distances are not known."""
+        return self.counted and self.ticks is None
+
     def text(self, title: str) -> str:
         """Text of the robot file, with placeholders for unknown sizes."""
-        told = self.told or {}
+        told = dict(self.told or {})
+        if self.lacks_ticks:
+            told["ticks"] = "a placeholder: enter the counts of a turn of a wheel"
 
         def line(name: str, value: object, word: str) -> str:
             return f"    {name}: {value}" + (f"  # {told[word]}" if word in told else "")
@@ -64,7 +74,7 @@ class FirstRobot:
             line("wheel_radius", _number(self.radius or 0.05), "radius"),
         ]
         for side in SIDES:
-            ticks = _number(self.ticks or _UNKNOWN_TICKS)
+            ticks = _number(self.ticks or PLACEHOLDER_TICKS)
             lines.append(line(f"{side}_ticks_per_revolution", ticks, "ticks"))
         if self.bits:
             lines.append(line("encoder_bits", self.bits, "bits"))

@@ -11,6 +11,7 @@ from dataclasses import asdict
 from typing import Any
 
 from werrimbi_odom.files.bag_contents import SCAN
+from werrimbi_odom.files.first_robot import PLACEHOLDER_TICKS
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
@@ -123,7 +124,14 @@ def next_step(found: Info) -> tuple[str, str]:
 
 
 def _before_command(found: Info) -> str:
-    """Words before the command: why it has another length of legs than usual."""
+    """Words before the command: what to enter first, or why it has another length of legs."""
+    if found.written is not None and found.first.lacks_ticks:
+        return (
+            f"Nothing tells how many counts a turn of a wheel has: {PLACEHOLDER_TICKS:.0f} in "
+            f"{found.written} is a placeholder. Enter left_ticks_per_revolution and "
+            "right_ticks_per_revolution there (the encoder's data sheet; times four for both edges "
+            "of two channels, times the gear), or turn a wheel by hand ten times and divide. Then:"
+        )
     if found.leg > 1.0:
         return (
             f"By legs of {found.leg:g} m, because in shorter ones the noise of these positions "

@@ -84,7 +84,8 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield f"It can show {listed(can)}."
     yield from (f"It cannot show {each}." for each in cannot)
     if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
-        yield "Whether it can show base and radii is said once --robot gives their sizes."
+        counts = " and the counts of a turn" if found.first.lacks_ticks else ""
+        yield f"Whether it can show base and radii is said once --robot gives their sizes{counts}."
 
 
 def _references(held: Held) -> Iterator[str]:
