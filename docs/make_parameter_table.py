@@ -24,7 +24,8 @@ def _cells(item: NodeParameter) -> tuple[str, ...]:
 
 def _default(item: NodeParameter) -> str:
     if item.default is None:
-        return "**required**"
+        counts = item.name.endswith("_ticks_per_revolution")
+        return "**required**, unless positions are in radians" if counts else "**required**"
     if isinstance(item.default, tuple):
         return f"`[{', '.join(item.default)}]`"
     if isinstance(item.default, bool):

@@ -134,3 +134,19 @@ def test_of_a_table_the_columns_are_to_be_exchanged(tmp_path: Path, werrimbi: We
     said = werrimbi("info", tmp_path / "run").words
     assert EXCHANGED in said
     assert "exchange their names in the first line of ticks.csv" in said
+
+
+def test_a_first_robot_file_of_counters_has_the_node_s_kind_of_input(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    sizes = tmp_path / "controllers.yaml"
+    sizes.write_text(
+        "diff_drive_controller:\n  ros__parameters:\n    left_wheel_names: [a]\n"
+        "    right_wheel_names: [b]\n    wheel_separation: 0.35\n    wheel_radius: 0.05\n"
+    )
+    bag, out = recorded(tmp_path, lambda left, right: (left, right)), tmp_path / "robot.yaml"
+    assert (
+        f"4096 in {out} is a placeholder"
+        in werrimbi("info", bag, "--robot", sizes, "--out", out).words
+    )
+    assert "    input_type: int64_multi_array\n" in out.read_text()

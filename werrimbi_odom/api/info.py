@@ -19,6 +19,7 @@ from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Wheels, contents_of
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
+from werrimbi_odom.files.bag_ticks import KINDS
 from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -223,6 +224,9 @@ def _of_bag(
             first = of_urdf(getattr(text, "data", ""), tuple(joints.turned or ()))
         if source is None and wheels:
             first = with_driver(first, wheels.kind)
+            if wheels.gives == "counts" and not wheels.places:
+                kinds = {kind: name for name, kind in KINDS.items()}
+                first = replace(first, input_type=kinds.get(wheels.kind, ""))
         if source is None and joints.turned:
             known = (first.left, first.right)
             joints = joints_told_apart(tuple(joints.turned), joints.turned, known)

@@ -6,6 +6,9 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import sys
+import sysconfig
+from pathlib import Path
 
 from werrimbi_odom.errors import InputError
 
@@ -60,4 +63,10 @@ def lacking(name: str, who: str) -> str:
     """Message about a missing package."""
     extra = EXTRAS.get(name.partition(".")[0])
     wanted = f"'werrimbi_odom[{extra}]'" if extra else name
-    return f"{who} needs the Python package {name}: pip install {wanted}"
+    # Where the system's own Python is managed by its distribution (PEP 668), pip refuses without.
+    managed = (
+        sys.prefix == sys.base_prefix
+        and Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
+    )
+    pip = "pip install --user --break-system-packages" if managed else "pip install"
+    return f"{who} needs the Python package {name}: {pip} {wanted}"

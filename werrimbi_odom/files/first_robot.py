@@ -38,6 +38,8 @@ class FirstRobot:
     """Steps of a wheel's angle, or counts, per turn."""
     counted: bool = False
     """Whether the wheels are counters, so that all distances depend on `ticks`."""
+    input_type: str = ""
+    """Kind of the node's input messages; empty for its default."""
     bits: int = 0
     """Width at which the counters wrap; 0: they do not wrap."""
     more: Mapping[str, float] | None = None
@@ -76,6 +78,8 @@ class FirstRobot:
         for side in SIDES:
             ticks = _number(self.ticks or PLACEHOLDER_TICKS)
             lines.append(line(f"{side}_ticks_per_revolution", ticks, "ticks"))
+        if self.input_type:
+            lines.append(line("input_type", self.input_type, "input"))
         if self.bits:
             lines.append(line("encoder_bits", self.bits, "bits"))
         for name, value in (self.more or {}).items():
