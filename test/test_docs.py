@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import importlib.util
 import re
+import shlex
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import pytest
 
 from test.command_line import ROOT, Werrimbi
 from test.recorded_robots import with_recordings
+from werrimbi_odom.cli.main import _parser
 
 README = (ROOT / "README.md").read_text()
 PAGES = [
@@ -58,6 +60,20 @@ def test_every_link_leads_somewhere(page: Path) -> None:
         assert target.exists(), link
         if anchor:
             assert anchor in anchors(target), f"{link}#{anchor}"
+
+
+def test_the_commands_that_pages_show_have_options_that_there_are() -> None:
+    shown = [
+        line
+        for page in PAGES
+        for block in re.findall(r"^```bash\n(.*?)^```", page.read_text(), flags=re.M | re.S)
+        for line in block.replace("\\\n", " ").splitlines()
+        if line.startswith("werrimbi ")
+    ]
+    assert len(shown) > 30
+    for line in shown:
+        words = shlex.split(line, comments=True)[1:]
+        assert _parser(words).parse_args(words).verb == words[0], line
 
 
 def test_the_index_holds_every_page_once() -> None:
