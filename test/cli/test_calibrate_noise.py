@@ -31,11 +31,11 @@ ROBOT = """\
 """
 
 
-def table(sigma_xy: float = 0.0, sigma_yaw: float = 0.0, runs: int = 60) -> str:
+def table(sigma_xy: float = 0.0, sigma_yaw: float = 0.0) -> str:
     """End errors drawn from the model, as a table; the reference's noise in them."""
     model = design(out_and_back(10.0, TRACK), TRACK, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
     covariance = model.covariance(K_LEFT**2, K_RIGHT**2)
-    rows = np.random.default_rng(1).multivariate_normal(np.zeros(3), covariance, runs)
+    rows = np.random.default_rng(1).multivariate_normal(np.zeros(3), covariance, 60)
     lines = [",".join(f"{value:.7f}" for value in row) for row in rows]
     return "\n".join(["ex_m,ey_m,eyaw_rad", *lines, ""])
 

@@ -98,7 +98,7 @@ def test_a_clock_that_is_set_back_is_told_with_row_and_time(
 
 
 def test_a_bag_without_a_reference_lists_what_it_has_and_what_can_be_one(
-    tmp_path: Path, said: Callable[..., str]
+    said: Callable[..., str],
 ) -> None:
     pytest.importorskip("rosbags", reason="rosbags is not installed")
     err = said(2, RECORDINGS / "square_bag", "--reference-topic", "none")

@@ -38,11 +38,9 @@ def driver(
     return Driver(plan, limits, area, watch or Watch())
 
 
-def under_way(
-    plan: ManoeuvrePlan = SQUARE, area: Area = WIDE, watch: Watch | None = None
-) -> tuple[Driver, Plant]:
+def under_way(area: Area = WIDE, watch: Watch | None = None) -> tuple[Driver, Plant]:
     """A robot in the middle of its first side, at speed."""
-    one, plant = driver(plan, area=area, watch=watch), Plant()
+    one, plant = driver(SQUARE, area=area, watch=watch), Plant()
     plant.rest(one)
     one.start(plant.time)
     while one.command.speed < 0.15:

@@ -22,8 +22,6 @@ odom_node:
     right_ticks_per_revolution: 2000.0
 """
 MakeRobot = Callable[..., RobotFile]
-Entry = tuple[str, str, int, Any]
-"""Topic, type, when it was received [ns], message."""
 
 
 @pytest.fixture

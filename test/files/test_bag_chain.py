@@ -27,7 +27,7 @@ def wandered(t: float) -> Pose:
     return Pose(0.9 * t, 0.1 * t * t, 0.7 * t)
 
 
-def localised(ros: Any, lasts: float = 4.0) -> list[Any]:
+def localised(ros: Any) -> list[Any]:
     """Odometry at 50 Hz, a localiser that corrects it every 0.5 s and says it again at 10 Hz."""
     entries: list[Any] = [
         ("/ticks", 1, ros.counts(1, 2)),
@@ -40,7 +40,7 @@ def localised(ros: Any, lasts: float = 4.0) -> list[Any]:
             ),
         ),
     ]
-    for n in range(round(50 * lasts) + 1):
+    for n in range(round(50 * 4.0) + 1):
         at = 1000 + 20 * n  # a stamp of zero is none
         odom = ros.transform(at * MS, ("odom", "base_footprint"), *wandered(at / 1e3))
         entries.append(("/tf", at * MS + 3, ros.transforms(odom)))

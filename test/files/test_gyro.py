@@ -19,9 +19,9 @@ from werrimbi_odom.files.read_run import read_run
 MS = 10**6
 
 
-def mounted(axis: np.ndarray, seed: int = 1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def mounted(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Yaw rate, and what gyro and accelerometer measure of a robot that turns and shakes."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(1)
     rate = np.sin(np.linspace(0.0, 20.0, 500))
     rates = np.outer(rate, axis) + random.normal(0.0, 1e-3, (500, 3))
     return rate, rates, 9.81 * axis + random.normal(0.0, 2.0, (500, 3))

@@ -101,10 +101,10 @@ def test_what_cannot_be_put_together_is_said() -> None:
         merged("bag", localiser(), late)
 
 
-def wheels(ros: Any, begin: int = 0) -> list[Any]:
+def wheels(ros: Any) -> list[Any]:
     return [
         ("/joint_states", n * MS, ros.joints(n * MS, WHEELS, [0.01 * n, 0.01 * n]))
-        for n in range(begin + 100, begin + 3000, 100)
+        for n in range(100, 3000, 100)
     ]
 
 

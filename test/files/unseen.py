@@ -16,8 +16,6 @@ from werrimbi_odom.files.run import Run
 
 DAY = 1_700_000_000
 JOINTS = ("drive_left_joint", "drive_right_joint")
-STEP = 2.0 * math.pi / ROBOT.left_ticks_per_revolution
-"""Angle of a wheel from a count to the next [rad]."""
 
 WHEEL = """
   <joint name="{name}" type="continuous">

@@ -35,20 +35,18 @@ def options_of(what: HiddenSet) -> list[str]:
     return [] if kind == "absolute" else ["--reference-kind", kind]
 
 
-def judged(what: HiddenSet, *, floors: bool = True, options: Sequence[str] = ()) -> Judged:
+def judged(what: HiddenSet, *, floors: bool = True) -> Judged:
     """Diagnose a set and compare with the truth.
 
     Parameters
     ----------
     floors : bool
         Also follow what is printed, and fit the true model; else the verdict alone.
-    options : sequence of str
-        More of what the user would pass.
     """
     folder = make(what)
     outside = any(name not in IN_LIBRARY for name in what.names)
     most = MOST if floors else 0
-    told = follow(folder, [*options_of(what), *options], most=most, draft=floors and outside)
+    told = follow(folder, options_of(what), most=most, draft=floors and outside)
     said = _said(what, told)
     if not told.first:
         return said

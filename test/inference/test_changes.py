@@ -37,14 +37,12 @@ BASE, LEFT, RIGHT = range(3)
 STD = 1e-3
 
 
-def drives_of(
-    levels: np.ndarray, random: np.random.Generator, scatter: float = 0.0
-) -> DriveNumbers:
+def drives_of(levels: np.ndarray, random: np.random.Generator) -> DriveNumbers:
     """Each drive tells three numbers, one of them hardly, with errors that hang together."""
     count, size = levels.shape
     mixed = random.normal(size=(count, size, size)) + 3.0 * np.eye(size)
     information = mixed.swapaxes(-1, -2) @ mixed / (9.0 * STD**2)
-    spread = np.linalg.inv(information) + scatter**2 * np.eye(size)
+    spread = np.linalg.inv(information)
     errors = (np.linalg.cholesky(spread) @ random.normal(size=(count, size, 1)))[..., 0]
     weighted = (information @ (levels + errors)[..., None])[..., 0]
     return DriveNumbers(MULTIPLIERS, information, weighted, np.arange(count, dtype=np.float64))

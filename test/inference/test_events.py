@@ -53,7 +53,7 @@ def undisturbed(sound: Drives) -> Diagnosis:
     return _diagnosed(sound)
 
 
-def _driven(folder: Path, hidden: tuple[Knock, ...], seed: int = 40) -> Drives:
+def _driven(folder: Path, hidden: tuple[Knock, ...]) -> Drives:
     write_robot_file(TrueRobot(), folder / "robot.yaml")
     file = read_robot_file(folder / "robot.yaml")
     runs = []
@@ -63,7 +63,7 @@ def _driven(folder: Path, hidden: tuple[Knock, ...], seed: int = 40) -> Drives:
             if number == 2
             else free(40.0, seed=number, speed=0.4, yaw_rate=1.0)
         )
-        made = record(TrueRobot(), drive, seed=seed + number, hidden=hidden)
+        made = record(TrueRobot(), drive, seed=40 + number, hidden=hidden)
         runs.append(read_run(write_run(made, folder / f"run_{number}"), file))
     return runs, file.robot
 

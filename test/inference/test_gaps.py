@@ -41,10 +41,10 @@ def silent(run: Run, spans: tuple[tuple[float, float], ...] = SPANS) -> Run:
     return replace(run, reference=run.reference.chosen(kept))
 
 
-def without_ticks(run: Run, spans: tuple[tuple[float, float], ...] = SPANS) -> Run:
+def without_ticks(run: Run) -> Run:
     """The run without its ticks in some spans of time."""
     ticks = run.ticks
-    kept = np.all([(ticks.time < begin) | (ticks.time > end) for begin, end in spans], axis=0)
+    kept = np.all([(ticks.time < begin) | (ticks.time > end) for begin, end in SPANS], axis=0)
     return replace(
         run,
         ticks=replace(ticks, time=ticks.time[kept], left=ticks.left[kept], right=ticks.right[kept]),

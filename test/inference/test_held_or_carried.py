@@ -47,9 +47,9 @@ def moved_on(reference: Reference, first: int, pose: tuple[float, float, float])
     return np.stack([place.real, place.imag, yaw[first:] + turn], axis=1)
 
 
-def held(run: Run, begin: float, end: float, seed: int = 0) -> tuple[Run, float, float]:
+def held(run: Run, begin: float, end: float) -> tuple[Run, float, float]:
     """The run with its reference frozen while the ticks go on; from and to, while wheels turn."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     reference = run.reference
     assert reference is not None
     first, last = np.searchsorted(reference.time, [begin, end]).tolist()
@@ -66,9 +66,9 @@ def held(run: Run, begin: float, end: float, seed: int = 0) -> tuple[Run, float,
     return replace(run, reference=Reference(reference.time, *table.T)), *times.tolist()
 
 
-def carried(run: Run, begin: float, lasts: float, seed: int = 0) -> Run:
+def carried(run: Run, begin: float, lasts: float) -> Run:
     """The run with a rest in it, in which the robot is set aside."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     ticks, reference = run.ticks, run.reference
     assert reference is not None
     row, here = (int(np.searchsorted(each.time, begin)) for each in (ticks, reference))

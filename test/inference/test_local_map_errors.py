@@ -56,14 +56,12 @@ def localised(
     return replace(run, reference=seen)
 
 
-def session(
-    seeds: range, robot: WhiteNoiseRobot = TRUE, jumps: int = 1, seconds: float = 100.0
-) -> list[Run]:
+def session(seeds: range, jumps: int = 1, seconds: float = 100.0) -> list[Run]:
     found = []
     for seed in seeds:
         random = np.random.default_rng([seed, 4])
         run = drive(
-            robot,
+            TRUE,
             wandering(random, seconds),
             random,
             sigma_xy=WHITE[0],

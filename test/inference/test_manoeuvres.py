@@ -74,9 +74,9 @@ def test_the_simulation_drives_what_is_named() -> None:
         assert name == "stand_still" or hasattr(simulation, name)
 
 
-def rise(drive: str, truth: AppliedEffect, rival: str, yaw: bool = True) -> float:
+def rise(drive: str, truth: AppliedEffect, rival: str) -> float:
     """Of the cost, where the rival has to stand for the truth on one drive."""
-    drives = driven(BY_NAME[drive], yaw=yaw)
+    drives = driven(BY_NAME[drive])
     wrong = Candidate(find(rival), {})
     calibration = [Candidate(find(name), {}) for name in
                    ("track_width", "unequal_wheel_radii", "wheel_radius_scale")]  # fmt: skip

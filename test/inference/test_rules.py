@@ -98,6 +98,7 @@ ELSEWHERE = {
         "_TAIL": "Student's t until jumps are known; the fit itself is without it",
     },
     "fitting/correlated_filter.py": {"ANEW": "as good as infinite"},
+    "fitting/correlated_loop.py": {"GYRO_STATES": "size of a state"},
     "fitting/free_parameters.py": {"STEP": "of a derivative"},
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",

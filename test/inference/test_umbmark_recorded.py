@@ -31,9 +31,9 @@ SIDE = 1.0
 DATA = ROBOTS / "optitrack_robot"
 
 
-def driven(sense: str, seed: int, true: TrueRobot = TRUE, **options: float) -> SquareRecording:
+def driven(sense: str, seed: int, **options: float) -> SquareRecording:
     manoeuvre = figure_eight(0.6) if sense == "eight" else square(SIDE, sense, **options)
-    drive = record(true, manoeuvre, seed=seed)
+    drive = record(TRUE, manoeuvre, seed=seed)
     return record_of(f"run {seed}", drive)
 
 

@@ -70,9 +70,9 @@ def test_an_arc_is_what_many_small_straight_steps_come_to(
     assert displacement(motion, yaw) == pytest.approx((x, y), abs=1.01 * rule + 1e-12)
 
 
-@given(motions, st.floats(0.0, 1.0), angles)
+@given(motions, st.floats(0.0, 1.0))
 def test_an_arc_in_two_parts_ends_in_the_same_place(
-    motion: BodyMotion[float], share: float, yaw: float
+    motion: BodyMotion[float], share: float
 ) -> None:
     first = end(BodyMotion(*(share * part for part in motion)))
     second = end(BodyMotion(*((1.0 - share) * part for part in motion)))

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib")
-go = pytest.importorskip("plotly.graph_objects")
+pytest.importorskip("plotly.graph_objects")
 
-from matplotlib.image import imread  # noqa: E402
+from matplotlib.image import imread
 
-from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure  # noqa: E402
-from werrimbi_odom.report.path_figure import PathDrawing, path_figure  # noqa: E402
-from werrimbi_odom.report.save import save_simple_png  # noqa: E402
-from werrimbi_odom.report.style import BLUE, GREEN, ORANGE  # noqa: E402
+from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure
+from werrimbi_odom.report.path_figure import PathDrawing, path_figure
+from werrimbi_odom.report.save import save_simple_png
+from werrimbi_odom.report.style import BLUE, GREEN, ORANGE
 
 
 def share(path: Path, colour: str) -> float:

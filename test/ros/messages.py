@@ -56,7 +56,7 @@ def in_plane(covariance: Any) -> np.ndarray:
     return matrix_of(covariance)[PLANE]
 
 
-def assert_covariances(odometry: Any, slack: float = 1e-14) -> None:
+def assert_covariances(odometry: Any) -> None:
     """Both of an odometry are finite, symmetric and semi-definite; metres and radians alike."""
     for covariance in (odometry.pose.covariance, odometry.twist.covariance):
         matrix = matrix_of(covariance)
@@ -64,7 +64,7 @@ def assert_covariances(odometry: Any, slack: float = 1e-14) -> None:
         assert (matrix == matrix.T).all(), odometry
         assert (matrix.diagonal() >= 0.0).all(), odometry
         size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
-        assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -slack, odometry
+        assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -1e-14, odometry
 
 
 def read_by_ros(

@@ -66,10 +66,6 @@ def patrol(t: float) -> Speeds:
     ]
 
 
-def during(begin: float, end: float, within: Speeds) -> Callable[[float], Speeds]:
-    return lambda t: within if begin <= t < end else patrol(t)
-
-
 @pytest.mark.parametrize("late", [0.0, 0.4], ids=["prompt", "late"])
 def test_a_patrol_is_driving_even_where_the_reference_is_late(late: float) -> None:
     assert {state for _, state in states(patrol, patrol, late=late)} <= {"standing", "driving"}

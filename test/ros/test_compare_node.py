@@ -287,7 +287,7 @@ def test_silence_and_clocks_that_do_not_meet_are_said(launch: Any, compare: Any)
     comparing.stop()
 
 
-def test_what_is_given_wrongly_is_refused_in_one_line(launch: Any, compare: Any) -> None:
+def test_what_is_given_wrongly_is_refused_in_one_line(launch: Any) -> None:
     launched = launch(robot_file())
     for wrong, said in (
         ({"windw": 30}, "unknown parameter windw: did you mean window?"),

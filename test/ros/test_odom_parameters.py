@@ -81,7 +81,7 @@ def test_a_file_that_is_no_yaml(refused: Refused, tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def refused(tmp_path: Path, run_node: Callable[..., subprocess.CompletedProcess[str]]) -> Refused:
+def refused(run_node: Callable[..., subprocess.CompletedProcess[str]]) -> Refused:
     """Start a node that must refuse: what it says in its one line."""
 
     def run(robot: Robot, *arguments: str, of_rcl: bool = False) -> str:
@@ -174,7 +174,7 @@ def test_an_effect_that_needs_a_channel_does_not_run_live(monkeypatch: pytest.Mo
 # ------------------------------------------------------------------------ at run time
 
 
-def test_the_table_is_declared_with_words_and_ranges(node: Any, robot: Robot) -> None:
+def test_the_table_is_declared_with_words_and_ranges(node: Any) -> None:
     names = [item.name for item in PARAMETERS]
     listed = node.call(
         ListParameters, "odom_node/list_parameters", ListParameters.Request()

@@ -90,9 +90,7 @@ def test_the_node_runs_it_by_its_name(launch: Any, robot: dict[str, Any]) -> Non
 
 
 @pytest.mark.usefixtures("installed")
-def test_the_node_says_that_it_has_no_gauge(
-    run_node: Any, robot: dict[str, Any], tmp_path: Path
-) -> None:
+def test_the_node_says_that_it_has_no_gauge(run_node: Any, robot: dict[str, Any]) -> None:
     done = run_node(robot | {"effects": ["radii_follow_pressure"]})
     assert done.returncode == 2
     assert "looks at the measured channel tyre_pressure_kpa, which the node does" in done.stderr

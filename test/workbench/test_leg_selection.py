@@ -118,9 +118,6 @@ def test_in_the_dark_no_colour_of_the_light_is_left(comparison: Comparison) -> N
     assert "#56B4E9" in dark
 
 
-SVG = "{http://www.w3.org/2000/svg}"
-
-
 def driven(x: list[float], y: list[float]) -> Run:
     """A run of which the places alone matter."""
     n = len(x)

@@ -79,7 +79,7 @@ def info(
         Path for a first robot file.
     ticks_topic, reference_topic
         Topics to use; default: the most suitable ones.
-    references
+    references : sequence of str or Path
         Separate reference of each run: other bags, or folders with reference.csv.
     force
         Whether `out` may be overwritten.

@@ -40,14 +40,9 @@ class TimedPose(NamedTuple):
 
 
 class OdometryTrack:
-    """Stores odometry, and interpolates it between messages.
-
-    `generation` increases each time the pose was set or the clock set back; readings of different
-    generations are not comparable.
-    """
+    """Stores odometry, and interpolates it between messages."""
 
     def __init__(self) -> None:
-        self.generation = 0
         self._kept: deque[TimedPose] = deque(maxlen=KEPT)
 
     @property
@@ -78,7 +73,6 @@ class OdometryTrack:
         if dt <= 0.0 or _was_set(moved, motion, twist, dt):
             self._kept.clear()
             self._kept.append(reading._replace(path=0.0, turned=0.0))
-            self.generation += 1
             return "back" if dt <= 0.0 else "set"
         path = math.hypot(motion.along, motion.sideways)
         self._kept.append(

@@ -18,7 +18,7 @@ without motion capture), `hidden` (hidden effects as test data).
 
 from .engine import AxlePose, TruePath, UnstableError
 from .field_bag import write_field_bag
-from .field_drive import FieldDrive, FieldSensors, as_in_the_field
+from .field_drive import FieldDrive, as_in_the_field
 from .hidden import (
     CATALOGUE,
     Hidden,
@@ -52,7 +52,7 @@ from .sensors import ReferenceSensor
 from .sessions import drives, session
 
 __all__ = [
-    "CATALOGUE", "AxlePose", "FieldDrive", "FieldSensors", "Hidden", "LiveRobot", "Manoeuvre",
+    "CATALOGUE", "AxlePose", "FieldDrive", "Hidden", "LiveRobot", "Manoeuvre",
     "MoveLimits", "Nominal", "Peculiarity", "Recording", "ReferenceSensor", "StrengthError",
     "TruePath", "TrueRobot", "UnknownEffectError", "UnstableError", "WishError", "arcs",
     "as_in_the_field", "chain", "drives", "figure_eight", "free", "hide", "moves",

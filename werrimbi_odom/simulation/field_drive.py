@@ -111,7 +111,6 @@ def as_in_the_field(
     *,
     seed: int,
     robot_seed: int = 0,
-    sensors: FieldSensors | None = None,
     hidden: Sequence[Peculiarity] = (),
 ) -> FieldDrive:
     """Measure a drive with ordinary sensors, after somebody held and carried the robot in it.
@@ -121,7 +120,7 @@ def as_in_the_field(
     a reference change the localiser; the gyro, if they delay a heading; and the lidar, in its mount
     and its delay.
     """
-    sensors = sensors or FieldSensors()
+    sensors = FieldSensors()
     rng = np.random.default_rng([seed, 77])
     gyro = gyro_of(sensors, robot_seed=robot_seed)
     path, held = _held(recording.true_path, rng)

@@ -45,7 +45,6 @@ class LiveRobot:
         reference: ReferenceSensor | None = None,
         start: AxlePose = AxlePose(0.0, 0.0, 0.0),  # noqa: B008 (immutable)
         hidden: Sequence[Peculiarity] = (),
-        sensors: FieldSensors | None = None,
         room: Room | None = None,
     ) -> None:
         ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
@@ -57,7 +56,7 @@ class LiveRobot:
         self._noise = stream(seed, "reference")
         self._rngs = [np.random.default_rng([seed, 79, number]) for number in range(len(hidden))]
         self._counted = [one for one in (odd.counted(ready.robot) for odd in hidden) if one]
-        sensors = sensors or FieldSensors()
+        sensors = FieldSensors()
         self.lidar, self._room = sensors.lidar, room
         self._lidar_noise = np.random.default_rng([seed, 81])
         self._gyro = gyro_of(sensors, robot_seed=seed)

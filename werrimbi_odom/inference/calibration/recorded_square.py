@@ -42,7 +42,6 @@ class SquareRecording:
 class RecordedSquare:
     """One square: sense +1 anticlockwise, -1 clockwise; offset [m] as in `Squares`."""
 
-    name: str
     sense: int
     offset: Floats
     driven: CountedSquare
@@ -109,9 +108,7 @@ def recorded_square(
             f"{record.name}: the square is not closed: it ends {gap:.2f} m from its start, by "
             "odometry and by the reference. Drive all four legs, back to the mark"
         )
-    return RecordedSquare(
-        record.name, sense, measured - reckoned, CountedSquare(path.travel, -first_leg)
-    )
+    return RecordedSquare(sense, measured - reckoned, CountedSquare(path.travel, -first_leg))
 
 
 def _reckoned(

@@ -44,7 +44,7 @@ def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
 
 def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
     base, ratio = result.base, result.ratio
-    base_off, radii_off = _significant(base, 1.0), _significant(ratio, 1.0)
+    base_off, radii_off = _significant(base), _significant(ratio)
     size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
     if not (base_off or radii_off):
         right = "Base and radii were right, as far as these squares can tell"
@@ -166,8 +166,8 @@ def gained_in_words(
     return [Paragraph(" ".join(parts), apart=True), others]
 
 
-def _significant(estimate: ValueAndStd, null: float) -> bool:
-    return abs(estimate.value - null) > NORMAL_95 * estimate.std
+def _significant(factor: ValueAndStd) -> bool:
+    return abs(factor.value - 1.0) > NORMAL_95 * factor.std
 
 
 def _share(factor: ValueAndStd) -> str:

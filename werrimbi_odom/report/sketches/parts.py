@@ -111,17 +111,17 @@ def robot(
     parts = [
         f'<path d="M{-26 * s} {-20 * s} H{14 * s} L{28 * s} 0 L{14 * s} {20 * s} H{-26 * s} Z" '
         f'stroke="{INK}" stroke-width="2" fill="{GREY}" fill-opacity="0.15"/>',
-        _wheel(0.0, -26.0 * s, s, left),
-        _wheel(0.0, 26.0 * s, s, right),
+        _wheel(-26.0 * s, s, left),
+        _wheel(26.0 * s, s, right),
     ]
     if marker:
         parts.append(f'<circle cx="0" cy="0" r="{4 * s}" fill="{GREEN}"/>')
     return f'<g transform="translate({x} {y}) rotate({-turn})">{"".join(parts)}</g>'
 
 
-def _wheel(x: float, y: float, s: float, colour: str) -> str:
+def _wheel(y: float, s: float, colour: str) -> str:
     return (
-        f'<rect x="{x - 11 * s}" y="{y - 4 * s}" width="{22 * s}" height="{8 * s}" rx="2" '
+        f'<rect x="{-11.0 * s}" y="{y - 4 * s}" width="{22 * s}" height="{8 * s}" rx="2" '
         f'fill="{colour}" stroke="{colour}"/>'
     )
 
