@@ -24,7 +24,7 @@ setup: $(READY)  ## the environment .venv with everything in it
 $(READY): EXTRAS := all
 $(READY): SIZE := 260 packages, about 1.3 GB when unpacked, two minutes
 $(TRY): EXTRAS := ros,workbench,simulation,fast,gps
-$(TRY): SIZE := 180 packages, about 0.9 GB when unpacked, a minute
+$(TRY): SIZE := 160 packages, about 0.9 GB when unpacked, a minute
 
 # pip would compile all packages; Python compiles the modules in use when it first imports them.
 $(READY) $(TRY): setup.py setup.cfg constraints.txt
