@@ -30,6 +30,7 @@ from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
@@ -113,6 +114,7 @@ class Added:
     """The law of slightly wrong form, if that is what remains."""
     ahead_or_behind: bool
     """Whether the measured point may as well lie on the other side of the axle."""
+    set_up: SetUp
     per_run: tuple[str, ...]
     """Per-run parameters; the file leaves them out."""
     chances: Mapping[str, float | None]

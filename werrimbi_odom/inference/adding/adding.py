@@ -170,6 +170,7 @@ def add_effects(
         remaining=remaining,
         misfit=misfit,
         ahead_or_behind=ahead_or_behind(drives.laid, written, robot),
+        set_up=set_up,
         per_run=per_run,
         chances=chances,
         objections=objections,
