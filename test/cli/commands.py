@@ -62,6 +62,15 @@ def written(
     return folder
 
 
+def write_controllers(path: Path, robot: Robot) -> None:
+    """Parameters of a diff_drive_controller, which say a robot's sizes and no counts of a turn."""
+    path.write_text(
+        "diff_drive_controller:\n  ros__parameters:\n"
+        "    left_wheel_names: [a]\n    right_wheel_names: [b]\n"
+        f"    wheel_separation: {robot.wheel_separation}\n    wheel_radius: {robot.wheel_radius}\n"
+    )
+
+
 def write_run(place: Path, run: Run) -> None:
     """A run as a folder."""
     assert run.reference is not None

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
-from test.cli.commands import PLAIN, ROBOT_FILE, write_run
+from test.cli.commands import PLAIN, ROBOT_FILE, write_controllers, write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import DAY, JOINTS, gyro, joints, poses, stamp_of, urdf
@@ -138,11 +138,7 @@ def test_counts_of_a_turn_that_nothing_tells_are_a_placeholder_and_no_distance_i
 ) -> None:
     write_run(tmp_path / "drive", held(run_of(ROBOT, 1, 40), 20.0, 26.0)[0])
     sizes = tmp_path / "controllers.yaml"
-    sizes.write_text(
-        "diff_drive_controller:\n  ros__parameters:\n"
-        "    left_wheel_names: [a]\n    right_wheel_names: [b]\n"
-        f"    wheel_separation: {ROBOT.wheel_separation}\n    wheel_radius: {ROBOT.wheel_radius}\n"
-    )
+    write_controllers(sizes, ROBOT)
     out = tmp_path / "robot.yaml"
     printed = werrimbi("info", tmp_path / "drive", "--robot", sizes, "--out", out).words
     assert f"4096 in {out} is a placeholder. Enter left_ticks_per_revolution" in printed

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.cli.commands import PLAIN, ROBOT_FILE, write_run
+from test.cli.commands import PLAIN, ROBOT_FILE, write_controllers, write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import poses, stamp_of
@@ -140,10 +140,7 @@ def test_a_first_robot_file_of_counters_has_the_node_s_kind_of_input(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
     sizes = tmp_path / "controllers.yaml"
-    sizes.write_text(
-        "diff_drive_controller:\n  ros__parameters:\n    left_wheel_names: [a]\n"
-        "    right_wheel_names: [b]\n    wheel_separation: 0.35\n    wheel_radius: 0.05\n"
-    )
+    write_controllers(sizes, PLAIN)
     bag, out = recorded(tmp_path, lambda left, right: (left, right)), tmp_path / "robot.yaml"
     assert (
         f"4096 in {out} is a placeholder"

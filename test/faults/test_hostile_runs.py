@@ -48,7 +48,7 @@ def odom(run: Path, robot: Path = ROBOT) -> subprocess.CompletedProcess[str]:
 
 def refused(run: Path, said: str) -> None:
     """One clear line, and exit code 2."""
-    done = odom(run, ROBOT)
+    done = odom(run)
     assert done.returncode == 2, done.stderr[-2000:]
     assert done.stderr.count("\n") == 1, done.stderr[-2000:]
     assert said in done.stderr

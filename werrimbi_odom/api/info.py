@@ -124,7 +124,7 @@ def _look(
         one, first = _held(path, other, source, first, ticks_topic, reference_topic)
         held.append(one)
     title = f"A first robot file, from {paths[0].name}: check base and radius with a ruler"
-    sizes = source is not None or (first.has_sizes and not first.lacks_ticks)
+    sizes = source is not None or first.tells_distances
     given, parameters = (None, robot) if source is None else (robot, None)
     return Info(tuple(held), first, given, None, title, sizes, parameters)
 
@@ -223,10 +223,10 @@ def _of_bag(
             text = opened.firsts([DESCRIPTION]).get(DESCRIPTION)
             first = of_urdf(getattr(text, "data", ""), tuple(joints.turned or ()))
         if source is None and wheels:
-            first = with_driver(first, wheels.kind)
-            if wheels.gives == "counts" and not wheels.places:
-                kinds = {kind: name for name, kind in KINDS.items()}
-                first = replace(first, input_type=kinds.get(wheels.kind, ""))
+            first = with_driver(replace(first, counted=wheels.gives == "counts"), wheels.kind)
+            if first.counted and not wheels.places:
+                named = (name for name, kind in KINDS.items() if kind == wheels.kind)
+                first = replace(first, input_type=next(named, ""))
         if source is None and joints.turned:
             known = (first.left, first.right)
             joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
@@ -276,7 +276,6 @@ def _gyro(references: Sequence[Measured], reference: Measured | None) -> Measure
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
     """Counts per turn from the steps of the joint angles, if visible."""
-    first = replace(first, counted=wheels.gives == "counts")
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first
     turn = 2.0 * math.pi
@@ -304,7 +303,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     try:
         if recorded.reference is not None:
             refuse_unjudgeable(recorded, robot)
-            if source is not None or (first.has_sizes and not first.lacks_ticks):
+            if source is not None or first.tells_distances:
                 if words := words_about_ways(recorded, robot):
                     return replace(held, problem=f"{recorded.path}: {words}")
                 require_independent(recorded, robot, limits)

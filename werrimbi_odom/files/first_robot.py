@@ -59,6 +59,11 @@ class FirstRobot:
         """Whether a placeholder stands for the counts of a turn, and distances are not known."""
         return self.counted and self.ticks is None
 
+    @property
+    def tells_distances(self) -> bool:
+        """Whether it turns what the wheels counted into metres."""
+        return self.has_sizes and not self.lacks_ticks
+
     def text(self, title: str) -> str:
         """Text of the robot file, with placeholders for unknown sizes."""
         told = dict(self.told or {})

@@ -99,18 +99,16 @@ def lasting(
     frame, rest = residual_innovations(runs, point, numbers, prediction)
     parts = parts_of_innovations(runs, rest)
     for cell in cells:
-        if parts is None:
-            shown = _shown_by_the_robot(runs, point, cell, frame, rest)
-            yield Lasting(cell, 0.0 if shown else 1.0, None)
-            continue
-        free = frame.residual(pattern_of(runs, point, cell))
-        by_run = free.reshape(rest.size, len(runs.runs) if cell.variable.per_run else 1, -1)
-        gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
-        of_all = by_run.sum(axis=1)
-        p_value = _chance(gain, cell.degrees, free, of_all, rest, parts, noise_known(runs, parts))
+        p_value, alone = 0.0, None
+        if parts is not None:
+            free = frame.residual(pattern_of(runs, point, cell))
+            by_run = free.reshape(rest.size, len(runs.runs) if cell.variable.per_run else 1, -1)
+            gain = _of_one_height(by_run, rest) if cell.variable.per_run else cell.gain
+            of_all, known = by_run.sum(axis=1), noise_known(runs, parts)
+            p_value = _chance(gain, cell.degrees, free, of_all, rest, parts, known)
+            alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), of_all)
         if p_value < rules.SURE and not _shown_by_the_robot(runs, point, cell, frame, rest):
             p_value = 1.0
-        alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3), of_all)
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
