@@ -36,7 +36,7 @@ medians over the sets.
   *Missed*: the verdict *none*; or only what the effect extends was named (a delay, of a clock that
   drifts), and said to be another from drive to drive.
 - *Twins* are effects that no drive can tell apart; *rivals by construction* are effects that the
-  drives of the set cannot tell apart.
+  drives of the set can hardly tell apart: only by what a leg of 0.25 m shows of a start, say.
 - Intervals hold the true rate in at least 95 of 100 cases (Clopper and Pearson 1934).
 """
 

@@ -85,6 +85,11 @@ def _rivals(line: Judged) -> bool:
     return line.group == "rivals" and not line.below_limit
 
 
+def _asks_for_more(line: Judged) -> bool:
+    """Rivals are told, the hidden one among them, and what to drive."""
+    return judgement(line) == "ambiguous" and line.next_manoeuvre is not None
+
+
 def _strong(line: Judged) -> bool:
     return line.group == "effect" and matters(line)
 
@@ -138,17 +143,17 @@ RULES = (
         ),
     ),
     Rule(
-        "rivals by construction: ambiguous, the hidden one among them",
+        "rivals by construction: named, or ambiguous, the hidden one among them",
         "rivals",
         1.0,
         _rivals,
-        lambda line: judgement(line) == "ambiguous" and line.next_manoeuvre is not None,
+        lambda line: judgement(line) == "named" or _asks_for_more(line),
     ),
     Rule(
         "... and the proposed manoeuvres, driven, resolve them",
         "resolved",
         1.0,
-        _rivals,
+        lambda line: _rivals(line) and _asks_for_more(line),
         lambda line: line.resolved == ("named", *line.hidden),
     ),
     Rule(

@@ -241,6 +241,26 @@ def test_rivals_are_asked_for_where_the_diagnosis_says_that_it_sees_them(
     assert rule.speaks_of(replace(none, below_limit=below)) is not below
 
 
+@pytest.mark.parametrize(
+    ("said", "kept", "asked"),
+    [
+        ({"verdict": "named", "effect": "reference_delay", "found": ("reference_delay",)}, 1, 0),
+        ({"verdict": "named", "effect": "coulomb_slip", "found": ("coulomb_slip",)}, 0, 0),
+        ({"verdict": "ambiguous", "rivals": ("coulomb_slip", "reference_delay")}, 1, 1),
+        ({"verdict": "ambiguous", "rivals": ("coulomb_slip", "longitudinal_slip")}, 0, 0),
+        ({"verdict": "none", "effect": None, "found": ()}, 0, 0),
+    ],
+)
+def test_of_rivals_a_wrong_name_is_never_right(
+    said: dict[str, object], kept: int, asked: int
+) -> None:
+    told = {"group": "rivals", "hidden": ("reference_delay",), "next_manoeuvre": "arcs"}
+    line = replace(LINE, **{**told, **said})
+    rules = {rule.short: rule for rule in RULES}
+    assert len(rules["rivals"].broken_by([line])) == 1 - kept
+    assert len(rules["resolved"].of([line])) == asked, "who was told the name drives no more"
+
+
 # ------------------------------------------------------------------ certainty that survives
 
 
