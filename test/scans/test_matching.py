@@ -6,11 +6,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from test.scans.drives import in_circles, seen
 from werrimbi_odom.scans.line_features import line_elements
 from werrimbi_odom.scans.matching import match
-from werrimbi_odom.scans.sweep import Sweep, SweepMotion, deskewed, own_course, sweep_of
+from werrimbi_odom.scans.sweep import (
+    Sweep,
+    SweepMotion,
+    deskewed,
+    own_course,
+    range_noise,
+    sweep_of,
+)
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar
@@ -18,9 +27,9 @@ from werrimbi_odom.simulation.lidar import Lidar
 
 def test_a_guess_that_is_a_fifth_wrong_moves_nothing() -> None:
     """The robot went 0.1 m and turned by 0.1 rad; a guess of that, or of 20 % more."""
-    _, given = seen(in_circles(8.0), rooms.living_room(), Lidar(rotates=False))
-    first, second = given[60], given[66]
-    elements = line_elements(first.points, first.spacing, np.ones(len(first.points)))
+    _, sweeps = seen(in_circles(8.0), rooms.living_room(), Lidar(rotates=False))
+    first, second = sweeps[60], sweeps[66]
+    elements = line_elements(first.points, first.grain, np.ones(len(first.points)))
     assert elements is not None
     poses = [
         match(second.points, elements, factor * np.array([0.1, 0.0, 0.1])).pose
@@ -36,8 +45,8 @@ def test_deskewed_echoes_are_those_of_a_lidar_that_stands() -> None:
     yaw = 1.0 * t
     path = TruePath(t, 0.4 * np.sin(yaw), 0.4 * (1.0 - np.cos(yaw)), yaw, 0 * t, 0 * t)
     clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0)
-    sweeps, given = seen(path, rooms.arena(), clean)
-    sweep, (x, y, heading) = given[2], sweeps.truth[2]
+    sweeps, echoes = seen(path, rooms.arena(), clean)
+    sweep, (x, y, heading) = echoes[2], sweeps.truth[2]
     course = own_course(np.array([0.04, 0.0, 0.1]), 0.1)
     points = deskewed(sweep, course)
     cos, sin = np.cos(heading), np.sin(heading)
@@ -50,22 +59,35 @@ def test_deskewed_echoes_are_those_of_a_lidar_that_stands() -> None:
     assert np.abs(np.abs(raw[on_walls]).max(axis=1) - 1.3).max() > 0.02
 
 
+@given(st.floats(0.2, 3.0), st.floats(-0.6, 0.6), st.floats(1e-4, 0.02), st.integers(0, 10**6))
+def test_noise_of_ranges_is_told_whatever_the_angle_of_a_wall(
+    away: float, askew: float, noise: float, seed: int
+) -> None:
+    """Of 200 beams over 1.5 rad; a cupboard before it has two edges."""
+    angles = np.linspace(-0.75, 0.75, 200)
+    wall = away / np.cos(angles - askew)
+    wall[80:120] *= 0.9
+    ranges = wall + noise * np.random.default_rng(seed).standard_normal(200)
+    told = range_noise(ranges, np.arange(200), angles[1] - angles[0])
+    assert 0.5 * noise < np.median(told) < 2.0 * noise
+
+
 def test_a_match_is_as_sure_as_it_says_where_neighbouring_echoes_err_alike() -> None:
     """As a real LD08's do. By differences of neighbours the NEES was 5.4."""
     clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0, rotates=False)
     still = TruePath(np.arange(0.0, 1.0, PERIOD), *np.zeros((5, round(1.0 / PERIOD))))
-    given = seen(still, rooms.arena(), clean)[1][2]
+    sweep = seen(still, rooms.arena(), clean)[1][2]
     rng = np.random.default_rng(6)
-    distance = np.hypot(*given.points.T)
+    distance = np.hypot(*sweep.points.T)
     alike = 3e-3 * np.array([0.1, 0.35, 0.75, 1.0])  # correlations of 0.6, 0.25 and 0.06
 
     def measured() -> np.ndarray:
         noise = np.convolve(rng.standard_normal(distance.size + 3), alike, "valid")
-        return np.asarray(given.points * (1.0 + noise / distance)[:, None])
+        return np.asarray(sweep.points * (1.0 + noise / distance)[:, None])
 
-    elements = line_elements(given.points, given.spacing, np.ones(distance.size))
+    elements = line_elements(sweep.points, sweep.grain, np.ones(distance.size))
     assert elements is not None
-    true = match(given.points, elements, np.zeros(3)).pose
+    true = match(sweep.points, elements, np.zeros(3)).pose
     nees = []
     for _ in range(150):
         found = match(measured(), elements, np.zeros(3))

@@ -213,6 +213,17 @@ def test_where_scans_do_not_hold_the_robot_there_are_no_poses(room: Room, why: s
     assert max(found.path.flags, key=lambda each: found.path.flags[each]) == why
 
 
+@pytest.mark.parametrize("beams", [360, in_evidence(720)])
+def test_a_lidar_of_poor_ranges_and_close_beams_sees_lines_too(beams: int) -> None:
+    """As a TurtleBot3's LDS-01. A line between three beams to each side would be noise alone."""
+    lidar = Lidar(rate_hz=5.0, beams=beams, noise=0.015, noise_share=0.01)
+    found = matched(in_circles(30.0), rooms.living_room(), lidar)
+    assert found.path.time.size == found.path.scans
+    errors, nees = found.legs()
+    assert rms(errors)[0] < 5.0
+    assert nees.mean() < 1.5
+
+
 @pytest.mark.parametrize(("rate", "seed"), [(5.0, 0), in_evidence(10.0, 1)])
 def test_dents_that_go_with_the_lidar_do_not_hold_it_along_a_corridor(
     rate: float, seed: int

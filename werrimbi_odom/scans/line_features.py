@@ -25,8 +25,8 @@ CELL = 0.05
 """Grid cell with one element each [m]."""
 REACH = 0.12
 """Echoes within this distance of a cell's mean are fitted by its element [m] ..."""
-BEAMS = 3.0
-"""... or within this many distances between beams: three neighbours on each side make a line ..."""
+GRAINS = 3.0
+"""... or within this many grains (`sweep.Sweep`): three neighbours on each side make a line ..."""
 MOST_REACH = 0.25
 """... but not beyond this, where another object begins [m]. With 0.6 elements of far walls took in
 the cupboards before them: in a simulated room of 9 m the path walked by 3.6 mm in 8 m, in place of
@@ -71,15 +71,15 @@ class Elements(NamedTuple):
     the last digit: among centres, a rounding error would decide."""
 
 
-def line_elements(points: Floats, spacing: Floats, age: Floats) -> Elements | None:
+def line_elements(points: Floats, grain: Floats, age: Floats) -> Elements | None:
     """Fit line elements to a cloud of echoes; None if there are none.
 
     Parameters
     ----------
     points : ndarray, shape (n, 2)
         Echoes [m].
-    spacing : ndarray, shape (n,)
-        Distance between neighbouring beams at each echo [m].
+    grain : ndarray, shape (n,)
+        Of each echo, as in `sweep.Sweep` [m].
     age : ndarray, shape (n,)
         How many key scans ago each joined the map.
     """
@@ -90,9 +90,9 @@ def line_elements(points: Floats, spacing: Floats, age: Floats) -> Elements | No
     _, cell = np.unique(cells[:, 0] * (1 << 32) + cells[:, 1], return_inverse=True)
     x, y = (points - origin).T
     count = np.bincount(cell).astype(np.float64)
-    parts = (x, y, x * x, x * y, y * y, age, spacing)
+    parts = (x, y, x * x, x * y, y * y, age, grain)
     sums: Floats = np.array([np.bincount(cell, each) for each in parts], dtype=np.float64)
-    reach = np.clip(BEAMS * sums[6] / count, REACH, MOST_REACH)
+    reach = np.clip(GRAINS * sums[6] / count, REACH, MOST_REACH)
     middles = (sums[:2] / count).T
     half = np.maximum(0.5 * reach, LEAST_REACH)
     whole, near = _about(middles, (reach, half), np.vstack([count, sums[:6]]))

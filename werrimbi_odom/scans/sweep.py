@@ -4,11 +4,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
+
+NOISES = 2.5
+"""Noises of a range that count as the distance between two beams, where they are more: an element
+(`line_features`) takes in three of those to each side, of which its echoes may scatter by an eighth
+across and still be a line (`line_features.FLAT`). With the distance between beams alone a lidar of
+360 beams and 15 mm + 1 % saw no lines in a room, where 218 beams of the same noise did."""
+PARTS, FEWEST = 4, 12
+"""Parts of a scan, near to far, whose noise is told apart, and fewest echoes in each."""
+MAD = 1.4826
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +35,9 @@ class Sweep:
     duration: float
     """Duration of the turn [s]; 0 if all beams are simultaneous, negative if the order is
     reversed."""
-    spacing: Floats
-    """Distance between neighbouring beams at each echo, shape (k,) [m]."""
+    grain: Floats
+    """Distance at each echo over which its neighbours begin to show the direction of a wall: that
+    between beams, or several times their noise, shape (k,) [m]."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +86,36 @@ def sweep_of(
     middle = 0.5 * (ranges.size - 1) * beam_interval
     step = abs(float(angles[1] - angles[0])) if angles.size > 1 else 0.0
     share = np.asarray((number - 0.5 * (ranges.size - 1)) / max(ranges.size, 1), dtype=np.float64)
-    return Sweep(time + middle, points, share, ranges.size * beam_interval, distance * step)
+    grain = np.maximum(distance * step, NOISES * range_noise(distance, number, step))
+    return Sweep(time + middle, points, share, ranges.size * beam_interval, grain)
+
+
+def range_noise(ranges: Floats, number: NDArray[np.intp], step: float) -> Floats:
+    """Noise of the ranges as far as each of them, shape (k,) [m]; zero where few echoes tell it.
+
+    One over the range is a cosine along a straight wall, of which three beams in a row have a
+    second difference of nothing but noise, at whatever angle they meet it. The median does not see
+    edges. It is taken in parts of equal numbers, near to far, as noise grows with the range.
+
+    Parameters
+    ----------
+    ranges : ndarray, shape (k,)
+        Of the beams with an echo, in their order [m].
+    number : ndarray, shape (k,)
+        Which beams these are.
+    step : float
+        Angle between beams [rad].
+    """
+    inner = np.flatnonzero(number[2:] - number[:-2] == 2) + 1
+    if inner.size < PARTS * FEWEST:
+        return np.zeros(ranges.size)
+    inner = inner[np.argsort(ranges[inner], kind="stable")]
+    near, inverse = ranges[inner], 1.0 / ranges
+    change = inverse[inner - 1] + inverse[inner + 1] - 2.0 * math.cos(step) * inverse[inner]
+    off = near**2 * np.abs(change)
+    parts = zip(np.array_split(near, PARTS), np.array_split(off, PARTS), strict=True)
+    middle, size = np.array([[np.median(part) for part in both] for both in parts]).T
+    return np.asarray(np.interp(ranges, middle, MAD / math.sqrt(6.0) * size))
 
 
 def deskewed(sweep: Sweep, course: SweepMotion) -> Floats:
