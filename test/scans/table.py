@@ -46,6 +46,11 @@ CASES = {
         rooms.living_room(),
         Lidar(beams=360, noise=0.015, noise_share=0.01, rate_hz=5.0),
     ),
+    "the same, 400 beams, 15 mm + 2 %, seven turns a second": (
+        in_circles(LONG),
+        rooms.living_room(),
+        Lidar(beams=400, noise=0.015, noise_share=0.02, rate_hz=7.0),
+    ),
     "the same, ranges 20 mm too long": (in_circles(LONG), rooms.living_room(), Lidar(bias=0.02)),
     "the same, half of the edges' echoes mixed": (
         in_circles(LONG),

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from test.scans.drives import in_circles, seen
-from werrimbi_odom.scans.line_features import line_elements
+from werrimbi_odom.scans.line_features import REACH, line_elements
 from werrimbi_odom.scans.matching import match
 from werrimbi_odom.scans.sweep import (
     Sweep,
@@ -29,7 +29,7 @@ def test_a_guess_that_is_a_fifth_wrong_moves_nothing() -> None:
     """The robot went 0.1 m and turned by 0.1 rad; a guess of that, or of 20 % more."""
     _, sweeps = seen(in_circles(8.0), rooms.living_room(), Lidar(rotates=False))
     first, second = sweeps[60], sweeps[66]
-    elements = line_elements(first.points, first.grain, np.ones(len(first.points)))
+    elements = line_elements(first.points, first.reach, np.ones(len(first.points)))
     assert elements is not None
     poses = [
         match(second.points, elements, factor * np.array([0.1, 0.0, 0.1])).pose
@@ -85,7 +85,7 @@ def test_a_match_is_as_sure_as_it_says_where_neighbouring_echoes_err_alike() -> 
         noise = np.convolve(rng.standard_normal(distance.size + 3), alike, "valid")
         return np.asarray(sweep.points * (1.0 + noise / distance)[:, None])
 
-    elements = line_elements(sweep.points, sweep.grain, np.ones(distance.size))
+    elements = line_elements(sweep.points, sweep.reach, np.ones(distance.size))
     assert elements is not None
     true = match(sweep.points, elements, np.zeros(3)).pose
     nees = []
@@ -100,7 +100,7 @@ def test_a_line_through_echoes_has_less_noise_than_they() -> None:
     rng = np.random.default_rng(1)
     x = rng.uniform(0.0, 2.0, 2000)
     points = np.column_stack([x, 0.01 * rng.standard_normal(x.size)])
-    elements = line_elements(points, np.full(x.size, 0.02), np.ones(x.size))
+    elements = line_elements(points, np.full(x.size, REACH), np.ones(x.size))
     assert elements is not None
     assert np.abs(elements.centres[:, 1]).max() < 3e-3
     assert np.abs(elements.normals[:, 1]).min() > 0.995
@@ -112,7 +112,7 @@ def test_a_line_is_worth_what_its_echoes_scatter() -> None:
     x = rng.uniform(0.0, 6.0, 6000)
     noise = np.where(x < 4.5, 0.004, 0.012) * rng.standard_normal(x.size)
     points = np.column_stack([x, noise + np.where(x < 1.5, 0.0, 0.04)])
-    elements = line_elements(points, np.full(x.size, 0.02), np.ones(x.size))
+    elements = line_elements(points, np.full(x.size, REACH), np.ones(x.size))
     assert elements is not None
     at = elements.centres[:, 0]
     step, far = np.abs(at - 1.5) < 0.03, at > 4.7
@@ -128,8 +128,8 @@ def test_a_line_is_worth_what_its_echoes_scatter() -> None:
 def test_a_corner_and_a_cloud_are_no_lines() -> None:
     rng = np.random.default_rng(2)
     cloud = rng.uniform(-0.1, 0.1, (300, 2))
-    assert line_elements(cloud, np.full(300, 0.01), np.ones(300)) is None
-    assert line_elements(cloud[:2], np.full(2, 0.01), np.ones(2)) is None
+    assert line_elements(cloud, np.full(300, REACH), np.ones(300)) is None
+    assert line_elements(cloud[:2], np.full(2, REACH), np.ones(2)) is None
 
 
 def test_what_is_no_echo_is_left_out() -> None:

@@ -25,12 +25,16 @@ CELL = 0.05
 """Grid cell with one element each [m]."""
 REACH = 0.12
 """Echoes within this distance of a cell's mean are fitted by its element [m] ..."""
-GRAINS = 3.0
-"""... or within this many grains (`sweep.Sweep`): three neighbours on each side make a line ..."""
+BEAMS = 3.0
+"""... or within this many distances between beams: three neighbours on each side make a line ..."""
 MOST_REACH = 0.25
 """... but not beyond this, where another object begins [m]. With 0.6 elements of far walls took in
 the cupboards before them: in a simulated room of 9 m the path walked by 3.6 mm in 8 m, in place of
 2.3 mm, and its headings by 2.1 mrad, in place of 1.3 (radius_drift of a sound robot)."""
+NOISES, WIDEST = 7.5, 0.5
+"""Where ranges are poor, within this many of their noises, of which 6.9 make a line (`FLAT`), but
+not beyond this [m]. By its beams alone a lidar of 360 and 15 mm + 1 % saw no lines in a room, where
+218 beams of the same noise did; with 0.25 m it saw none by 2 %."""
 LEAST_REACH = 0.08
 """Least reach [m]: all cells that touch. With less an element chose echoes by their noise."""
 ENOUGH = 12.0
@@ -49,6 +53,15 @@ half. With 3 to 30 poses err alike, but with 3 those of a brisk robot by a tenth
 stated."""
 LEAST_NOISE = 1e-3
 """Least noise of ranges [m]: no lidar is better."""
+
+
+def reach_of(spacing: Floats, noise: Floats) -> Floats:
+    """Distance over which echoes show the direction of a wall [m].
+
+    Their distance from one another, and the noise of their ranges [m], are of one shape.
+    """
+    by_beams = np.clip(BEAMS * spacing, REACH, MOST_REACH)
+    return np.asarray(np.maximum(by_beams, np.minimum(NOISES * noise, WIDEST)))
 
 
 class Elements(NamedTuple):
@@ -71,15 +84,15 @@ class Elements(NamedTuple):
     the last digit: among centres, a rounding error would decide."""
 
 
-def line_elements(points: Floats, grain: Floats, age: Floats) -> Elements | None:
+def line_elements(points: Floats, reach: Floats, age: Floats) -> Elements | None:
     """Fit line elements to a cloud of echoes; None if there are none.
 
     Parameters
     ----------
     points : ndarray, shape (n, 2)
         Echoes [m].
-    grain : ndarray, shape (n,)
-        Of each echo, as in `sweep.Sweep` [m].
+    reach : ndarray, shape (n,)
+        Of each echo (`reach_of`) [m].
     age : ndarray, shape (n,)
         How many key scans ago each joined the map.
     """
@@ -90,9 +103,9 @@ def line_elements(points: Floats, grain: Floats, age: Floats) -> Elements | None
     _, cell = np.unique(cells[:, 0] * (1 << 32) + cells[:, 1], return_inverse=True)
     x, y = (points - origin).T
     count = np.bincount(cell).astype(np.float64)
-    parts = (x, y, x * x, x * y, y * y, age, grain)
+    parts = (x, y, x * x, x * y, y * y, age, reach)
     sums: Floats = np.array([np.bincount(cell, each) for each in parts], dtype=np.float64)
-    reach = np.clip(GRAINS * sums[6] / count, REACH, MOST_REACH)
+    reach = sums[6] / count
     middles = (sums[:2] / count).T
     half = np.maximum(0.5 * reach, LEAST_REACH)
     whole, near = _about(middles, (reach, half), np.vstack([count, sums[:6]]))

@@ -29,10 +29,10 @@ class LocalMap:
         self._since = 0
         self.elements: Elements | None = None
 
-    def take(self, pose: Floats, points: Floats, grain: Floats) -> bool:
+    def take(self, pose: Floats, points: Floats, reach: Floats) -> bool:
         """Add a scan if it shows something new, and say whether it did.
 
-        Pose (3,), deskewed echoes (k, 2), grain (k,).
+        Pose (3,), deskewed echoes (k, 2), reach (k,).
         """
         self._since += 1
         moved = np.abs(pose - self._last)
@@ -41,11 +41,11 @@ class LocalMap:
             return False
         cos, sin = np.cos(pose[2]), np.sin(pose[2])
         placed = points @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
-        self._keys.append((placed, grain))
+        self._keys.append((placed, reach))
         self._last, self._since = pose, 0
-        clouds, grains = zip(*self._keys, strict=True)
+        clouds, reaches = zip(*self._keys, strict=True)
         # Until the first of all leaves it, a new one moves the map by its share alone.
         ages = np.arange(len(clouds), 0, -1) * (1.0 if len(clouds) == KEYS else 2.0)
         age = np.repeat(ages, [len(cloud) for cloud in clouds])
-        self.elements = line_elements(np.concatenate(clouds), np.concatenate(grains), age)
+        self.elements = line_elements(np.concatenate(clouds), np.concatenate(reaches), age)
         return True

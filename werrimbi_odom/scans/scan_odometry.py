@@ -46,7 +46,7 @@ class ScanTracker:
         self.scatter = 0.0
         """Scatter of the echoes of the last scan about the lines of the map [m]."""
 
-    def take(self, points: Floats, grain: Floats, motion: Floats, duration: float) -> Flag:
+    def take(self, points: Floats, reach: Floats, motion: Floats, duration: float) -> Flag:
         """Match deskewed echoes (k, 2), starting from the last pose moved by `motion` (3,).
 
         If the match is rejected, the pose stays as it was.
@@ -54,7 +54,7 @@ class ScanTracker:
         if self._map.elements is None:
             if len(points) < FEWEST_POINTS:
                 return "few"
-            self._map.take(self.pose, points, grain)
+            self._map.take(self.pose, points, reach)
             return "" if self._map.elements is not None else "few"
         found = match(points, self._map.elements, moved(self.pose, motion))
         flag = _flag(found, len(points), motion_between(self.pose, found.pose), duration)
@@ -63,7 +63,7 @@ class ScanTracker:
             self.scatter = found.noise
             least = np.maximum(np.diagonal(found.covariance), FLOOR**2)
             np.fill_diagonal(self.covariance, least)
-            if self._map.take(self.pose, points, grain):
+            if self._map.take(self.pose, points, reach):
                 gain = np.linalg.solve(found.aged, found.information)
                 step = gain @ self.covariance @ gain.T
                 widest = np.linalg.eigvalsh(step[:2, :2])[1]

@@ -11,12 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.scans.line_features import reach_of
 
-NOISES = 2.5
-"""Noises of a range that count as the distance between two beams, where they are more: an element
-(`line_features`) takes in three of those to each side, of which its echoes may scatter by an eighth
-across and still be a line (`line_features.FLAT`). With the distance between beams alone a lidar of
-360 beams and 15 mm + 1 % saw no lines in a room, where 218 beams of the same noise did."""
 PARTS, FEWEST = 4, 12
 """Parts of a scan, near to far, whose noise is told apart, and fewest echoes in each."""
 MAD = 1.4826
@@ -35,9 +31,9 @@ class Sweep:
     duration: float
     """Duration of the turn [s]; 0 if all beams are simultaneous, negative if the order is
     reversed."""
-    grain: Floats
-    """Distance at each echo over which its neighbours begin to show the direction of a wall: that
-    between beams, or several times their noise, shape (k,) [m]."""
+    reach: Floats
+    """Distance from each echo over which its neighbours show the direction of a wall, shape (k,)
+    [m]."""
 
 
 @dataclass(frozen=True)
@@ -86,8 +82,8 @@ def sweep_of(
     middle = 0.5 * (ranges.size - 1) * beam_interval
     step = abs(float(angles[1] - angles[0])) if angles.size > 1 else 0.0
     share = np.asarray((number - 0.5 * (ranges.size - 1)) / max(ranges.size, 1), dtype=np.float64)
-    grain = np.maximum(distance * step, NOISES * range_noise(distance, number, step))
-    return Sweep(time + middle, points, share, ranges.size * beam_interval, grain)
+    reach = reach_of(distance * step, range_noise(distance, number, step))
+    return Sweep(time + middle, points, share, ranges.size * beam_interval, reach)
 
 
 def range_noise(ranges: Floats, number: NDArray[np.intp], step: float) -> Floats:

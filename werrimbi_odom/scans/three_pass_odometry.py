@@ -119,7 +119,7 @@ class ScanMatcher:
         before = self._first.pose
         points = deskewed(sweep, own_course(self._motion, usual))
         motion = turns * self._motion
-        flag = self._first.take(points, sweep.grain, motion, turns * usual)
+        flag = self._first.take(points, sweep.reach, motion, turns * usual)
         if flag:
             self._flags[flag] = self._flags.get(flag, 0) + 1
             self._failed += 1
@@ -221,7 +221,7 @@ class _PassAgain:
             motion, duration = motion_between(last.pose, seen.pose), seen.clock - last.clock
         self._done += 1
         self.turning = course.linear[2]
-        flag = self.tracker.take(points, seen.sweep.grain, motion, duration)
+        flag = self.tracker.take(points, seen.sweep.reach, motion, duration)
         if flag:
             self._flags[flag] = self._flags.get(flag, 0) + 1
             self._failed += 1
