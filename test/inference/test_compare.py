@@ -311,6 +311,23 @@ def test_a_wrong_model_is_no_jump_of_the_reference(runs: tuple[Run, ...]) -> Non
         assert compare(runs, robot).main.all.outliers == 0
 
 
+def test_a_marker_beside_the_axle_does_not_jump_while_it_is_not_seen() -> None:
+    """On the spot the wheels go nowhere, and a marker 6 cm ahead of them 2 cm in half a second."""
+    one, spin = np.ones(100), np.ones(200)
+    speed = np.tile(np.concatenate([0.3 * one, 0.0 * spin]), 20)
+    rate = np.concatenate([[*(0.0 * one), *(sense * 0.7 * spin)] for sense in [1.0, -1.0] * 10])
+    made = drive(TRUE, (speed, rate), np.random.default_rng(1), every=1, sigma_xy=3e-4)
+    seen = made.reference
+    since = np.mod(seen.time, 6.0)
+    unseen = (since > 3.7) & (since < 4.2) & (np.mod(seen.time, 24.0) < 6.0)
+    rows = ~unseen
+    x, y = seen.x + 0.06 * np.cos(seen.yaw), seen.y + 0.06 * np.sin(seen.yaw)
+    reference = Reference(seen.time[rows], x[rows], y[rows], seen.yaw[rows])
+    ticks = Ticks(made.ticks.time, made.ticks.left, made.ticks.right)
+    found = compare([Run("spins", Path("spins"), ticks, reference)], RIGHT)
+    assert [part for part in found.left_out if part.why == "reference"] == []
+
+
 def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
     """A scan matcher that sees no turn in most intervals, and in others one that was not driven."""
     random = np.random.default_rng(3)
