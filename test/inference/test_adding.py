@@ -247,6 +247,28 @@ def test_a_base_is_written_as_the_files_multiplier() -> None:
     assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)
 
 
+def test_a_ratio_is_known_by_headings_however_coarse_the_positions_are() -> None:
+    """Positions of 10 cm leave both radii open by as much, together: their ratio is not."""
+    truth = replace(PLAIN, left_wheel_radius_multiplier=0.995, right_wheel_radius_multiplier=1.005)
+    random = np.random.default_rng(1)
+    stated = []
+    for noise in (1e-3, 0.1):
+        runs = []
+        for run in runs_of(truth, (1, 2, 3, 4), 60):
+            assert run.reference is not None
+            seen = run.reference
+            off = random.normal(0.0, noise, (2, seen.time.size))
+            runs.append(replace(run, reference=replace(seen, x=seen.x + off[0], y=seen.y + off[1])))
+        found = add_effects([find("unequal_wheel_radii")], runs[:3], PLAIN, holdout=runs[3:])
+        ratio = found.parameters["ratio"]
+        assert ratio.value is not None
+        assert ratio.std is not None
+        assert abs(ratio.value - 1.005 / 0.995) < 4.0 * ratio.std
+        stated.append(ratio.std)
+    fine, coarse = stated
+    assert coarse < 2.0 * fine
+
+
 @pytest.mark.parametrize(("name", "factor"), [("track_width", 0.5), ("wheel_radius_scale", 4.0)])
 def test_factors_far_from_one_are_reached(name: str, factor: float) -> None:
     key = {"track_width": "wheel_separation", "wheel_radius_scale": "wheel_radius"}[name]

@@ -16,6 +16,7 @@ from test.inference.driven import NOISE_XY, NOISE_YAW, of_headings, parts, run_b
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects.lookup import find
+from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import NoDriving, Reference, Run, Ticks
@@ -323,6 +324,24 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
     ticks, seen = Ticks(time, counts, counts), of_headings(time, yaw)
     run = with_no_driving(Run("straight", Path("straight"), ticks, seen), ROBOT)
     is_found(run, "carried", 16.0, 18.0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_gyro_shows_a_carry_beside_a_localiser_that_seldom_speaks(seed: int) -> None:
+    """It speaks after each 0.15 m of the wheels' way: at rest never, and the gyro was not asked."""
+    run = carried(run_of(ROBOT, seed), 30.0, 6.0)
+    time = np.arange(run.ticks.time[0], run.ticks.time[-1], 0.01)
+    random = np.random.default_rng(seed)
+    turned = seen_at(run, time)[2] + 0.01 * time + random.normal(0.0, 1e-4, time.size)
+    way = np.abs(np.diff(run.ticks.left + run.ticks.right, prepend=0.0)).cumsum()
+    way *= 0.5 * ROBOT.left_tick
+    spoken = run.ticks.time[np.flatnonzero(np.diff(way // 0.15)) + 1]
+    wander = random.normal(0.0, [[0.02], [0.02], [0.01]], (3, spoken.size))
+    poses = Reference(spoken, *(seen_at(run, spoken) + wander))
+    both, _ = merged("drive", poses, of_headings(time, turned))
+    is_found(replace(run, reference=both), "carried", 30.0, 36.0, near=1.0)
+    late, _ = merged("drive", poses.earlier(-0.4), of_headings(time + 0.4, turned))
+    is_found(replace(run, reference=late.earlier(0.4)), "carried", 30.0, 36.0, near=1.0)
 
 
 def test_a_robot_that_is_carried_slowly_between_straight_lines_is_found_by_its_turning() -> None:

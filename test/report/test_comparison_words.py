@@ -203,8 +203,23 @@ def test_what_lasts_no_time_was_at_a_time() -> None:
     leap = LeftOut(run, 0.001, 0.02, "counter", "the right counter leapt by 13.5 m")
     held = LeftOut(run, 9.7, 11.2, "carried", "the robot was carried")
     at_once, lasting = left_out_words([leap, held])
-    assert at_once == "At 0.0 s the right counter leapt by 13.5 m: left out."
-    assert lasting == "From 9.7 s to 11.2 s the robot was carried: left out."
+    assert at_once == "At 0.0 s of run the right counter leapt by 13.5 m: left out."
+    assert lasting == "From 9.7 s to 11.2 s of run the robot was carried: left out."
+    *of_one_drive, _ = left_out_words([leap, held], named=False)
+    assert of_one_drive == ["At 0.0 s the right counter leapt by 13.5 m: left out."]
+
+
+def test_stretches_are_told_drive_by_drive_and_of_which_drive_each_is() -> None:
+    """Of three drives one was held: the one sentence did not say which."""
+    late, early = (LeftOut(Path(name), 10.0, 12.0, "gap", "silent") for name in ("b", "a"))
+    assert left_out_words([late]) == ["From 10.0 s to 12.0 s of b silent: left out."]
+    parts = [replace(late, begin=20.0, end=22.0), early, late]
+    assert [line[:22] for line in left_out_words(parts)] == [
+        "From 10.0 s to 12.0 s ",
+        "From 20.0 s to 22.0 s ",
+        "From 10.0 s to 12.0 s ",
+    ]
+    assert [line[22:26] for line in left_out_words(parts)] == ["of b", "of b", "of a"]
 
 
 def test_drives_of_one_name_are_told_by_the_folder_above_too() -> None:

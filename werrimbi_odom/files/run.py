@@ -99,6 +99,10 @@ def _running_on(counts: Counts, bits: int) -> Counts:
 class GyroTurn(NamedTuple):
     """Turn of a gyro after its alignment with another reference; see `merged`."""
 
+    time: Floats
+    """All its stamps, on the other reference's clock, shape (n,) [s]."""
+    yaw: Floats
+    """Its headings before the alignment, shape (n,) [rad]."""
     turned: Floats
     """Turn without its part in offset and constant drift, shape (m,) [rad]."""
     scale: float
@@ -156,7 +160,17 @@ class Reference:
 
     def earlier(self, delay: float) -> Reference:
         """The same with stamps that are free of a delay [s]."""
-        return self if delay == 0.0 else replace(self, time=self.time - delay)
+        if delay == 0.0:
+            return self
+        gyro = None if self.gyro is None else self.gyro._replace(time=self.gyro.time - delay)
+        return replace(self, time=self.time - delay, gyro=gyro)
+
+    def turns(self) -> Reference:
+        """What shows its turns, as often as they were measured: the gyro's own headings, if any."""
+        if self.gyro is None:
+            return self
+        nothing = np.full(self.gyro.time.size, np.nan)
+        return Reference(self.gyro.time, nothing, nothing, self.gyro.yaw)
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Reference:
         """Select poses; `which` has shape (m,), or is of rows."""

@@ -32,9 +32,8 @@ def events_words(happened: Events, track: float) -> list[str]:
     clear = sorted(events, key=lambda event: -abs(event.size) / event.std)[:_TOLD]
     for event in events:
         if event in clear:
-            where = f" of {names[event.run]}" if len(names) > 1 else ""
             words = event_words(event, track, either=either(happened))
-            lines.append(f"- at {when(event)}{where} {words};")
+            lines.append(f"- at {when(event)} of {names[event.run]} {words};")
     lines[-1] = f"{lines[-1][:-1]}."
     rest = len(events) - len(clear)
     if rest:

@@ -72,7 +72,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield f"It cannot be used as it is: {held.problem}{'' if held.problem[-1] == '?' else '.'}"
     if held.driven is not None:
         yield _driven(held, held.driven, found.sizes)
-    yield from left_out_words(held.left_out)
+    yield from left_out_words(held.left_out, named=False)
     if held.run is None:
         return
     yield from (f"{capital(each)}." for each in held.run.damage)

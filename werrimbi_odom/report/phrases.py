@@ -22,22 +22,25 @@ _TOLD = 3  # the same, for a suspect reference
 
 def drive_names(runs: Iterable[Path]) -> dict[Path, str]:
     """A name for each drive: that of its folder, with the one above where two are called alike."""
-    every = set(runs)
+    every = dict.fromkeys(runs)
     twice = len({run.name for run in every}) < len(every)
     return {run: "/".join(run.parts[-2:]) if twice else run.name for run in every}
 
 
-def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
-    """A sentence for each of the longest stretches, in order, and one for the rest; empty for none.
+def left_out_words(parts: Sequence[LeftOut], *, named: bool = True) -> list[str]:
+    """A sentence for each of the longest stretches, drive by drive, and one for the rest.
 
-    Jumps of the reference are not included; see `jumps_words`.
+    Empty for none. Jumps of the reference are not included; see `jumps_words`. `named`: whether the
+    reader needs the names of the drives.
     """
     names = drive_names(part.run for part in parts)
+    drives = list(names)
     silent = [part for part in parts if part.why != "reference"]
+    silent.sort(key=lambda part: (drives.index(part.run), part.begin))
     long = sorted(silent, key=lambda part: part.begin - part.end)[:_MOST]
     lines = []
     for part in (each for each in silent if each in long):
-        where = f" of {names[part.run]}" if len(names) > 1 or len(silent) > _MOST else ""
+        where = f" of {names[part.run]}" if named else ""
         from_s, to_s = from_start(part.started, part.begin, part.end)
         end = ". Left out." if ":" in part.words else ": left out."
         first, last = f"{from_s:.1f} s", f"{to_s:.1f} s"

@@ -36,7 +36,8 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     late = int(min(rules.JUMP_LATE / interval, item.time.size // 4))
     around = max(rules.JUMP_NEIGHBOURS, late)
     driven = _windows(np.abs(item.relative), around).max(axis=-1)
-    driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
+    # In a turn, what is measured may go as far as a wheel that turns about the other.
+    driven[:, :2] = np.maximum(driven[:, :2].max(axis=1), robot.track * driven[:, 2])[:, None]
     # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
     under_way = driven.any(axis=1) if driven.any() else np.ones(driven.shape[0], dtype=np.bool_)
     scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left[under_way]), axis=0)

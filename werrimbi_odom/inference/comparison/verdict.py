@@ -227,8 +227,9 @@ def _bad(figures: LegFigures) -> bool:
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     """Verdict on the noise by the dispersion of the legs; `too small` if one factor explains it.
 
-    The factor is estimated at the longest leg length with many legs and compared with that at the
-    requested length. The result is never too small or too large unless NEES is, at some length.
+    The factor is estimated at the longest leg length with many legs, or where that shows nothing
+    at the length whose NEES is largest, and compared with that at the requested length. The result
+    is never too small or too large unless NEES is, at some length.
     """
     many = [item for item in comparison.lengths if item.all.figures.count >= rules.MANY_LEGS]
     main = comparison.main
@@ -243,17 +244,15 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
         return "honest", factor, longest.leg
     if said == "too large":
         return "too large", factor, longest.leg
-    known = np.isfinite(factor.value) and longest.all.figures.count >= rules.FEWEST_LEGS
-    if (
-        known
-        and factor.low > rules.HONEST_WITHIN
-        and longest.consistency_of_dispersion.says == "too small"
-    ):
+    small = [item for item in comparison.lengths if item.consistency_of_dispersion.says == said]
+    if longest not in small or not factor.low > rules.HONEST_WITHIN:
+        longest = max(small, key=lambda item: item.consistency_of_dispersion.nees)
+        factor = longest.all.noise
+    if factor.determined:
         if factor.low > rules.ALIKE * short.high:
-            return "grows", factor, longest.leg
+            return "grows" if longest.leg > main.leg else "comes and goes", factor, longest.leg
         if short.low > rules.ALIKE * factor.high:
             return "comes and goes", factor, longest.leg
         return "too small", factor, longest.leg
-    worst = max((item for item in scatter if item.says == "too small"), key=lambda item: item.nees)
-    growing = trend_of(scatter) == "longer" or worst.leg > longest.leg
+    growing = trend_of(scatter) == "longer" or longest.leg > main.leg
     return "grows" if growing else "comes and goes", factor, longest.leg

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Post-selection inference: standard deviations that allow for the choice of the free parameters.
+"""Post-selection inference: covariances that allow for the choice of the free parameters.
 
 Which sizes differ from the given file's, and which parameters an effect needs, is chosen on the
 same drives by penalised likelihood. In about one set of drives in twenty, a parameter that is truly
@@ -29,19 +29,20 @@ Law = dict[str, float]
 """Optional parameters of an effect, of which at least one is kept, with their null values."""
 
 
-def model_averaged_stds(
+def model_averaged_covariance(
     fit: Fitted,
     given: Robot,
     wanted: Collection[str],
     told: FreeSizes,
     laws: Sequence[Law] = (),
     design: Design | None = None,
-) -> dict[str, float]:
-    """Standard deviations of shared parameters, averaged over the possible choices.
+) -> tuple[list[str], Floats]:
+    """Names and covariance (p, p) of shared parameters, averaged over the possible choices.
 
     Each choice of free parameters has its own estimates with their covariance, and a probability by
-    its cost and penalty. The mean square deviation from the reported values, over all choices, is
-    the variance (Bayesian model averaging: Hoeting and others, Statistical Science 14, 1999).
+    its cost and penalty. The mean product of deviations from the reported values, over all choices,
+    is the covariance (Bayesian model averaging: Hoeting and others, Statistical Science 14, 1999).
+    So both radii are as little known as a scale that was left alone, and their ratio is not.
     `fit`: the fit whose values are reported. `given`: Robot with the sizes of the file. `wanted`:
     calibration effects whose sizes are free in every choice. `told`: the chosen sizes, about which
     deviations are taken; of `laws`, the parameters in `fit`. `laws`: optional parameters of
@@ -94,13 +95,14 @@ def model_averaged_stds(
         found.append((cost, there, moves @ covariance @ moves.T))
     least = min(cost for cost, *_ in found)
     weights = np.array([math.exp(-0.5 * (cost - least)) for cost, *_ in found])
-    squares = [np.diag(inside) + (there - there_now) ** 2 for _, there, inside in found]
-    spread = np.sqrt(np.average(squares, axis=0, weights=weights))
-    doubt = {
+    products = [
+        inside + np.outer(there - there_now, there - there_now) for _, there, inside in found
+    ]
+    widened = {
         number.name: by for (number, _), by in zip(fit.design.columns, fit.widening, strict=True)
     }
-    spread *= [doubt.get(name, 1.0) for name in names]
-    return dict(zip(names, spread.tolist(), strict=True))
+    doubt = np.array([widened.get(name, 1.0) for name in names])
+    return names, np.average(products, axis=0, weights=weights) * np.outer(doubt, doubt)
 
 
 def _shared(design: Design) -> tuple[list[str], Floats, Floats]:

@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
 )
 from werrimbi_odom.inference.diagnosis.fit_statistics import grain_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_stds
+from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_covariance
 from werrimbi_odom.inference.distributions import upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
@@ -76,7 +76,7 @@ def with_spread(
     """The fit with standard deviations that allow for all choices made on the same drives.
 
     These are which sizes differ from the file's, which parameters effects need
-    (`model_averaged_stds`), which sign an effect has (`variances_by_sign`), and the noise
+    (`model_averaged_covariance`), which sign an effect has (`variances_by_sign`), and the noise
     (`Precision.widening`). No value is more precise than its law (`grain_of`). Lengths have the
     uncertainty of their logarithm, as scale parameters do.
     """
@@ -98,13 +98,15 @@ def with_spread(
     moved = moved[:, moved.any(axis=0)]
     if moved.shape[1] != sizes.free:  # the other sizes could not be reset (`with_sizes`)
         sizes = FreeSizes(("as fitted", "as fitted"), moved)
-    spread = model_averaged_stds(fit, given, wanted, sizes, laws, design)
+    shared, averaged = model_averaged_covariance(fit, given, wanted, sizes, laws, design)
     told = [index for index, (_, run) in enumerate(columns) if run < 0 and fit.moves[index].any()]
     names = [columns[index][0].name for index in told]
     wide = _precision(runs, as_written(runs, fit, given)).widening(noises, names)
-    variances = (wide * [spread[name] for name in names]) ** 2
-    variances += grain_of(fit.design, fit.point.model.robot)[told]
-    variances += [by_sign.get(name, 0.0) for name in names]
+    where = [shared.index(name) for name in names]
+    within = averaged[np.ix_(where, where)] * np.outer(wide, wide)
+    within += np.diag(grain_of(fit.design, fit.point.model.robot)[told])
+    within += np.diag([by_sign.get(name, 0.0) for name in names])
+    variances = np.diag(within).copy()
     scales = {
         f"{effect.name}.{name}"
         for effect in effects
@@ -118,7 +120,10 @@ def with_spread(
             variances[index] = max(variances[index], upper_part(value, share) ** 2)
     size = np.ones(len(columns))
     size[told] = np.sqrt(variances / np.diag(fit.covariance)[told])
-    return replace(fit, covariance=fit.covariance * np.outer(size, size))
+    covariance = fit.covariance * np.outer(size, size)
+    wider = np.sqrt(variances / np.diag(within))
+    covariance[np.ix_(told, told)] = within * np.outer(wider, wider)
+    return replace(fit, covariance=covariance)
 
 
 def variances_by_sign(
@@ -127,8 +132,8 @@ def variances_by_sign(
     """Variances of shared parameters, by name, for the signs that effects may have (`or_else`).
 
     A flat instead of a bump goes with another base and another radius. Each sign has a probability
-    by its cost and penalty, as all choices do (`model_averaged_stds`). The effect's own size has
-    none here: that of the other sign is told beside it. `either`: fits with an effect as their
+    by its cost and penalty, as all choices do (`model_averaged_covariance`). The effect's own size
+    has none here: that of the other sign is told beside it. `either`: fits with an effect as their
     newest, to these runs.
     """
     found: dict[str, float] = {}

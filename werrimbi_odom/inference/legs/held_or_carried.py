@@ -70,7 +70,7 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:
     """Find stretches in which the robot was held or carried, in order."""
     seen: list[MeasuredMotion] = []
-    turns = windows_of(counters, reference, robot, ways=False)
+    turns = windows_of(counters, reference.turns(), robot, ways=False)
     by_turns = None if turns is None else agreement_of_turns(turns, robot.track)
     if by_turns is not None:
         span = by_turns.windows.steps * by_turns.windows.step
