@@ -7,6 +7,7 @@ The engine's contacts do not creep by themselves, so the body is moved after the
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -54,17 +55,19 @@ def _falling_back(coefficient: float, above: float, turning: float, robot: TrueR
 
     The force of mass m and moment of inertia I on the two wheels is m a / 2 -+ I alpha / base.
     """
-    before = np.zeros(2)
+    before = (0.0, 0.0)
+
+    def lag(force: float, travel: float) -> float:
+        beyond = math.copysign(max(abs(force) - above, 0.0), force)
+        return -coefficient * beyond * abs(travel)
 
     def shift(stride: Stride) -> Shift:
         nonlocal before
-        travel = np.array((stride.left, stride.right))
-        left, right = (travel - before) / stride.period**2
-        before = travel
-        along, about = (left + right) / 2, (right - left) / 2
-        force = along + turning * about * np.array((-1.0, 1.0))
-        beyond = np.sign(force) * np.maximum(np.abs(force) - above, 0.0)
-        left, right = -coefficient * beyond * np.abs(travel)
+        left = (stride.left - before[0]) / stride.period**2
+        right = (stride.right - before[1]) / stride.period**2
+        before = (stride.left, stride.right)
+        along, about = (left + right) / 2, turning * (right - left) / 2
+        left, right = lag(along - about, stride.left), lag(along + about, stride.right)
         return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
 
     return shift
