@@ -12,6 +12,7 @@ import pytest
 
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Contents, contents_of
+from werrimbi_odom.files.measured_topic import preference
 from werrimbi_odom.files.own_odometry import why_from_wheels
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.simulation.lidar import Lidar
@@ -55,6 +56,17 @@ def test_what_measures_and_what_comes_from_the_wheels(tmp_path: Path, ros: Any) 
     others = [each for each in held.references if not each.independent]
     assert [each.name for each in others] == ["/tf:odom:base_link", "/odom"]
     assert all("odom -> base_link is the robot's own odometry" in each.why for each in others)
+
+
+def test_a_localisers_own_poses_come_before_its_transforms(tmp_path: Path, ros: Any) -> None:
+    """AMCL stamps map -> odom a second ahead: a second of odometry is in what that makes."""
+    entries = localised(ros, (0.0, 0.01, 0.03))
+    entries.append(("/amcl_pose", 9, ros.pose_with_covariance(9 * MS, 0.0, 0.0, 0.0, (1, 1, 1))))
+    found = contents(ros.write(tmp_path / "bag", entries)).independent
+    first, second, *_ = sorted(found, key=preference)
+    assert (first.name, second.name) == ("/amcl_pose", "/tf:map:base_link")
+    assert second.through_wheels
+    assert not first.through_wheels
 
 
 @pytest.mark.parametrize("raw", ["/odom/unfiltered", "/raw_odom", "/wheel/odometry"])

@@ -130,6 +130,20 @@ def test_one_odd_drive_is_one_odd_drive() -> None:
     assert (step.group.what, step.shape) == ("both_wheels", Shape("alone", 7))
 
 
+@pytest.mark.parametrize("seed", range(7))
+def test_one_wheel_that_grew_and_one_that_shrank_are_told_as_these(seed: int) -> None:
+    """They were "the right wheel became larger" and "both wheels became smaller"."""
+    random = np.random.default_rng(seed)
+    levels = np.ones((6, 3))
+    levels[3:, LEFT] -= 12.0 * STD
+    levels[3:, RIGHT] += 12.0 * STD
+    found = found_in(drives_of(levels, random))
+    assert {(step.group.what, step.shape) for step in found.steps} == {
+        ("left_wheel", Shape("step", 3)),
+        ("right_wheel", Shape("step", 3)),
+    }
+
+
 @pytest.mark.parametrize(
     ("what", "span", "told"),
     [

@@ -35,7 +35,17 @@ class Measured:
     aboard: bool = False
     """Whether it is given in a frame on the robot, and so rather of something that it sees."""
 
+    @property
+    def through_wheels(self) -> bool:
+        """Whether it is composed of a measured transform and the robot's own odometry."""
+        return self.chain is not None and any(step.made_from_wheels for step in self.chain.steps)
 
-def preference(each: Measured) -> tuple[bool, int]:
-    """Sort key of references: what measures more comes first, and what the robot sees last."""
-    return each.aboard, ("poses", "positions", "yaw").index(each.measures)
+
+def preference(each: Measured) -> tuple[bool, int, bool]:
+    """Sort key of references: what measures more comes first, and what the robot sees last.
+
+    Poses of a localiser come before its transforms: AMCL stamps these ahead of the scan (by its
+    `transform_tolerance`, a second as a rule), and the odometry of that time is in what they make.
+    """
+    measures = ("poses", "positions", "yaw").index(each.measures)
+    return each.aboard, measures, each.through_wheels

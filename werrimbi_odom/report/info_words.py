@@ -231,7 +231,14 @@ def _apart(held: Held) -> Iterator[str]:
     offsets = [held.stamps[name].offset for name in names if name in held.stamps]
     if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
         apart = offsets[0] - offsets[1]
-        if abs(apart) > _WANDERS:
+        if apart > _WANDERS and held.reference is not None and held.reference.through_wheels:
+            yield (
+                f"The reference's transforms are stamped {apart:.3g} s ahead of the wheels, by "
+                "when both were received: a localiser's transform_tolerance, or a clock. The "
+                "odometry of that time is in each of its poses, with what is wrong with it: record "
+                "the localiser's own poses too (/amcl_pose)."
+            )
+        elif abs(apart) > _WANDERS:
             yield (
                 f"Their clocks are apart: the reference's stamps are {abs(apart):.3g} s "
                 f"{'later' if apart > 0 else 'earlier'} than those of the wheels, by when both "

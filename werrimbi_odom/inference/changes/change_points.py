@@ -77,7 +77,7 @@ def find_changes(
         steps.append(best)
         if len(steps) <= _FEW:
             steps = _refined(rows, groups, kinds, steps, penalty)
-    steps = _refined(rows, groups, kinds, steps, penalty)
+    steps = _wheel_by_wheel(_refined(rows, groups, kinds, steps, penalty), groups)
     while steps:
         steps = [_beside_others(rows, steps, number) for number in range(len(steps))]
         least = min(steps, key=lambda step: _worth(step, penalty))
@@ -92,6 +92,24 @@ def find_changes(
         key=lambda step: (step.shape.first, -step.gain),
     )
     return ChangePoints(tuple(told), *levels_of(rows, told), tried)
+
+
+def _wheel_by_wheel(
+    steps: Sequence[GroupChange], groups: Sequence[NumberGroup]
+) -> list[GroupChange]:
+    """The same changes, with those of both wheels and of one told as one of each wheel.
+
+    They are the same where they are at the same drive: both wheels 0.7 % smaller and the right one
+    1.4 % larger is a left wheel that is smaller, and a right one that is larger.
+    """
+    wheels = {each.what: each for each in groups if each.what in ("left_wheel", "right_wheel")}
+    there = {(step.group.what, step.shape) for step in steps}
+    found = []
+    for step in steps:
+        other = [each for what, each in wheels.items() if (what, step.shape) not in there]
+        one_of_two = step.group.what == "both_wheels" and len(wheels) == 2 and len(other) == 1
+        found.append(replace(step, group=other[0]) if one_of_two else step)
+    return found
 
 
 def levels_of(rows: Rows, steps: Sequence[GroupChange]) -> tuple[Floats, Floats]:
