@@ -152,7 +152,7 @@ def test_noise_alone_is_not_more_than_the_error_without_a_reason(creep: Added) -
     some = quiet.errors.covariance.copy()
     some[:3] *= 20.0
     odd = replace(quiet, errors=replace(quiet.errors, covariance=some))
-    reason = "Noise alone is what the covariance promises: for the held-out"
+    reason = "Noise alone is what the covariance promises, and the held-out"
     for after in (loud, odd):
         found = replace(creep, holdout=replace(creep.holdout, after=after))
         assert found.noise_alone(found.holdout) > found.holdout.error("after")

@@ -209,13 +209,13 @@ def _more_than_errors(added: Added) -> list[str]:
     }
     if not more:
         return []
-    what = f"Noise alone is what the covariance promises: for the {listed([*more])} drives more"
+    what = f"Noise alone is what the covariance promises, and the {listed([*more])} drives err less"
     if added.covariance == "too large":
-        return [f"{what} than their error with it, for it is too large."]
+        return [f"{what}, for it is too large."]
     few, legs = next(iter(more.values())).of_few_legs
     return [
-        f"{what} than their error with it. Of {legs} legs {few} have half of it (squared), and so "
-        "few err less by chance; or the noise is stated too large."
+        f"{what}: by chance (half of what it promises, squared, is for {few} of {legs} legs), or "
+        "because the noise is stated too large."
     ]
 
 
