@@ -41,11 +41,12 @@ class Measured:
         return self.chain is not None and any(step.made_from_wheels for step in self.chain.steps)
 
 
-def preference(each: Measured) -> tuple[bool, int, bool]:
+def preference(each: Measured) -> tuple[bool, int, bool, bool]:
     """Sort key of references: what measures more comes first, and what the robot sees last.
 
-    Poses of a localiser come before its transforms: AMCL stamps these ahead of the scan (by its
-    `transform_tolerance`, a second as a rule), and the odometry of that time is in what they make.
+    Poses come before scans, which are yet to be matched. Poses of a localiser come before its
+    transforms: AMCL stamps these ahead of the scan (by its `transform_tolerance`, a second as a
+    rule), and the odometry of that time is in what they make.
     """
     measures = ("poses", "positions", "yaw").index(each.measures)
-    return each.aboard, measures, each.through_wheels
+    return each.aboard, measures, each.kind.endswith("/LaserScan"), each.through_wheels
