@@ -40,7 +40,7 @@ def _carried_on(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
     poses = [
         each.name
         for each in references
-        if each.independent and each.measures == "poses" and not _is_scan(each) and not each.chain
+        if each.independent and each.measures == "poses" and not each.is_scan and not each.chain
     ]
     own = [each.name for each in references if each.kind == ODOMETRY and not each.independent]
     if len(poses) < 2 or not own:
@@ -63,7 +63,7 @@ def _carried_on(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
 
 
 def _moved_scans(references: Sequence[Measured]) -> dict[str, str]:
-    scans = [each.name for each in references if _is_scan(each)]
+    scans = [each.name for each in references if each.is_scan]
     found = {}
     for name in scans:
         tail = name.rpartition("/")[2]
@@ -73,10 +73,6 @@ def _moved_scans(references: Sequence[Measured]) -> dict[str, str]:
             if longer and "filter" not in tail:  # a filter removes points but moves none
                 found[name] = f"made of {other} by its name, and perhaps moved by the odometry"
     return found
-
-
-def _is_scan(each: Measured) -> bool:
-    return each.kind.endswith("/LaserScan")
 
 
 _POSES = {

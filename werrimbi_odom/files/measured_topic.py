@@ -36,6 +36,11 @@ class Measured:
     """Whether it is given in a frame on the robot, and so rather of something that it sees."""
 
     @property
+    def is_scan(self) -> bool:
+        """Whether poses are yet to be matched from scans."""
+        return self.kind.endswith("/LaserScan")
+
+    @property
     def through_wheels(self) -> bool:
         """Whether it is composed of a measured transform and the robot's own odometry."""
         return self.chain is not None and any(step.made_from_wheels for step in self.chain.steps)
@@ -49,4 +54,4 @@ def preference(each: Measured) -> tuple[bool, int, bool, bool]:
     rule), and the odometry of that time is in what they make.
     """
     measures = ("poses", "positions", "yaw").index(each.measures)
-    return each.aboard, measures, each.kind.endswith("/LaserScan"), each.through_wheels
+    return each.aboard, measures, each.is_scan, each.through_wheels

@@ -74,7 +74,8 @@ def merged(
     late = _later(poses, (time, yaw), pieces, columns, both) if poses.own_axes else 0.0
     at = np.interp(poses.time - late, time, yaw)
     apart = poses.yaw - at
-    told, turned, scale, std, drift = _gyro_turn(pieces[both], columns, at, apart, both)
+    read = time + late, yaw
+    told, gyro, drift = _gyro_turn(read, pieces[both], columns, at, apart, both)
     laid = np.where(inside, at + columns @ told, np.nan)
     degrees = np.degrees(60.0 * drift)
     each = f", in each of its {len(cuts) + 1} pieces by itself," if cuts else ""
@@ -88,7 +89,6 @@ def merged(
             f"; by them the robot turns {1e3 * abs(late):.0f} ms {when} it does by the other, on "
             "whose clock they are put"
         )
-    gyro = GyroTurn(time + late, yaw, turned, scale, std)
     return replace(poses, yaw=laid, sigma_yaw=None, covariance=None, gyro=gyro), words
 
 
@@ -144,9 +144,14 @@ def _later(
 
 
 def _gyro_turn(
-    pieces: Floats, columns: Floats, gyro: Floats, apart: Floats, both: NDArray[np.bool_]
-) -> tuple[Floats, Floats, float, float, float]:
-    """Coefficients of the columns; the gyro's turn; its scale and std; the drift [rad/s].
+    read: tuple[Floats, Floats],
+    pieces: Floats,
+    columns: Floats,
+    gyro: Floats,
+    apart: Floats,
+    both: NDArray[np.bool_],
+) -> tuple[Floats, GyroTurn, float]:
+    """Coefficients of the columns; the gyro's turn, with its scale error; the drift [rad/s].
 
     Columns and scale are fitted together. Otherwise the columns would absorb the part of a scale
     error that follows the drive's mean turn direction, and more than is corrected later. The drift
@@ -165,7 +170,7 @@ def _gyro_turn(
     std = max(noise, 1e-6) / spread / np.sqrt(count)
     more = float(told[-1]) if SCALE_TOLD * std < abs(told[-1]) < SCALE_MOST else 0.0
     drift = float(told[-2] - more * clear[-1])
-    return np.asarray(told[:-1]), turned, 1.0 + float(told[-1]), std, drift
+    return np.asarray(told[:-1]), GyroTurn(*read, turned, 1.0 + told[-1], std), drift
 
 
 def _laid(pieces: Floats, columns: Floats, apart: Floats) -> Floats:

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.line_features import reach_of
+from werrimbi_odom.scans.matching import MAD
 
 PARTS, FEWEST = 4, 12
 """Parts of a scan, near to far, whose noise is told apart, and fewest echoes in each."""
-MAD = 1.4826
 
 
 @dataclass(frozen=True, eq=False)
