@@ -41,6 +41,7 @@ VOCABULARY = {
     "floor_slope": 0.0,
     "anisotropic_floor": 0.0,
     "castor_kick": 0.0,
+    "castor_swing": 0.0,
     "left_backlash": 0.0,
     "right_backlash": 0.0,
     "left_missed_ticks": 0.0,

@@ -40,14 +40,14 @@ def flat(drive: Drive[Floats]) -> Floats:
 
 def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> None:
     raw = steps(left, right, duration)
-    memory, pose, live = DriveMemory(flicker, 0.3, -0.4), Pose(), []
+    memory, pose, live = DriveMemory(flicker, TRACK, 0.3, -0.4), Pose(), []
     for step in raw:
         live.append(flat(memory.step(step, pose)))
         dx, dy = displacement(BodyMotion(step.along, 0.0, step.turn), pose.yaw)
         pose = Pose(pose.x + dx, pose.y + dy, pose.yaw + step.turn)
     recorded = drive_of_run(
         *(np.array(part) for part in zip(*raw, strict=True)),
-        flicker=flicker,
+        flicker=flicker, track=TRACK,
         first_angles=(0.3, -0.4),
     )
     np.testing.assert_allclose(np.array(live), flat(recorded), rtol=1e-12, atol=1e-12)
@@ -76,7 +76,7 @@ def test_live_memory_is_the_recorded_one(
 def test_a_wheel_at_rest_has_no_direction() -> None:
     nothing = np.zeros(5)
     both_ways(nothing, nothing, np.ones(5), 1e-4)
-    drive = drive_of_run(np.ones(5), *np.zeros((6, 5)), flicker=1e-4)
+    drive = drive_of_run(np.ones(5), *np.zeros((6, 5)), flicker=1e-4, track=TRACK)
     assert not drive.direction.any()
     assert not drive.left_direction.any()
     assert not drive.left_reversals.any()
@@ -86,7 +86,7 @@ def test_a_wheel_at_rest_has_no_direction() -> None:
 def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> None:
     left = np.concatenate([np.full(20, 0.01), [-back / 2, -back / 2, 0.0]])
     drive = drive_of_run(
-        np.ones(23), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4
+        np.ones(23), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4, track=TRACK
     )
     assert drive.reversals[-1] == reversals
     since = drive.since_reversal
@@ -98,7 +98,7 @@ def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> No
 def test_a_drive_that_begins_in_motion_has_no_acceleration_at_first() -> None:
     left = np.full(3, 0.01)
     drive = drive_of_run(
-        np.full(3, 0.02), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4
+        np.full(3, 0.02), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4, track=TRACK
     )
     np.testing.assert_allclose(drive.speed.start, 0.5)
     np.testing.assert_allclose(drive.left_speed.change, 0.0)

@@ -175,6 +175,7 @@ def test_a_law_of_both_tyres_alike_has_no_part_in_what_has_one_side(tmp_path: Pa
         ("reference_gyro_drift", False),
         ("turn_dependent_track", False),
         ("skid_steer", False),
+        ("castor_swing", True),
     ],
 )
 def test_which_laws_are_the_same_in_a_mirror(name: str, *, even: bool) -> None:
@@ -183,8 +184,9 @@ def test_which_laws_are_the_same_in_a_mirror(name: str, *, even: bool) -> None:
     left, right = random.normal(0.01, 0.01, (2, 200))
     time = np.full(200, 0.02)
     turn = (right - left) / 0.3
+    angles = left / 0.04, right / 0.04
     drive = drive_of_run(
-        time, left, right, 0.5 * (left + right), turn, left / 0.04, right / 0.04, flicker=1e-4
+        time, left, right, 0.5 * (left + right), turn, *angles, flicker=1e-4, track=0.3
     )
     law = find(name).using(**{item: each.typical for item, each in find(name).parameters.items()})
     assert is_even(law, drive) == even

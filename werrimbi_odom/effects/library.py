@@ -7,6 +7,7 @@ from __future__ import annotations
 from werrimbi_odom.effects.anisotropic_floor import anisotropic_floor
 from werrimbi_odom.effects.backlash import left_backlash, right_backlash
 from werrimbi_odom.effects.castor_kick import castor_kick
+from werrimbi_odom.effects.castor_swing import castor_swing
 from werrimbi_odom.effects.coulomb_slip import coulomb_slip
 from werrimbi_odom.effects.eccentric_wheel import eccentric_left_wheel, eccentric_right_wheel
 from werrimbi_odom.effects.encoder_skew import encoder_skew
@@ -63,6 +64,7 @@ LIBRARY: tuple[Effect, ...] = (
     floor_slope,
     anisotropic_floor,
     castor_kick,
+    castor_swing,
     left_backlash,
     right_backlash,
     left_missed_ticks,

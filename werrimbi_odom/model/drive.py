@@ -93,6 +93,8 @@ class Drive(Generic[Number]):
     """The same for the left wheel."""
     right_reversals: Number
     """The same for the right wheel."""
+    castor_angle: Span[Number]
+    """Angle of a castor behind the axle, 0 where it trails in forward motion (`castor`) [rad]."""
     heading: Span[Number]
     """Heading of the robot, in the frame of its pose [rad]."""
     x: Span[Number]

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from werrimbi_odom.model.castor import swing
 from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, RawStep, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Pose
@@ -69,11 +70,14 @@ class DriveMemory:
 
     flicker: float
     """A wheel that goes back by less (or by less than `ROLLBACK`) has not reversed [m]."""
+    track: float
+    """Wheel separation [m]."""
     left_angle: float = 0.0
     right_angle: float = 0.0
     """Angles of the wheels at the first message, from the counters' zeros [rad]."""
     _time: float = 0.0
     _distance: float = 0.0
+    _castor: float = 0.0
     _means: _Means | None = None
     _smooth: tuple[float, float] = (0.0, 0.0)
     _left: _Shuttle = field(init=False)
@@ -106,9 +110,11 @@ class DriveMemory:
         right_angle = Span(self.right_angle, self.right_angle + raw.right_angle)
         left, right = self._left.step(raw.left), self._right.step(raw.right)
         middle = self._middle.step(raw.along)
+        swung = self._castor + swing(self._castor, raw.along, raw.turn, self.track)
+        castor = Span(self._castor, swung)
         x, y, heading = pose
         dx, dy = displacement(BodyMotion(raw.along, 0.0, raw.turn), heading)
-        self._time, self._distance = time.end, distance.end
+        self._time, self._distance, self._castor = time.end, distance.end, castor.end
         self._means, self._smooth = means, after
         self.left_angle, self.right_angle = left_angle.end, right_angle.end
         return Drive(
@@ -134,6 +140,7 @@ class DriveMemory:
             reversals=float(self._middle.reversals),
             left_reversals=float(self._left.reversals),
             right_reversals=float(self._right.reversals),
+            castor_angle=castor,
             heading=Span(heading, heading + raw.turn),
             x=Span(x, x + dx),
             y=Span(y, y + dy),

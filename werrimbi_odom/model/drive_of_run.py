@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.castor import castor_angles
 from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats
@@ -65,6 +66,10 @@ def _itself(value: Any) -> Any:
     return value
 
 
+_TURNED = ("yaw_rate", "castor_angle", "heading", "y")
+"""Quantities of the body that have the other sign in a mirror."""
+
+
 def mirrored(drive: Drive[Floats]) -> DriveOfRun:
     """The drive of the same robot seen in a mirror: left is right, and it turns the other way."""
     other_side = {"left": "right", "right": "left"}
@@ -74,7 +79,7 @@ def mirrored(drive: Drive[Floats]) -> DriveOfRun:
         if side in other_side:
             return getattr(drive, f"{other_side[side]}_{what}")
         value = getattr(drive, name)
-        return Span(-value.start, -value.end) if name in ("yaw_rate", "heading", "y") else value
+        return Span(-value.start, -value.end) if name in _TURNED else value
 
     return DriveOfRun.by({name: partial(work, name) for name in QUANTITIES})
 
@@ -89,6 +94,7 @@ def drive_of_run(
     right_angle: Floats,
     *,
     flicker: float,
+    track: float,
     first_angles: tuple[float, float] = (0.0, 0.0),
     channels: Mapping[str, Span[Floats]] | None = None,
 ) -> DriveOfRun:
@@ -104,6 +110,11 @@ def drive_of_run(
         cache(partial(_smooth, side / duration, duration)) for side in (left, right)
     )
     heading = cache(partial(_grown, 0.0, turn))
+
+    @cache
+    def castor() -> Span[Floats]:
+        after = castor_angles(along, turn, track)
+        return Span(np.concatenate([np.zeros(1), after[:-1]]), after)
 
     @cache
     def places() -> list[Span[Floats]]:
@@ -134,6 +145,7 @@ def drive_of_run(
             "reversals": lambda: since().reversals,
             "left_reversals": lambda: since_left().reversals,
             "right_reversals": lambda: since_right().reversals,
+            "castor_angle": castor,
             "heading": heading,
             "x": lambda: places()[0],
             "y": lambda: places()[1],

@@ -40,7 +40,10 @@ class Driving:
     _channels: dict[str, float] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
-        self._memory = DriveMemory(flicker_of(self.robot)) if acts(self.robot) else None
+        if acts(self.robot):
+            self._memory = DriveMemory(flicker_of(self.robot), self.robot.track)
+        else:
+            self._memory = None
 
     def begin(self, left: float, right: float, channels: Channels | None = None) -> None:
         """Set the counters of the first message, which define the wheels' angles."""
@@ -55,7 +58,9 @@ class Driving:
         `left`, `right`: counters of the last message, needed where no effect acted before.
         """
         self.robot = robot
-        if self._memory is None and acts(robot):
+        if self._memory is not None:
+            self._memory.track = robot.track
+        elif acts(robot):
             self.__post_init__()
             self.begin(left, right)
 
@@ -134,6 +139,7 @@ def features(
         raw.left / robot.left_tick * per_left,
         raw.right / robot.right_tick * per_right,
         flicker=flicker_of(robot),
+        track=robot.track,
         first_angles=(first_counts[0] * per_left, first_counts[1] * per_right),
         channels=channels,
     )

@@ -92,6 +92,7 @@ class Rehearsal:
             self.left / RADIUS,
             self.right / RADIUS,
             flicker=FLICKER,
+            track=TRACK,
             first_angles=FIRST_ANGLES,
             channels=self.measured,
         )
@@ -110,7 +111,7 @@ class Rehearsal:
 
     def steps(self) -> Iterator[Moment]:
         """Step by step, with the causal memory of the node."""
-        memory = DriveMemory(FLICKER, *FIRST_ANGLES)
+        memory = DriveMemory(FLICKER, TRACK, *FIRST_ANGLES)
         motion, heading = self.motion, 0.0
         measured, (x, y) = self.measured, self._places()
         for i, (duration, left, right) in enumerate(

@@ -171,6 +171,7 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "turn_dependent_track": _track,
     "floor_slope": _slope,
     "castor_kick": _kick,
+    "castor_swing": lambda values, robot: f"{_angle(math.pi * values['drag'])} to either side",
     "reference_delay": lambda values, robot: (
         f"{_length(2.0 * values['delay'] * FAST)} at {FAST} m/s"
     ),

@@ -109,6 +109,36 @@ class TurnDependentTrack(MovesEachStride):
 
 
 @dataclass(frozen=True)
+class CastorSwing(Peculiarity):
+    """A stiff castor drags the robot round wherever it swings, as a trailer of one wheel does."""
+
+    drag: float
+    """Heading gained per angle that the castor swings [1]."""
+    pivot: float
+    """From the axle forwards to the pivot, in wheel separations; negative behind the axle."""
+    trail: float
+    """From the pivot to the castor's contact, in wheel separations."""
+
+    def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
+        """Step the castor's angle with the wheels' motion; it begins anywhere."""
+        ahead = self.pivot * robot.wheel_separation
+        trail = self.trail * robot.wheel_separation
+        angle = float(rng.uniform(-math.pi, math.pi))
+
+        def shift(stride: Stride) -> Shift:
+            nonlocal angle
+            along = (stride.left + stride.right) / 2
+            turn = (stride.right - stride.left) / robot.wheel_separation
+            before = angle
+            for _ in range(PARTS):
+                sideways = ahead * turn * math.cos(angle) - along * math.sin(angle)
+                angle += (sideways / trail - turn) / PARTS
+            return Shift(0.0, 0.0, self.drag * (angle - before))
+
+        return shift
+
+
+@dataclass(frozen=True)
 class CastorKick(Peculiarity):
     """After each reversal the castor swings round and changes the heading."""
 
