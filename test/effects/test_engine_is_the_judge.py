@@ -20,6 +20,7 @@ from test.evidence import in_evidence
 pytest.importorskip("mujoco")
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.model.castor import PIVOT, TRAIL
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.simulation import Peculiarity, Recording, TrueRobot, free, record
@@ -27,6 +28,7 @@ from werrimbi_odom.simulation.hidden.axle_and_reference import AskewAxle
 from werrimbi_odom.simulation.hidden.counters import EncoderSkew, MissedTicks
 from werrimbi_odom.simulation.hidden.creep import (
     CastorKick,
+    CastorSwing,
     CoulombSlip,
     LateralSlip,
     LongitudinalSlip,
@@ -99,6 +101,7 @@ CASES = [
     (LoadTransfer(0.2, 0.0, 0.8), made("load_transfer", longitudinal=0.16 / 9.81), 5),
     (CastorKick(0.03, alternating=False), made("castor_kick", angle=0.03), 20),
     (CastorKick(0.03, alternating=True), made("castor_kick", alternating=0.03), 20),
+    (CastorSwing(0.01, PIVOT, TRAIL, start=0.0), made("castor_swing", drag=0.01), 5),
     (RadiusDrift(1e-3, "metre"), made("radius_drift", per_metre=1e-3), 30),
     (RadiusDrift(3e-4, "second"), made("radius_drift", per_second=3e-4), 50),
     (EncoderSkew(0.02), made("encoder_skew", delay=0.02), 100),

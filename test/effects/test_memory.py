@@ -47,7 +47,8 @@ def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> 
         pose = Pose(pose.x + dx, pose.y + dy, pose.yaw + step.turn)
     recorded = drive_of_run(
         *(np.array(part) for part in zip(*raw, strict=True)),
-        flicker=flicker, track=TRACK,
+        flicker=flicker,
+        track=TRACK,
         first_angles=(0.3, -0.4),
     )
     np.testing.assert_allclose(np.array(live), flat(recorded), rtol=1e-12, atol=1e-12)
@@ -86,7 +87,15 @@ def test_a_wheel_at_rest_has_no_direction() -> None:
 def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> None:
     left = np.concatenate([np.full(20, 0.01), [-back / 2, -back / 2, 0.0]])
     drive = drive_of_run(
-        np.ones(23), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4, track=TRACK
+        np.ones(23),
+        left,
+        left,
+        left,
+        0 * left,
+        left / RADIUS,
+        left / RADIUS,
+        flicker=1e-4,
+        track=TRACK,
     )
     assert drive.reversals[-1] == reversals
     since = drive.since_reversal
@@ -98,7 +107,15 @@ def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> No
 def test_a_drive_that_begins_in_motion_has_no_acceleration_at_first() -> None:
     left = np.full(3, 0.01)
     drive = drive_of_run(
-        np.full(3, 0.02), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4, track=TRACK
+        np.full(3, 0.02),
+        left,
+        left,
+        left,
+        0 * left,
+        left / RADIUS,
+        left / RADIUS,
+        flicker=1e-4,
+        track=TRACK,
     )
     np.testing.assert_allclose(drive.speed.start, 0.5)
     np.testing.assert_allclose(drive.left_speed.change, 0.0)

@@ -362,6 +362,19 @@ def test_a_castor_kicks_at_reversals_alone(values: dict[str, float], kicks: int)
     assert half_a_length == pytest.approx(kick * (1 - math.exp(-0.5)), rel=0.02)
 
 
+def test_a_castor_drags_the_robot_round_where_it_swings() -> None:
+    """From a line into a spin by less than a quarter turn, at the reversal of a line to the rest of
+    half a turn; in the lines and in the spin itself nothing."""
+    law = find("castor_swing").using(drag=0.01)
+    there = track(plan(*line(1.0), *turn(6.0), *line(1.0), *line(-1.0)), law)
+    plain = track(plan(*line(1.0), *turn(6.0), *line(1.0), *line(-1.0)))
+    dragged = there.yaw - plain.yaw
+    assert dragged[np.searchsorted(there.time, 2.0)] == pytest.approx(0.0, abs=1e-6)
+    steps = np.abs(np.diff(dragged)) > 1e-5
+    assert steps.sum() < 0.5 * steps.size
+    assert abs(dragged[-1]) == pytest.approx(0.01 * math.pi, rel=0.01)
+
+
 def test_stop_and_go_is_no_reversal_and_neither_is_settling() -> None:
     law = find("castor_kick").using(angle=0.01)
     settling = [(0.05, -0.02, 0.0), (0.05, 0.0, 0.0), (0.5, 0.0, 0.0)]  # rolls back by 1 mm

@@ -55,7 +55,7 @@ FAMILIES = (
     ("lateral_slip",),
     ("sideways_drift", "reference_yaw_offset"),
     ("floor_slope", "anisotropic_floor"),
-    ("castor_kick", "left_backlash", "right_backlash"),
+    ("castor_kick", "castor_swing", "left_backlash", "right_backlash"),
     ("left_missed_ticks", "right_missed_ticks"),
     ("reference_lever_arm",),
     ("reference_delay", "reference_heading_delay", "reference_clock_drift", "reference_gyro_drift"),

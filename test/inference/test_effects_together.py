@@ -14,9 +14,19 @@ from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_by, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.inference.comparison.prepared_runs import for_fit
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.forward_selection import (
+    fit_calibration,
+    refit_to_rest,
+    search_round,
+)
+from werrimbi_odom.inference.diagnosis.holdout import begin
+from werrimbi_odom.inference.diagnosis.sequential_replacement import reconsidered
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, free, record, write_run
 from werrimbi_odom.simulation.robot import write_robot_file
@@ -100,6 +110,26 @@ def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_anoth
     found = diagnose(runs, PLAIN, effects)
     assert set(found.found) == {"eccentric_left_wheel", "oval_left_wheel"}
     assert found.verdict == "named"
+
+
+def test_what_stood_in_for_another_is_dropped_when_that_is_found() -> None:
+    """A castor that swings by its own angle passed for one that kicks at reversals alone."""
+    truth = replace(PLAIN, effects=(find("castor_swing").using(drag=-0.02),))
+    begun = begin(runs_of(truth, (1, 2), 60), (), PLAIN, EvaluationOptions())
+    laid = concatenated(for_fit(begun.judge.train, PLAIN))
+    before = fit = fit_calibration(laid, PLAIN)
+    rounds = []
+    for name in ("castor_kick", "castor_swing"):
+        rounds.append(search_round(laid, fit, [find(name)], PLAIN))
+        fit = refit_to_rest(laid, rounds[-1].tried[0], PLAIN)
+    assert fit.names == ("castor_kick", "castor_swing")
+    fit, rounds = reconsidered(laid, fit, rounds, PLAIN)
+    assert fit.names == ("castor_swing",)
+    (held,) = fit.point.model.robot.effects
+    assert held.values["drag"] == pytest.approx(-0.02, rel=0.1)
+    (only,) = rounds
+    assert only.before is before
+    assert [tried.names for tried in only.tried] == [("castor_swing",)]
 
 
 def test_what_two_do_together_is_not_beyond_the_library() -> None:

@@ -235,7 +235,7 @@ def test_the_catalogue_holds_the_vocabulary_of_the_contract() -> None:
         "oval_left_wheel", "oval_right_wheel", "radius_by_channel", "tyre_squash",
         "load_transfer", "anisotropic_floor",
         "left_tread_bump", "right_tread_bump", "reference_gyro_drift", "coulomb_slip",
-        "reference_clock_drift",
+        "reference_clock_drift", "castor_swing",
     }  # fmt: skip
     assert {entry.name for entry in sim.CATALOGUE if entry.kind == "mistake"} == {
         "wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored",

@@ -22,6 +22,7 @@ import numpy as np
 
 from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.pose import Floats
+
 Steps = Sequence[float] | Floats
 """A list where Python runs, an array where compiled code does."""
 

@@ -81,7 +81,7 @@ def alike_words(common: Alike) -> str:
     if common.what == "reversal":
         return (
             f"{near} come with a reversal: that is a law that the model does not hold, of a castor "
-            "or of free play (castor_kick, left_backlash, right_backlash)."
+            "or of free play (castor_kick, castor_swing, left_backlash, right_backlash)."
         )
     if common.what == "start or stop":
         return (

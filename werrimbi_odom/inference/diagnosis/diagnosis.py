@@ -43,7 +43,7 @@ from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
-from werrimbi_odom.inference.diagnosis.sequential_replacement import exchanged
+from werrimbi_odom.inference.diagnosis.sequential_replacement import reconsidered
 from werrimbi_odom.inference.diagnosis.verdict import diagnosis_of
 from werrimbi_odom.inference.diagnosis.wandering_reference import (
     error_may_wander,
@@ -146,7 +146,7 @@ def _searched(
             break
         rounds += further
         fit = refit_to_rest(laid, best, set_up.robot)
-        fit, rounds = exchanged(laid, fit, rounds, set_up.robot)
+        fit, rounds = reconsidered(laid, fit, rounds, set_up.robot)
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit

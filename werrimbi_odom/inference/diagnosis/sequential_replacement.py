@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Exchange of an effect found early for one that does better beside those found after it.
+"""Effects found early are dropped or exchanged where those found after them do their part.
 
 Forward selection alone keeps what it took first (Miller, "Subset selection in regression", 2002,
 section 3.5): of a wheel that is oval and off its centre, a bump on its tread explains the most by
-itself, and beside the oval that is found next an eccentric axle does better.
+itself, and beside the oval that is found next an eccentric axle does better. A castor that swings
+into spins looks like tyres that slip when they start to turn, and beside it these do nothing.
 """
 
 from __future__ import annotations
@@ -28,7 +29,42 @@ from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.robot import Robot
 
 
-def exchanged(
+def reconsidered(
+    runs: Concatenated, fit: Fitted, rounds: Sequence[Round], given: Robot
+) -> tuple[Fitted, list[Round]]:
+    """The model without an earlier effect, or with another for it, and the rounds of that.
+
+    Unchanged where every one of them is needed, and no other does better.
+    """
+    for at in range(len(fit.names) - 1):
+        if _needless(fit, fit.names[at]):
+            less, kept = _without(runs, fit, at, rounds, given)
+            if less is not None and less.total < fit.total:
+                return reconsidered(runs, refit_to_rest(runs, less, given), kept, given)
+    return _exchanged(runs, fit, rounds, given)
+
+
+def _needless(fit: Fitted, name: str) -> bool:
+    """Whether an effect does not pay for its parameters, by the curvature at the fit."""
+    its = sum(number.name.rpartition(".")[0] == name for number in fit.numbers)
+    return fit.importance[name] < its * fit.penalty_of_one
+
+
+def _without(
+    runs: Concatenated, fit: Fitted, at: int, rounds: Sequence[Round], given: Robot
+) -> tuple[Fitted | None, list[Round]]:
+    """Fit without an earlier effect, and the rounds as if it had not been found."""
+    later = fit.names[at + 1 :]
+    first = _with_the_later_ones(runs, rounds[at].before, fit, later[:1], given)
+    if first is None:
+        return None, []
+    others = [each for each in rounds[at].tried if each.names[-1] not in (fit.names[at], later[0])]
+    tried = tuple(sorted([first, *others], key=lambda each: each.total))
+    kept = [*rounds[:at], replace(rounds[at], tried=tried), *rounds[at + 2 :]]
+    return _with_the_later_ones(runs, first, fit, later[1:], given), kept
+
+
+def _exchanged(
     runs: Concatenated, fit: Fitted, rounds: Sequence[Round], given: Robot
 ) -> tuple[Fitted, list[Round]]:
     """The model with one earlier effect exchanged for another of its round, and the rounds of that.

@@ -25,7 +25,14 @@ from .beyond_library import (
     SlideByTiltAndPayload,
 )
 from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
-from .creep import CastorKick, CoulombSlip, LateralSlip, LongitudinalSlip, TurnDependentTrack
+from .creep import (
+    CastorKick,
+    CastorSwing,
+    CoulombSlip,
+    LateralSlip,
+    LongitudinalSlip,
+    TurnDependentTrack,
+)
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .hidden_effect import Peculiarity, Rng
@@ -168,6 +175,13 @@ def _slippery_spot(loss: float, rng: Rng) -> SlipperySpot:
     return SlipperySpot(loss, float(x), float(y), float(radius))
 
 
+def _castor_swing(strength: float, rng: Rng) -> CastorSwing:
+    """A castor of other lengths than the library's law, behind the axle or in front of it."""
+    pivot = float(rng.uniform(0.4, 0.8)) * (1.0 if _either(rng) else -1.0)
+    trail = float(rng.uniform(0.1, 0.2))
+    return CastorSwing(strength, pivot, trail, float(rng.uniform(-math.pi, math.pi)))
+
+
 # fmt: off
 CATALOGUE: tuple[Entry, ...] = (
     Entry("track_width", lambda s, rng: TrackWidth(s), "1", 0.003, 0.04,
@@ -239,6 +253,8 @@ CATALOGUE: tuple[Entry, ...] = (
             lambda s, rng: CoulombSlip(s, float(rng.uniform(0.3, 0.6)), _inertia(rng)), "s^2/m",
             0.02, 0.15, "share of a wheel's travel lost per acceleration above a threshold",
             signed=False),
+    Entry("castor_swing", _castor_swing, "1", 0.003, 0.015,
+            "heading gained per angle that the castor swings"),
     _mistake("wheels_swapped", lambda rng: WheelsSwapped(), "left and right exchanged"),
     _mistake("left_wheel_reversed", lambda rng: WheelReversed("left"),
              "left counter with the wrong sign"),

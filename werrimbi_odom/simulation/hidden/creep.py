@@ -108,6 +108,10 @@ class TurnDependentTrack(MovesEachStride):
         return Shift(0.0, 0.0, difference / robot.wheel_separation * (1 / grown - 1))
 
 
+PARTS = 4
+"""Steps of the castor's angle in one of the controller: it follows within some centimetres."""
+
+
 @dataclass(frozen=True)
 class CastorSwing(Peculiarity):
     """A stiff castor drags the robot round wherever it swings, as a trailer of one wheel does."""
@@ -118,12 +122,14 @@ class CastorSwing(Peculiarity):
     """From the axle forwards to the pivot, in wheel separations; negative behind the axle."""
     trail: float
     """From the pivot to the castor's contact, in wheel separations."""
+    start: float
+    """Its angle when a drive begins, 0 where it trails in forward motion [rad]."""
 
     def shifter(self, robot: TrueRobot, rng: Rng) -> Shifter:
-        """Step the castor's angle with the wheels' motion; it begins anywhere."""
+        """Step the castor's angle with the wheels' motion."""
         ahead = self.pivot * robot.wheel_separation
         trail = self.trail * robot.wheel_separation
-        angle = float(rng.uniform(-math.pi, math.pi))
+        angle = self.start
 
         def shift(stride: Stride) -> Shift:
             nonlocal angle
