@@ -126,3 +126,25 @@ def test_without_pyproj_the_remedy_is_named(
     entries = [("/ticks", 1, ros.counts(1, 2)), ("/fix", 2, ros.fix(2 * MS, (60.0, 25.0)))]
     with pytest.raises(InputError, match=r'pip install "werrimbi_odom\[gps\]"'):
         read_run(ros.write(tmp_path / "bag", entries), robot())
+
+
+def test_what_a_localiser_dates_forward_is_set_back_to_its_odometry(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """By a second, as AMCL does: of each pose a second was the odometry's, with its errors."""
+    entries: list[Any] = [("/ticks", 1, ros.counts(1, 2))]
+    for n in range(201):
+        at = 1000 + 20 * n
+        odom = ros.transform(at * MS, ("odom", "base_link"), *wandered(at / 1e3))
+        entries.append(("/tf", at * MS + 3, ros.transforms(odom)))
+        if n % 25 == 0:
+            now = at / 1e3
+            shift = compose(truth(now), between(wandered(now), Pose(0.0, 0.0, 0.0)))
+            ahead = ros.transform((at + 1000) * MS, ("map", "odom"), *shift)
+            entries.append(("/tf", at * MS + 3, ros.transforms(ahead)))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.reference is not None
+    np.testing.assert_allclose(run.reference.time, 1.0 + 0.5 * np.arange(9), atol=1e-9)
+    found = np.stack([run.reference.x, run.reference.y, np.unwrap(run.reference.yaw)], axis=1)
+    np.testing.assert_allclose(found, [truth(t) for t in run.reference.time], atol=1e-9)
+    assert "stamped 1 s ahead of its receipt and set back by that" in str(run)

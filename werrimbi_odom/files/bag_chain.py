@@ -27,6 +27,13 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
 
+POSTDATED = 0.1
+"""Stamps that are further ahead of the wheels' [s], by when both were received, are set back.
+
+A localiser dates its transform forward by its `transform_tolerance` (AMCL: a second as a rule),
+and computed it with the odometry of its last scan: the odometry of that time is no measurement."""
+
+
 class _Moved(NamedTuple):
     """A transform over time; n instants, ascending."""
 
@@ -50,6 +57,10 @@ class ChainCollector:
         self._found: dict[tuple[str, str], array[float]] = {
             (edge.parent, edge.child): array("d") for edge in chain.steps
         }
+        self._ahead: dict[tuple[str, str], array[float]] = {
+            key: array("d") for key in self._found
+        }
+        """By how much each stamp is ahead of its receipt [s]."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -61,9 +72,11 @@ class ChainCollector:
     def take(self, message: BagMessage) -> None:
         """Add a message of one of the topics."""
         for each in message.content.transforms:
-            found = self._found.get((frame(each.header.frame_id), frame(each.child_frame_id)))
+            key = frame(each.header.frame_id), frame(each.child_frame_id)
+            found = self._found.get(key)
             if found is not None:
                 time = 0.0 if is_static(message.topic) else stamp_of(message, each)
+                self._ahead[key].append(time - 1e-9 * message.received)
                 where, turn = each.transform.translation, each.transform.rotation
                 found.extend((time, where.x, where.y, where.z, turn.x, turn.y, turn.z, turn.w))
 
@@ -73,6 +86,12 @@ class ChainCollector:
         InputError if the transforms were never available at the same time.
         """
         moved = [self._moved(edge) for edge in self._chain.steps]
+        ahead = self._ahead_of_wheels()
+        if ahead > POSTDATED:
+            moved = [
+                each._replace(time=each.time - ahead) if edge in self._chain.measures else each
+                for edge, each in zip(self._chain.steps, moved, strict=True)
+            ]
         time = self._stamps(moved)
         for edge, each in zip(self._chain.steps, moved, strict=True):
             if not edge.static:
@@ -93,8 +112,24 @@ class ChainCollector:
             # A localiser corrects itself gradually, so its errors at successive corrections are
             # correlated.
             kind = "local_map"
+        if ahead > POSTDATED:
+            told += f", which is stamped {ahead:.2g} s ahead of its receipt and set back by that"
         x, y = where[:, 0].copy(), where[:, 1].copy()
         return Collected(Reference(time, x, y, yaw, kind=kind), told)
+
+    def _ahead_of_wheels(self) -> float:
+        """By how much what is measured is stamped ahead of the wheels' transforms [s].
+
+        By when both were received; 0 for a chain without wheels.
+        """
+        ahead = {
+            edge: float(np.median(self._ahead[edge.parent, edge.child]))
+            for edge in self._chain.steps
+            if not edge.static and self._ahead[edge.parent, edge.child]
+        }
+        measured = [ahead[edge] for edge in self._chain.measures if edge in ahead]
+        wheels = [late for edge, late in ahead.items() if edge.made_from_wheels]
+        return min(measured) - max(wheels) if measured and wheels else 0.0
 
     def _moved(self, edge: Edge) -> _Moved:
         from scipy.spatial.transform import Rotation

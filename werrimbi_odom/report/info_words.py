@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from werrimbi_odom.files.bag import topic_in_words
+from werrimbi_odom.files.bag_chain import POSTDATED
 from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, SCAN
 from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
@@ -231,12 +232,12 @@ def _apart(held: Held) -> Iterator[str]:
     offsets = [held.stamps[name].offset for name in names if name in held.stamps]
     if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
         apart = offsets[0] - offsets[1]
-        if apart > _WANDERS and held.reference is not None and held.reference.through_wheels:
+        if apart > POSTDATED and held.reference is not None and held.reference.through_wheels:
             yield (
                 f"The reference's transforms are stamped {apart:.3g} s ahead of the wheels, by "
-                "when both were received: a localiser's transform_tolerance, or a clock. The "
-                "odometry of that time is in each of its poses, with what is wrong with it: record "
-                "the localiser's own poses too (/amcl_pose)."
+                "when both were received: a localiser's transform_tolerance, or a clock. They are "
+                "set back by that, or the odometry of that time would be in each of its poses. "
+                "Better still are the localiser's own poses (/amcl_pose): record them too."
             )
         elif abs(apart) > _WANDERS:
             yield (
