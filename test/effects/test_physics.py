@@ -363,7 +363,7 @@ def test_a_castor_kicks_at_reversals_alone(values: dict[str, float], kicks: int)
 
 
 def test_a_castor_drags_the_robot_round_where_it_swings() -> None:
-    """Into a spin, and by half a turn at a reversal; in lines and in the spin itself it does not."""
+    """Into a spin, and by half a turn at a reversal; in lines and in spins it does not."""
     law = find("castor_swing").using(drag=0.01)
     there = track(plan(*line(1.0), *turn(6.0), *line(1.0), *line(-1.0)), law)
     plain = track(plan(*line(1.0), *turn(6.0), *line(1.0), *line(-1.0)))
