@@ -59,7 +59,8 @@ def castor_kick(
                stands at another angle to the line, by the kick; it adds up if of the same sign, and
                comes and goes if alternating
     Alike      left_backlash and right_backlash, when driven to and fro only: play is taken up by
-               spins as well, so drive spins both ways
+               spins as well, so drive spins both ways; castor_swing, whose side is not always the
+               same, and which acts in spins too
     """
     since = drive.since_reversal
     swing = (exp(since.start / -length) - exp(since.end / -length)) * (drive.reversals > 0.0)
