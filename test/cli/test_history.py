@@ -123,7 +123,13 @@ def test_diagnose_tells_the_same_change_before_its_verdict(
     assert change["from_run"] == f"drive_{(FIRST_NEW * 3) % DRIVES}"
     assert change["after"] - change["before"] == pytest.approx(0.006, abs=6e-4)
     assert change["p_value"] < 1e-3
-    assert capsys.readouterr().out.startswith("The robot was not the same in all of these drives.")
+    printed = capsys.readouterr().out
+    assert printed.startswith("The robot was not the same in all of these drives.")
+    # In the order of their dates, which is not that of their names.
+    since = [f"drive_{(number * 3) % DRIVES}" for number in range(FIRST_NEW, DRIVES)]
+    assert f"ask again with the drives from {since[0]} on alone:" in " ".join(printed.split())
+    command = printed[printed.index("    werrimbi diagnose") :].partition("\n")[2].split("\n")[0]
+    assert sorted(Path(word).name for word in command.split()) == sorted(since)
 
 
 def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Path) -> None:

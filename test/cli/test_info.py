@@ -149,6 +149,25 @@ def test_counts_of_a_turn_that_nothing_tells_are_a_placeholder_and_no_distance_i
     assert "it went" in werrimbi("info", tmp_path / "drive", "--robot", out).words
 
 
+@pytest.mark.parametrize("bits", [12, 16])
+def test_counters_that_wrap_are_told_and_the_first_robot_file_says_at_how_many_bits(
+    tmp_path: Path, werrimbi: Werrimbi, bits: int
+) -> None:
+    run, period = run_of(ROBOT, 1, 40), 1 << bits
+    left, right = ((counts - 500) % period for counts in (run.ticks.left, run.ticks.right))
+    assert np.abs(np.diff(left)).max() > period / 2, "it wraps"
+    write_run(tmp_path / "drive", replace(run, ticks=replace(run.ticks, left=left, right=right)))
+    sizes = tmp_path / "controllers.yaml"
+    write_controllers(sizes, ROBOT)
+    out = tmp_path / "robot.yaml"
+    printed = werrimbi("info", tmp_path / "drive", "--robot", sizes, "--out", out)
+    assert f"begin anew at {bits} bits: the robot file needs encoder_bits: {bits}" in printed.words
+    out.write_text(out.read_text().replace("4096.0", "2000.0"))
+    assert wo.read_robot(out).robot.encoder_bits == bits
+    command = next(line for line in printed.out.splitlines() if "werrimbi compare" in line)
+    werrimbi(*shlex.split(command)[1:])
+
+
 def test_a_robot_file_with_a_mistake_is_not_taken_for_a_controllers(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

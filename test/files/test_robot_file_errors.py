@@ -85,7 +85,11 @@ def complaint(path: Path, text: str | bytes) -> str:
         (BARE.replace("0.05", ""), ", line 4: wheel_radius must be a number (m), not None"),
         (BARE.replace("0.05", "2024-01-01"), ", line 4: wheel_radius must be a number (m), not "),
         (_with("encoder_bits: 16.5"), ", line 7: encoder_bits must be a whole number (bits)"),
-        (_with("encoder_bits: 12"), ", line 7: encoder_bits must be one of 0, 8, 16, 32"),
+        (_with("encoder_bits: 65"), ", line 7: encoder_bits must be a whole number of at most 64"),
+        (
+            _with("encoder_bits: 1"),
+            ", line 7: encoder_bits must be 0 (never wraps) or from 2 to 64",
+        ),
         (_with("left_wheel_noise: -1e-4"), ", line 7: left_wheel_noise must be a number of at"),
         (_with("enable_odom_tf: 1"), ", line 7: enable_odom_tf must be true or false, not 1"),
         (_with('enable_odom_tf: "yes"'), ", line 7: enable_odom_tf must be true or false"),

@@ -211,11 +211,15 @@ def test_by_scans_a_change_may_be_the_floor_s(
 ) -> None:
     """A floor's grain was told as a lidar mounted otherwise, and the floor not named at all."""
     monkeypatch.setattr(words, "changes_words", lambda *_: ["In arcs alone it was otherwise."])
-    runs = SimpleNamespace(runs=(SimpleNamespace(name="arcs"),), own_axes=own_axes)
+    clock = SimpleNamespace(time=(0.0,))
+    drives = tuple(SimpleNamespace(name=name, counters=clock) for name in ("arcs", "lines"))
+    runs = SimpleNamespace(runs=drives, own_axes=own_axes)
     diagnosis = SimpleNamespace(runs=runs, robot=ROBOT, verdict=verdict)
-    change = SimpleNamespace(surely_from="arcs", group="mount")
+    change = SimpleNamespace(surely_from="arcs", from_run="arcs", group="mount", kind="alone")
     told: Any = SimpleNamespace(diagnosis=diagnosis, changes=(change,))
-    said = " ".join(words._changes(told))
+    steps = NextSteps(again=lambda names: f"werrimbi diagnose {'_'.join(names)}")
+    said = " ".join(words._changes(told, steps))
+    assert "For what it is now, ask again without arcs:     werrimbi diagnose lines" in said
     assert ("Or the floor is why. What lies on the floor" in said) == or_the_floor
 
 

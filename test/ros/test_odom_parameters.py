@@ -52,7 +52,7 @@ def test_an_unknown_key_names_the_nearest_known_one(refused: Refused) -> None:
     [
         ({"wheel_radius": -0.05}, "wheel_radius must be a number greater than 0 (m), not -0.05"),
         in_evidence({"wheel_radius": "5 cm"}, "wheel_radius must be a number (m), not '5 cm'"),
-        ({"encoder_bits": 12}, "encoder_bits must be one of 0, 8, 16, 32 (bits), not 12"),
+        ({"encoder_bits": 65}, "encoder_bits must be a whole number of at most 64 (bits), not 65"),
         in_evidence({"enable_odom_tf": "yes please"}, "enable_odom_tf must be true or false"),
         ({"left_wheel_names": [1, 2]}, "left_wheel_names must be a list of names"),
         ({"effects": ["drift"]}, "unknown effect drift; the nearest known one is radius_drift"),

@@ -111,6 +111,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
         better = beside(given.source.path, "better")
         return NextSteps(
             add=lambda names: next_command(["add", ",".join(names)], given, out=better).strip(),
+            again=lambda names: next_command(["diagnose"], given.chosen(names)).strip(),
             draft=next_command(["draft"], given, out="my_effect").strip(),
         )
 

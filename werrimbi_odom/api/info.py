@@ -23,7 +23,7 @@ from werrimbi_odom.files.bag_ticks import KINDS
 from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps
+from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps, with_wraps
 from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.merged_reference import SCALE_MOST
 from werrimbi_odom.files.mislabelled_columns import without_zeros
@@ -145,6 +145,7 @@ def _held(
             first = replace(first, counted=True)
         file = source or robot_file_of(first)
         run = read_run(path, file, reference=other, reference_topic=topic)
+        first = first if source else with_wraps(first, run.ticks)
         held = Held(path, None, None, separate, {}, run, "", other=other)
         return _judged(held, source, first), first
     held, first = _of_bag(path, bag, source, first, ticks_topic, reference_topic)
@@ -160,6 +161,7 @@ def _held(
         file, topic = source or robot_file_of(first), held.wheels.name
         merged = _with_gyro(path, held, file)
         if merged is not None:
+            first = first if source else with_wraps(first, merged.ticks)
             judged = _judged(replace(held, run=merged), source, first)
             if not judged.problem:
                 return judged, first
@@ -168,6 +170,7 @@ def _held(
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first
+    first = first if source else with_wraps(first, run.ticks)
     return _judged(replace(held, run=run), source, first), first
 
 

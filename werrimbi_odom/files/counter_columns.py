@@ -142,23 +142,34 @@ def _related(one: Floats, other: Floats, without: int = 0) -> float:
 
 def wraps_words(ticks: Ticks) -> str:
     """Which counter wraps, and how to say so; "" if none does."""
-    periods = {
-        name: period
-        for name, counts in (("left_ticks", ticks.left), ("right_ticks", ticks.right))
-        if (period := _period(counts))
-    }
-    if not periods:
+    name, period = _wrapping(ticks)
+    if not period:
         return ""
-    name, period = max(periods.items(), key=lambda item: item[1])
-    bits = period.bit_length() - 1
+    bits = _bits(period)
     mend = (
         f"wraps at {bits} bits: write encoder_bits: {bits} into the robot file"
-        if period == 1 << bits
+        if bits
         else f"begins anew after {period} counts: unwrap both (numpy.unwrap, period={period})"
     )
     return (
         f"{name} leaps from one end of its range to the other while its wheel rolls on: it {mend}"
     )
+
+
+def bits_of_wraps(ticks: Ticks) -> int:
+    """Width at which the counters wrap; 0 if they do not, or at no power of two."""
+    return _bits(_wrapping(ticks)[1])
+
+
+def _wrapping(ticks: Ticks) -> tuple[str, int]:
+    """The counter that wraps, and after how many counts; 0 if none does."""
+    sides = (("left_ticks", ticks.left), ("right_ticks", ticks.right))
+    return max(((name, _period(counts)) for name, counts in sides), key=lambda item: item[1])
+
+
+def _bits(period: int) -> int:
+    bits = period.bit_length() - 1
+    return bits if bits > 1 and period == 1 << bits else 0
 
 
 def _period(counts: Counts) -> int:

@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.counter_columns import bits_of_wraps
 from werrimbi_odom.files.driver_messages import DRIVERS
+from werrimbi_odom.files.run import Ticks
 from werrimbi_odom.files.wheel_joints import SIDES
 from werrimbi_odom.model.pose import Floats
 
@@ -110,6 +112,15 @@ def with_driver(first: FirstRobot, kind: str) -> FirstRobot:
         return first
     told = {**(first.told or {}), "ticks": f"of every robot that sends {kind}"}
     return replace(first, ticks=driver.ticks, bits=driver.narrow, told=told)
+
+
+def with_wraps(first: FirstRobot, ticks: Ticks) -> FirstRobot:
+    """Add the width at which the counters wrap, if they are seen to."""
+    bits = 0 if first.bits else bits_of_wraps(ticks)
+    if not bits:
+        return first
+    words = "there the counters begin anew"
+    return replace(first, bits=bits, told={**(first.told or {}), "bits": words})
 
 
 def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:

@@ -46,12 +46,18 @@ class Measured:
         return self.chain is not None and any(step.made_from_wheels for step in self.chain.steps)
 
 
-def preference(each: Measured) -> tuple[bool, int, bool, bool]:
+TRACKED = tuple(f"geometry_msgs/msg/{name}" for name in ("PoseStamped", "TransformStamped"))
+"""Types in which motion capture sends its poses."""
+
+
+def preference(each: Measured) -> tuple[bool, int, bool, bool, bool]:
     """Sort key of references: what measures more comes first, and what the robot sees last.
 
     Poses come before scans, which are yet to be matched. Poses of a localiser come before its
     transforms: AMCL stamps these ahead of the scan (by its `transform_tolerance`, a second as a
-    rule), and the odometry of that time is in what they make.
+    rule), and the odometry of that time is in what they make. A tracker's come before both: its
+    errors are new in each pose, where those on a map wander.
     """
     measures = ("poses", "positions", "yaw").index(each.measures)
-    return each.aboard, measures, each.is_scan, each.through_wheels
+    tracked = each.kind in TRACKED and each.parent not in ("", "map")
+    return each.aboard, measures, each.is_scan, each.through_wheels, not tracked

@@ -74,7 +74,8 @@ PARAMETERS: tuple[NodeParameter, ...] = (
         0,
         "Width at which the counters wrap; 0: they do not. Wrong: the pose jumps at each wrap.",
         unit="bits",
-        choices=("0", "8", "16", "32"),
+        minimum=0,
+        maximum=64,
     ),
     NodeParameter(
         "left_wheel_noise",

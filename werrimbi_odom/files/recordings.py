@@ -94,6 +94,17 @@ class Recordings:
         """Robot to evaluate."""
         return self.fitted or self.source.robot
 
+    def chosen(self, names: Sequence[str]) -> Recordings:
+        """With the fitted runs of these names alone."""
+        keep = [run.name in names for run in self.runs]
+        others = self.how.references
+        kept = (*(each for each, kept in zip(others, keep, strict=False) if kept),)
+        return replace(
+            self,
+            runs=tuple(run for run, kept in zip(self.runs, keep, strict=True) if kept),
+            how=replace(self.how, references=(*kept, *others[len(keep) :])),
+        )
+
     @property
     def evaluation(self) -> EvaluationOptions:
         """Options for evaluating a robot on these runs."""

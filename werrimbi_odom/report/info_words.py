@@ -51,6 +51,12 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield from _stamps(held)
     else:
         yield "Wheels: ticks.csv, counters."
+    if found.given is None and "bits" in (found.first.told or {}):
+        bits = found.first.bits
+        yield (
+            f"The counters begin anew at {bits} bits: the robot file needs encoder_bits: {bits}; "
+            "one that --out writes has it."
+        )
     yield from _of_another_file(held)
     yield from _mistakes(held)
     if held.restamped:

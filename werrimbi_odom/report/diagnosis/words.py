@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.changes.between_drives import driven_in_order
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
     mistakes,
@@ -35,6 +36,8 @@ class NextSteps:
         f"werrimbi add {','.join(names)} --robot R RUN... --out NEW.yaml"
     )
     """Command to add effects of these names."""
+    again: Callable[[Sequence[str]], str] = lambda names: "werrimbi diagnose --robot R RUN..."
+    """Command to diagnose the drives of these names alone; "" for none."""
     draft: str = "werrimbi draft --robot R RUN... --out my_effect"
     diagnose: str = "werrimbi diagnose"
 
@@ -44,7 +47,7 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
     diagnosis = advised.diagnosis
     tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
     said = [
-        *_changes(advised),
+        *_changes(advised, steps),
         *tell[diagnosis.verdict](advised, steps),
         *remarks.otherwise(diagnosis),
     ]
@@ -73,23 +76,19 @@ def _shorter(advised: AdvisedDiagnosis) -> list[str]:
     ]
 
 
-def _changes(advised: AdvisedDiagnosis) -> list[str]:
+def _changes(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     """Changes between the drives, before what they have in common."""
     changes = changes_words(advised.changes, advised.diagnosis.robot)
     if not changes:
         return []
-    drives = [run.name for run in advised.diagnosis.runs.runs]
-    last = max(drives.index(change.surely_from) for change in advised.changes)
-    alone = " That alone may be why no effect explains them all."
-    floor = (
-        []
-        if advised.diagnosis.verdict == "unknown"
-        else reference_remarks.floor_not_asked(advised.diagnosis)
-    )
+    unknown = advised.diagnosis.verdict == "unknown"
+    alone = ["That alone may be why no effect explains them all."] if unknown else []
+    floor = [] if unknown else reference_remarks.floor_not_asked(advised.diagnosis)
     what, one = "The robot", "one robot, the mean of both"
-    now = f"For what it is now, ask again with the drives from {drives[last]} on alone."
+    now, command = _as_it_is_now(advised, steps)
     if all(change.group == "reference_delay" for change in advised.changes):
         what, one = "The reference's clock", "one clock, the mean of all"
+        command = []
         now = (
             "Shift the reference of each drive by its own delay, record both with one clock, or "
             "add reference_clock_drift, which has a delay of its own in each drive."
@@ -98,10 +97,29 @@ def _changes(advised: AdvisedDiagnosis) -> list[str]:
         f"{what} was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
         *(f"Or the floor is why. {words}" for words in floor),
-        f"What follows takes them for {one}. {now}"
-        + (alone if advised.diagnosis.verdict == "unknown" else ""),
+        " ".join([f"What follows takes them for {one}.", *alone, now]),
+        *command,
         "",
     ]
+
+
+def _as_it_is_now(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[str, list[str]]:
+    """Which of the drives tell what the robot is now, and the command that asks these."""
+    runs = advised.diagnosis.runs.runs
+    order = driven_in_order([float(run.counters.time[0]) for run in runs])
+    drives = [runs[number].name for number in order.tolist()]
+    odd = {change.from_run for change in advised.changes if change.kind == "alone"}
+    lasting = [change for change in advised.changes if change.kind != "alone"]
+    first = max((drives.index(change.surely_from) for change in lasting), default=0)
+    kept = [name for name in drives[first:] if name not in odd]
+    which = [f"with the drives from {drives[first]} on alone"] if lasting else []
+    if others := [name for name in drives[first:] if name in odd]:
+        which.append(f"without {listed(others)}")
+    command = steps.again(kept) if kept else ""
+    ending = ":" if command else "."
+    return f"For what it is now, ask again {', '.join(which)}{ending}", [
+        f"    {command}"
+    ] if command else []
 
 
 _HEADS = ["On the robot", "What it is", "How large", "How sure", "What it costs", "Check it"]

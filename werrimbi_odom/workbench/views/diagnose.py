@@ -30,6 +30,7 @@ MOST_ROWS = 12
 
 STEPS = NextSteps(
     add=lambda names: "press Add below" if len(names) == 1 else "press Add all below",
+    again=lambda names: "",
     draft="werrimbi draft, on the command line",
     diagnose="step 2, Diagnose",
 )
