@@ -57,9 +57,7 @@ class ChainCollector:
         self._found: dict[tuple[str, str], array[float]] = {
             (edge.parent, edge.child): array("d") for edge in chain.steps
         }
-        self._ahead: dict[tuple[str, str], array[float]] = {
-            key: array("d") for key in self._found
-        }
+        self._ahead: dict[tuple[str, str], array[float]] = {key: array("d") for key in self._found}
         """By how much each stamp is ahead of its receipt [s]."""
 
     @property

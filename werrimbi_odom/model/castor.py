@@ -20,7 +20,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from werrimbi_odom.model.compiled import compiled_for
+from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.pose import Floats
 
 Steps = Sequence[float] | Floats
@@ -93,7 +93,7 @@ def castor_angles(along: Floats, turn: Floats, track: float) -> Floats:
         Wheel separation [m].
     """
     after = np.empty(along.size)
-    work = compiled_for(along.size, trailed)
+    work = compiled(trailed)  # fits compute it hundreds of times
     if work is None:
         trailed(along.tolist(), turn.tolist(), track, after)
     else:

@@ -22,6 +22,9 @@ from werrimbi_odom.model.robot import Robot
 
 ACCELERATIONS = frozenset({"left_acceleration", "right_acceleration"})
 
+LAGGING = ACCELERATIONS | {"castor_angle"}
+"""Quantities that are known only to within a delay: a law of them may be early or late."""
+
 
 class Support(NamedTuple):
     """Inputs and outputs of an effect's law."""

@@ -22,7 +22,7 @@ import numpy as np
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.effect_support import (
-    ACCELERATIONS,
+    LAGGING,
     Support,
     is_even,
     support_of,
@@ -87,7 +87,7 @@ def misfit_of_held_law(
         if cell is None or share >= rules.LITTLE_OF_A_LAW:
             continue
         numbers = (*CALIBRATION, *before.numbers)
-        freer = (late(law),) if support.inputs & ACCELERATIONS else ()
+        freer = (late(law),) if support.inputs & LAGGING else ()
         by_forms, left = _gains(runs, before.point, numbers, score, cell, freer)
         both_even = support.even and _may_be_even(score.candidate, before, runs)
         most = max(score.gain, by_forms) if both_even else score.gain
@@ -181,7 +181,8 @@ def late(law: AppliedEffect) -> Effect:
     """What a law says a message too early or too late, as an effect whose size is the share of one.
 
     A law of the acceleration knows it as the difference between the mean speeds of two messages:
-    half a message late, and evened out over both.
+    half a message late, and evened out over both. And a castor of other lengths than the law's
+    swings earlier or later.
     """
 
     def apply(moved: Motion, drive: Drive[Floats], messages: float) -> Motion:

@@ -29,6 +29,9 @@ CONSTANT = "constant"
 ON_THE_FLOOR = frozenset({"heading", "x", "y"})
 """Quantities of a drive that have a meaning only in axes common to all drives."""
 
+_TURNING = ("yaw_rate", "left_speed", "right_speed", "castor_angle")
+"""What an effect reads that knows how quickly the robot turns."""
+
 Form = Literal["constant", "line", "curve", "turns", "place"]
 
 
@@ -86,7 +89,7 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
             "right_speed",
             "speed",
         ),
-        robots("direction", "", np.sign(drive.speed.end), "speed", "direction"),
+        robots("direction", "", np.sign(drive.speed.end), "speed", "direction", "castor_angle"),
         robots(
             "acceleration",
             "m/s^2",
@@ -97,15 +100,8 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
             "left_acceleration",
             "right_acceleration",
         ),
-        robots("yaw_rate", "rad/s", drive.yaw_rate.end, "yaw_rate", "left_speed", "right_speed"),
-        robots(
-            "yaw_rate_size",
-            "rad/s",
-            np.abs(drive.yaw_rate.end),
-            "yaw_rate",
-            "left_speed",
-            "right_speed",
-        ),
+        robots("yaw_rate", "rad/s", drive.yaw_rate.end, *_TURNING),
+        robots("yaw_rate_size", "rad/s", np.abs(drive.yaw_rate.end), *_TURNING),
         robots("time", "s", drive.time.mean, "time"),
         robots("distance", "m", drive.distance.mean, "distance"),
         robots(
@@ -115,6 +111,7 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
             "since_reversal",
             "left_since_reversal",
             "right_since_reversal",
+            "castor_angle",
         ),
         Variable("heading", "rad", heading, heading, "turns", ("heading",)),
     ]
