@@ -56,6 +56,15 @@ def test_what_it_costs(after: float, one: str, all_of_it: str) -> None:
     assert all_of_it in " ".join(whole(told))
 
 
+def test_of_spins_on_the_spot_the_fall_of_the_headings_is_told() -> None:
+    """A base 5 % off moves no place there; it "cost nothing yet" beside 4 degrees a leg."""
+    told = told_of(3.5301e-3)
+    told.diagnosis.headings = (None, Sides(0.07, 0.0035, "rad"))
+    (words,) = cost(told, "track_width")
+    assert "the heading error falls from 4.01° to 0.20° with all that is found" in words
+    assert "positions are as good without it" in words
+
+
 def test_where_poses_are_rare_the_legs_own_length_is_told() -> None:
     """Two poses a drive of 2.1 m: its error is not that of a metre."""
     told = told_of(1.2e-3)

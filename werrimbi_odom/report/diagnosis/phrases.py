@@ -196,6 +196,9 @@ def _fall(advised: AdvisedDiagnosis, sides: Sides) -> list[str]:
                 f"But: {both}, and chance does not raise it so. These drives are not like those "
                 "it was found in: look what is different."
             ]
+        turned = _fall_of_headings(advised.diagnosis)
+        if turned:
+            return [f"What it costs: {where} {turned}; positions are as good without it."]
         return [f"What it costs is not seen yet: {both}, which these legs do not tell from chance."]
     told_before, told_after = (error_words(each, sides.unit) for each in (before, after))
     if told_before == told_after:
@@ -208,6 +211,16 @@ def _fall(advised: AdvisedDiagnosis, sides: Sides) -> list[str]:
         f"What it costs: {error_words(part, sides.unit)} {_each(advised, sides)}; {where} the "
         f"{kind} error falls from {told_before} to {told_after} when it is put in."
     ]
+
+
+def _fall_of_headings(diagnosis: Diagnosis) -> str:
+    """The fall of the heading error, if it is halved: spins on the spot leave a robot in place."""
+    sides = diagnosis.headings[1]
+    if not 2.0 * sides.after < sides.before:
+        return ""
+    before, after = (error_words(each, "rad") for each in (sides.before, sides.after))
+    together = " with all that is found" if len(diagnosis.found) > 1 else ""
+    return f"the heading error falls from {before} to {after}{together}"
 
 
 def error_kind(sides: Sides) -> str:
@@ -264,8 +277,9 @@ def by_sizes_alone(advised: AdvisedDiagnosis) -> list[str]:
         return []
     before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
     return [
-        f"Base and radii are off: {words}. With these the {error_kind(sides)} error on "
-        f"{judged(advised)} falls from {before} to {after}. What follows is of the rest."
+        f"Base and radii by themselves: {words}. With these the {error_kind(sides)} error on "
+        f"{judged(advised)} falls from {before} to {after}. They are off, or stand in for the mean "
+        "of what follows."
     ]
 
 
