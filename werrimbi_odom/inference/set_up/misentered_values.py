@@ -118,8 +118,9 @@ def skids(base: float) -> bool:
 def skid_words(value: float) -> str:
     """Sentence about the base of a robot that is known to skid."""
     return (
-        f"its driven wheels skid in turns, so it turns as if its two sides were {value:.3g} times "
-        "as far apart as the robot file says: such robots do, and nothing is entered wrongly"
+        "its driven wheels skid in turns, so in the mean of these drives it turns as if its two "
+        f"sides were {value:.3g} times as far apart as the robot file says: such robots do, and "
+        "nothing is entered wrongly"
     )
 
 
