@@ -38,6 +38,13 @@ def flat(drive: Drive[Floats]) -> Floats:
     return np.array(columns).T
 
 
+def straight(travel: Floats, duration: float) -> Drive[Floats]:
+    """A drive in which both wheels travel the same [m], in steps of one duration [s]."""
+    angle, turn = travel / RADIUS, np.zeros_like(travel)
+    steps = np.full_like(travel, duration), travel, travel, travel, turn, angle, angle
+    return drive_of_run(*steps, flicker=1e-4, track=TRACK)
+
+
 def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> None:
     raw = steps(left, right, duration)
     memory, pose, live = DriveMemory(flicker, TRACK, 0.3, -0.4), Pose(), []
@@ -86,17 +93,7 @@ def test_a_wheel_at_rest_has_no_direction() -> None:
 @pytest.mark.parametrize(("back", "reversals"), [(0.9 * ROLLBACK, 0), (1.1 * ROLLBACK, 1)])
 def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> None:
     left = np.concatenate([np.full(20, 0.01), [-back / 2, -back / 2, 0.0]])
-    drive = drive_of_run(
-        np.ones(23),
-        left,
-        left,
-        left,
-        0 * left,
-        left / RADIUS,
-        left / RADIUS,
-        flicker=1e-4,
-        track=TRACK,
-    )
+    drive = straight(left, 1.0)
     assert drive.reversals[-1] == reversals
     since = drive.since_reversal
     assert since.end[-1] == pytest.approx(back if reversals else 0.2)
@@ -106,16 +103,6 @@ def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> No
 
 def test_a_drive_that_begins_in_motion_has_no_acceleration_at_first() -> None:
     left = np.full(3, 0.01)
-    drive = drive_of_run(
-        np.full(3, 0.02),
-        left,
-        left,
-        left,
-        0 * left,
-        left / RADIUS,
-        left / RADIUS,
-        flicker=1e-4,
-        track=TRACK,
-    )
+    drive = straight(left, 0.02)
     np.testing.assert_allclose(drive.speed.start, 0.5)
     np.testing.assert_allclose(drive.left_speed.change, 0.0)
