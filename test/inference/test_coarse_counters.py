@@ -21,7 +21,10 @@ from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.likelihood import quantisation
-from werrimbi_odom.inference.legs.count_interpolation import Counters
+from werrimbi_odom.inference.legs.count_interpolation import Counters, summed
+from werrimbi_odom.model.driven_motion import features
+from werrimbi_odom.model.motion import WheelTravel
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.simulation import (
     TrueRobot,
     free,
@@ -139,6 +142,27 @@ def test_counts_err_less_between_messages(share: float) -> None:
         errors.append(np.var(np.interp(at, fine, rolled) - counters.at(at)[:, 0]))
         told = float(counters.rounding_at(at).mean())
     assert 12.0 * np.mean(errors) == pytest.approx(told, rel=0.06)
+
+
+@pytest.mark.parametrize("counts", [2.0, 6.0, 10.0, 16.0])
+def test_speeds_tell_nothing_of_what_is_beyond_a_count(counts: float) -> None:
+    """Drawn: a sound wheel. A late clock was a slip where ten counts came in a message."""
+    random, time = np.random.default_rng(1), np.arange(40001.0) / 30.0
+    swing = 1.0 + 0.3 * np.sin(np.cumsum(random.normal(0.0, 0.05, time.size)))
+    rolled = summed(counts * swing[1:])
+    whole = np.floor(rolled)
+    counters = Counters(time, whole, whole, 0.0, 0.0)
+    told = _speed(counters) - _speed(replace(counters, left=rolled, right=rolled))
+    beyond = (rolled - whole)[1:]
+    assert abs(np.corrcoef(told, beyond)[0, 1]) < 0.1
+
+
+def _speed(counters: Counters) -> Floats:
+    """Speed of the left wheel that laws of slip use, after each message [counts/s]."""
+    rates, lasted = counters.rates, np.diff(counters.time)
+    gone = np.diff(counters.left) if rates is None else rates[0, 1:] * lasted
+    drive = features(COARSE, lasted, WheelTravel(gone, gone), (0.0, 0.0), {})
+    return np.asarray(drive.found("left_smooth_speed").end)
 
 
 @pytest.mark.parametrize("counts", [60, 200])

@@ -83,17 +83,21 @@ class Counters:
     @property
     def are_coarse(self) -> bool:
         """Whether a counter brings few counts at a time to the nodes."""
-        return any(_steps_seen(side[self.nodes]) for side in (self.left, self.right))
+        return self._bring_at_most(rules.FEW_COUNTS)
+
+    def _bring_at_most(self, few: float) -> bool:
+        return any(_steps_seen(side[self.nodes], few) for side in (self.left, self.right))
 
     @property
     def rates(self) -> Floats | None:
         """Counts per second of both wheels up to each node, between the steps of coarse counters.
 
-        Shape (2, nodes), moving averages. None where no counter is coarse. As a count comes the
-        wheel seems fast, and is as far as it says; before the next it is farther. So the speeds
-        of single messages tell how far a wheel is beyond its count, and a law of them seems true.
+        Shape (2, nodes), moving averages. None where a message brings enough (`COUNTS_A_SPEED`). As
+        a count comes the wheel seems fast, and is as far as it says; before the next it is farther.
+        So the speeds of single messages tell how far a wheel is beyond its count, and a law of them
+        seems true.
         """
-        if not self.are_coarse:
+        if not self._bring_at_most(rules.COUNTS_A_SPEED):
             return None
         time = self.time[self.nodes]
         sides = [_without_steps(time, side[self.nodes]) for side in (self.left, self.right)]
@@ -281,14 +285,15 @@ def _at_edge(near: Floats, slope: Floats, other: Floats, other_slope: Floats) ->
     return np.where(steep, 3.0 * slope, found)
 
 
-def _steps_seen(counts: Floats) -> bool:
+def _steps_seen(counts: Floats, few: float) -> bool:
+    """Whether so few counts come at once, as a rule."""
     change = np.abs(np.diff(counts))
-    return bool(change.any()) and float(np.median(change[change > 0.0])) <= rules.FEW_COUNTS
+    return bool(change.any()) and float(np.median(change[change > 0.0])) <= few
 
 
 def _without_steps(time: Floats, counts: Floats) -> Floats:
     """Counts of a coarse counter between the middles of its steps; others as they are."""
-    if not _steps_seen(counts):
+    if not _steps_seen(counts, rules.FEW_COUNTS):
         return counts
     stepped = np.flatnonzero(np.diff(counts))
     middle, level = (0.5 * (each[stepped] + each[stepped + 1]) for each in (time, counts))
