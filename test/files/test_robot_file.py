@@ -252,7 +252,11 @@ SIZES = {
 
 def _values(item: NodeParameter) -> st.SearchStrategy[Value]:
     if item.choices:
-        return st.sampled_from([int(c) if item.kind == "integer" else c for c in item.choices])
+        return st.sampled_from(item.choices)
+    if item.kind == "integer":
+        assert item.minimum is not None
+        assert item.maximum is not None
+        return st.integers(int(item.minimum), int(item.maximum))
     if item.kind == "float" and item.name in SIZES:
         return st.floats(*SIZES[item.name])
     if item.kind == "float":
