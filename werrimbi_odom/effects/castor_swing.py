@@ -32,9 +32,10 @@ def castor_swing(
     by creeping. A castor swings by a quarter turn when a line goes over into a spin, and by half a
     turn when the robot reverses, to the side to which the last curve has left it: not always the
     same. Its angle is that of a trailer, 0.15 wheel separations behind a pivot that is 0.6 of them
-    behind the axle; one in front of the axle, or of other lengths, swings at nearly the same places
-    (in front, with the other sign of drag), and drags somewhat more than the fitted number says.
-    After a long straight line, chance decides to which side it swings: single kicks are left.
+    behind the axle. One of other lengths swings at nearly the same places, and so does one in front
+    of the axle, with the other sign; the fitted number is then three quarters of its drag, in front
+    of the axle a half to two thirds (simulated). After a long straight line, chance decides to
+    which side it swings: single kicks are left.
 
     Formula    turn += drag * change of the castor's angle      [rad] = [1] * [rad]
                d angle = -turn - (along * sin(angle) + 0.6 separation * turn * cos(angle)) / trail,
