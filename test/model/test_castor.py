@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from werrimbi_odom.model.castor import PIVOT, PLAY, TRAIL, castor_angles, swing, trailed
+from werrimbi_odom.model.castor import PIVOT, PLAY, TRAIL, castor_swings, swing, trailed
 from werrimbi_odom.model.compiled import compiled
 
 BASE = 0.35
@@ -49,7 +49,7 @@ def test_it_trails_in_a_line_and_lies_across_in_a_spin() -> None:
     line, spin = np.full(100, 0.01), np.zeros(100)
     along = np.concatenate([line, spin, line, -line])
     turn = np.concatenate([spin, np.full(100, 0.03), spin, spin])
-    angles = castor_angles(along, turn, BASE)
+    angles = np.cumsum(castor_swings(along, turn, BASE))
     assert angles[99] == pytest.approx(0.0, abs=1e-3)
     assert angles[199] == pytest.approx(-math.acos(-TRAIL / -PIVOT), abs=1e-2)
     assert angles[299] == pytest.approx(0.0, abs=1e-3)
@@ -60,7 +60,7 @@ def test_it_swings_to_the_side_to_which_the_last_curve_has_left_it() -> None:
     def after(sense: float) -> float:
         along = np.concatenate([np.full(50, 0.01), np.full(100, -0.01)])
         turn = np.concatenate([np.full(50, 0.01 * sense), np.zeros(100)])
-        return float(castor_angles(along, turn, BASE)[-1])
+        return float(castor_swings(along, turn, BASE).sum())
 
     assert after(1.0) == pytest.approx(-math.pi, abs=1e-2)
     assert after(-1.0) == pytest.approx(math.pi, abs=1e-2)
@@ -72,6 +72,7 @@ def test_compiled_code_gives_the_same_angles() -> None:
     machine = compiled(trailed)
     if machine is None:
         pytest.skip("numba is not installed, or its cache is not writable")
-    after = np.empty(2000)
-    machine(along, turn, BASE, after)
-    np.testing.assert_allclose(after, castor_angles(along, turn, BASE), atol=1e-9)
+    swings = [np.empty(2000), np.empty(2000)]
+    machine(along, turn, BASE, swings[0])
+    trailed(along.tolist(), turn.tolist(), BASE, swings[1])
+    np.testing.assert_allclose(*np.cumsum(swings, axis=1), atol=1e-9)

@@ -74,16 +74,16 @@ def swing(angle: float, along: float, turn: float, track: float) -> float:
     return 2.0 * math.atan2(along_circle, grown + half * (lag * cosine + sway * sine))
 
 
-def trailed(along: Steps, turn: Steps, track: float, after: Floats) -> None:
-    """Fill the angles after each step [rad]; before the first it is 0. All of shape (n,)."""
+def trailed(along: Steps, turn: Steps, track: float, swings: Floats) -> None:
+    """Fill the swing of each step [rad]; before the first the angle is 0. All of shape (n,)."""
     angle = 0.0
     for step in range(len(along)):
-        angle += swing(angle, along[step], turn[step], track)
-        after[step] = angle
+        swings[step] = swing(angle, along[step], turn[step], track)
+        angle += swings[step]
 
 
-def castor_angles(along: Floats, turn: Floats, track: float) -> Floats:
-    """Angle of the castor after each step of a run [rad], shape (n,); it counts full turns.
+def castor_swings(along: Floats, turn: Floats, track: float) -> Floats:
+    """Change of the castor's angle in each step of a run [rad], shape (n,).
 
     Parameters
     ----------
@@ -92,10 +92,10 @@ def castor_angles(along: Floats, turn: Floats, track: float) -> Floats:
     track
         Wheel separation [m].
     """
-    after = np.empty(along.size)
+    swings = np.empty(along.size)
     work = compiled(trailed)  # fits compute it hundreds of times
     if work is None:
-        trailed(along.tolist(), turn.tolist(), track, after)
+        trailed(along.tolist(), turn.tolist(), track, swings)
     else:
-        work(np.ascontiguousarray(along), np.ascontiguousarray(turn), track, after)
-    return after
+        work(np.ascontiguousarray(along), np.ascontiguousarray(turn), track, swings)
+    return swings

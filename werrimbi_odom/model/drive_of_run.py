@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.castor import castor_angles
+from werrimbi_odom.model.castor import castor_swings
 from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats
@@ -112,11 +112,6 @@ def drive_of_run(
     heading = cache(partial(_grown, 0.0, turn))
 
     @cache
-    def castor() -> Span[Floats]:
-        after = castor_angles(along, turn, track)
-        return Span(np.concatenate([np.zeros(1), after[:-1]]), after)
-
-    @cache
     def places() -> list[Span[Floats]]:
         moved = displacement(BodyMotion(along, np.zeros_like(along), turn), heading().start)
         return [_grown(0.0, steps) for steps in moved]
@@ -145,7 +140,7 @@ def drive_of_run(
             "reversals": lambda: since().reversals,
             "left_reversals": lambda: since_left().reversals,
             "right_reversals": lambda: since_right().reversals,
-            "castor_angle": castor,
+            "castor_angle": lambda: _grown(0.0, castor_swings(along, turn, track)),
             "heading": heading,
             "x": lambda: places()[0],
             "y": lambda: places()[1],

@@ -85,14 +85,15 @@ def _changes(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     alone = ["That alone may be why no effect explains them all."] if unknown else []
     floor = [] if unknown else reference_remarks.floor_not_asked(advised.diagnosis)
     what, one = "The robot", "one robot, the mean of both"
-    now, command = _as_it_is_now(advised, steps)
+    command: list[str] = []
     if all(change.group == "reference_delay" for change in advised.changes):
         what, one = "The reference's clock", "one clock, the mean of all"
-        command = []
         now = (
             "Shift the reference of each drive by its own delay, record both with one clock, or "
             "add reference_clock_drift, which has a delay of its own in each drive."
         )
+    else:
+        now, command = _as_it_is_now(advised, steps)
     return [
         f"{what} was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
@@ -115,11 +116,9 @@ def _as_it_is_now(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[str, lis
     which = [f"with the drives from {drives[first]} on alone"] if lasting else []
     if others := [name for name in drives[first:] if name in odd]:
         which.append(f"without {listed(others)}")
+    now = f"For what it is now, ask again {', '.join(which)}"
     command = steps.again(kept) if kept else ""
-    ending = ":" if command else "."
-    return f"For what it is now, ask again {', '.join(which)}{ending}", [
-        f"    {command}"
-    ] if command else []
+    return (f"{now}:", [f"    {command}"]) if command else (f"{now}.", [])
 
 
 _HEADS = ["On the robot", "What it is", "How large", "How sure", "What it costs", "Check it"]
