@@ -145,9 +145,8 @@ def _held(
             first = replace(first, counted=True)
         file = source or robot_file_of(first)
         run = read_run(path, file, reference=other, reference_topic=topic)
-        first = first if source else with_wraps(first, run.ticks)
-        held = Held(path, None, None, separate, {}, run, "", other=other)
-        return _judged(held, source, first), first
+        held = Held(path, None, None, separate, {}, None, "", other=other)
+        return _as_read(held, run, source, first)
     held, first = _of_bag(path, bag, source, first, ticks_topic, reference_topic)
     if other is not None:
         held = replace(held, reference=separate, beside=None, other=other)
@@ -161,8 +160,7 @@ def _held(
         file, topic = source or robot_file_of(first), held.wheels.name
         merged = _with_gyro(path, held, file)
         if merged is not None:
-            first = first if source else with_wraps(first, merged.ticks)
-            judged = _judged(replace(held, run=merged), source, first)
+            judged, first = _as_read(held, merged, source, first)
             if not judged.problem:
                 return judged, first
         held = replace(held, beside=None)
@@ -170,6 +168,13 @@ def _held(
     except InputError as error:
         at_fault = _at_fault(path, held, source, first)
         return replace(held, problem=str(error), at_fault=at_fault), first
+    return _as_read(held, run, source, first)
+
+
+def _as_read(
+    held: Held, run: Run, source: RobotFile | None, first: FirstRobot
+) -> tuple[Held, FirstRobot]:
+    """What the run that was read tells, by a robot file with the width at which counters wrap."""
     first = first if source else with_wraps(first, run.ticks)
     return _judged(replace(held, run=run), source, first), first
 

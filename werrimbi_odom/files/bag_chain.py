@@ -38,6 +38,8 @@ class _Moved(NamedTuple):
     """A transform over time; n instants, ascending."""
 
     time: Floats
+    ahead: float
+    """By how much its stamps are ahead of their receipt, as a rule [s]."""
     where: Floats
     """Shape (n, 3)."""
     turn: Rotation
@@ -57,8 +59,6 @@ class ChainCollector:
         self._found: dict[tuple[str, str], array[float]] = {
             (edge.parent, edge.child): array("d") for edge in chain.steps
         }
-        self._ahead: dict[tuple[str, str], array[float]] = {key: array("d") for key in self._found}
-        """By how much each stamp is ahead of its receipt [s]."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -70,13 +70,13 @@ class ChainCollector:
     def take(self, message: BagMessage) -> None:
         """Add a message of one of the topics."""
         for each in message.content.transforms:
-            key = frame(each.header.frame_id), frame(each.child_frame_id)
-            found = self._found.get(key)
+            found = self._found.get((frame(each.header.frame_id), frame(each.child_frame_id)))
             if found is not None:
                 time = 0.0 if is_static(message.topic) else stamp_of(message, each)
-                self._ahead[key].append(time - 1e-9 * message.received)
+                ahead = time - 1e-9 * message.received
                 where, turn = each.transform.translation, each.transform.rotation
-                found.extend((time, where.x, where.y, where.z, turn.x, turn.y, turn.z, turn.w))
+                place = where.x, where.y, where.z
+                found.extend((time, ahead, *place, turn.x, turn.y, turn.z, turn.w))
 
     def reference(self) -> Collected:
         """The reference, and its frames in words.
@@ -84,7 +84,7 @@ class ChainCollector:
         InputError if the transforms were never available at the same time.
         """
         moved = [self._moved(edge) for edge in self._chain.steps]
-        ahead = self._ahead_of_wheels()
+        ahead = self._ahead_of_wheels(moved)
         if ahead > POSTDATED:
             moved = [
                 each._replace(time=each.time - ahead) if edge in self._chain.measures else each
@@ -115,30 +115,27 @@ class ChainCollector:
         x, y = where[:, 0].copy(), where[:, 1].copy()
         return Collected(Reference(time, x, y, yaw, kind=kind), told)
 
-    def _ahead_of_wheels(self) -> float:
+    def _ahead_of_wheels(self, moved: list[_Moved]) -> float:
         """By how much what is measured is stamped ahead of the wheels' transforms [s].
 
         By when both were received; 0 for a chain without wheels.
         """
-        ahead = {
-            edge: float(np.median(self._ahead[edge.parent, edge.child]))
-            for edge in self._chain.steps
-            if not edge.static and self._ahead[edge.parent, edge.child]
-        }
-        measured = [ahead[edge] for edge in self._chain.measures if edge in ahead]
-        wheels = [late for edge, late in ahead.items() if edge.made_from_wheels]
+        steps = list(zip(self._chain.steps, moved, strict=True))
+        measured = [each.ahead for edge, each in steps if edge in self._chain.measures]
+        wheels = [each.ahead for edge, each in steps if edge.made_from_wheels]
         return min(measured) - max(wheels) if measured and wheels else 0.0
 
     def _moved(self, edge: Edge) -> _Moved:
         from scipy.spatial.transform import Rotation
 
-        table = np.array(self._found[edge.parent, edge.child]).reshape(-1, 8)
-        squared = (table[:, 4:] ** 2).sum(axis=1)
+        table = np.array(self._found[edge.parent, edge.child]).reshape(-1, 9)
+        squared = (table[:, 5:] ** 2).sum(axis=1)
         table = table[np.isfinite(table).all(axis=1) & (squared > 0.5) & (squared < 2.0)]
         if table.size == 0:
             raise InputError(f"{self._place}: {edge.parent} -> {edge.child} is never a transform")
         table = table[-1:] if edge.static else table[np.unique(table[:, 0], return_index=True)[1]]
-        return _Moved(table[:, 0], table[:, 1:4], Rotation.from_quat(table[:, 4:]))
+        ahead = float(np.median(table[:, 1]))
+        return _Moved(table[:, 0], ahead, table[:, 2:5], Rotation.from_quat(table[:, 5:]))
 
     def _stamps(self, moved: list[_Moved]) -> Floats:
         """Times of measurement [s]: the changes of the transform that changes least often."""
