@@ -14,14 +14,19 @@ import pytest
 import werrimbi_odom as wo
 from test.evidence import in_evidence
 from test.inference.driven import COARSE, COMMON, common, of_coarse_counts
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.likelihood import quantisation
+from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.legs.count_interpolation import Counters, summed
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
@@ -126,6 +131,20 @@ def test_counts_err_along_the_path_and_in_heading_and_never_sideways() -> None:
     assert quantisation(robot, np.array([np.nan]))[0] == pytest.approx(
         anywhere.mean(axis=0), abs=1e-12
     )
+
+
+@pytest.mark.parametrize("wired", [(), ("wheels_swapped",)])
+def test_a_late_heading_reads_the_counts_that_a_late_pose_does(wired: Sequence[str]) -> None:
+    """Rounded less by a straight line between messages, it seemed the better law, for certain."""
+    legs = concatenated(match_for_fit([of_coarse_counts(1)], COARSE, 0.5))
+    mistakes = tuple(find(name).using() for name in wired)
+    headings = [
+        predicted_legs(Model(replace(COARSE, effects=(*mistakes, late)), ({},)), legs)[:, 2]
+        for name in ("reference_delay", "reference_heading_delay")
+        for late in (find(name).using(delay=0.123),)
+    ]
+    assert np.ptp(headings[0]) > 0.1
+    np.testing.assert_allclose(*headings, atol=1e-9)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.15, 0.35, 0.5, 0.75])
