@@ -43,6 +43,19 @@ def test_two_models_that_err_alike_differ_beyond_chance_as_seldom_as_the_rule_sa
     assert rules.SURE_WHEN_ASKED / 5 < rose / count < 2.5 * rules.SURE_WHEN_ASKED
 
 
+def test_two_models_that_differ_on_a_few_legs_alone_do_not_differ_beyond_chance_either(
+    legs: Legs,
+) -> None:
+    """As by a reference's delay: only where the robot sped up or turned as a leg began."""
+    count, rose = 1000, 0
+    for _ in range(count):
+        common = RANDOM.normal(0.0, 1e-2, legs.errors.error.shape)
+        few = (np.arange(len(common)) % (len(common) // 5) == 0)[:, None]
+        one, other = (common + few * RANDOM.normal(0.0, 2e-3, common.shape) for _ in range(2))
+        rose += sides_of(erring(legs, one), erring(legs, other), "m").rose
+    assert rose / count < 2.5 * rules.SURE_WHEN_ASKED
+
+
 def test_a_rise_that_two_totals_hide_is_seen_leg_by_leg(legs: Legs) -> None:
     """Noise of 10 mm a leg, and 3 % more of it on every leg."""
     noise = RANDOM.normal(0.0, 1e-2, legs.errors.error.shape)

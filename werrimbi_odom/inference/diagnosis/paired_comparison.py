@@ -5,12 +5,15 @@
 Both models have the same noise on a leg, so their difference is far more precise than their two
 totals. On each leg the errors differ by the known difference δ of the predictions. The data
 determine its best weight β, by least squares: 1 where the second model is right, 0 where the first
-is. Below one half, the second has the larger squared error. The standard error of β is
-cluster-robust: residuals are summed over parts of each run, since errors are correlated over
-seconds.
+is. Below one half, the second has the larger squared error. The standard error of β is the larger
+of two. One is cluster-robust: residuals are summed over parts of each run, since errors are
+correlated over seconds. But two models often differ on a few legs alone; β is then fitted to these,
+which leaves hardly a residual there. So the other is by the covariance that the legs promise,
+scaled to the residuals of all.
 
 Sources: the encompassing test of two predictions (Chong and Hendry, Rev. Econ. Stud. 53, 1986);
-cluster-robust standard errors (Liang and Zeger, Biometrika 73, 1986).
+cluster-robust standard errors (Liang and Zeger, Biometrika 73, 1986), and their fault where few
+observations decide (Chesher and Jewitt, Econometrica 55, 1987).
 """
 
 from __future__ import annotations
@@ -110,7 +113,15 @@ def _chance(before: Legs, after: Legs, unit: Unit) -> float:
     count = int(parts.max()) + 1 if kept.any() else 0
     if count < 2 or not size > 0.0:
         return 1.0
-    share = float(np.sum(difference * first)) / size
-    left = np.sum(difference * (first - share * difference), axis=1)
-    scatter = math.sqrt(float(np.sum(np.bincount(parts, left) ** 2)) * count / (count - 1)) / size
-    return student_survival((0.5 - share) / max(scatter, 1e-12), count - 1)
+    weight = float(np.sum(difference * first)) / size
+    rest = first - weight * difference
+    left = np.bincount(parts, np.sum(difference * rest, axis=1))
+    promised = after.errors.covariance[kept, own, own]
+    dispersion = float(np.sum(rest**2) / np.sum(np.trace(promised, axis1=1, axis2=2)))
+    by_promise = dispersion * float(np.einsum("ki,kij,kj", difference, promised, difference))
+
+    def p_value(variance: float, freedom: int) -> float:
+        return student_survival((0.5 - weight) * size / max(math.sqrt(variance), 1e-12), freedom)
+
+    by_parts = float(np.sum(left**2)) * count / (count - 1)
+    return max(p_value(by_parts, count - 1), p_value(by_promise, rest.size - 1))
