@@ -355,6 +355,24 @@ def test_the_robots_own_pose_is_not_offered_as_a_reference(tmp_path: Path) -> No
     assert "the cells of what was not measured may be empty, but the name must be there" in said
 
 
+@pytest.mark.parametrize(
+    ("columns", "row"), [("t_s,x_m,y_m", "0,1,2"), ("yaw_rad,t_s", "3,0"), ("t_s,yaw_rad", "0,3")]
+)
+def test_columns_of_what_was_not_measured_may_be_left_out(
+    tmp_path: Path, columns: str, row: str
+) -> None:
+    """A camera's positions, or a gyro's headings: nothing else in the file may be meant."""
+    reference = read_run_folder(folder(tmp_path, FINE, f"{columns}\n{row}\n")).reference
+    assert reference is not None
+    assert reference.has_position.tolist() == ["x_m" in columns]
+    assert reference.has_yaw.tolist() == ["yaw_rad" in columns]
+
+
+@pytest.mark.parametrize("columns", ["t_s,x_m,y_m,theta", "t_s,x_m,yaw_rad", "t_s,x_m"])
+def test_columns_that_others_may_be_meant_for_are_asked_for(tmp_path: Path, columns: str) -> None:
+    assert "no column y" in complaint(folder(tmp_path, FINE, f"{columns}\n1,2,3,4\n"))
+
+
 def test_a_header_that_numpy_wrote_as_a_remark(tmp_path: Path) -> None:
     assert read_run_folder(folder(tmp_path, "# " + FINE)).ticks.left.tolist() == [1, 3]
 

@@ -8,7 +8,7 @@ import csv
 import itertools
 import re
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,7 @@ _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?
 
 @dataclass(frozen=True)
 class CsvTable:
-    """Columns of a CSV file; empty cells are NaN."""
+    """Columns of a CSV file; empty cells are NaN, and so is all of a column that is not there."""
 
     path: Path
     names: tuple[str, ...]
@@ -49,6 +49,8 @@ class CsvTable:
 
     def column(self, name: str) -> Floats:
         """The column with this name."""
+        if name not in self.names:
+            return np.full(len(self.values), np.nan)
         return np.ascontiguousarray(self.values[:, self.names.index(name)])
 
     def integers(self, name: str) -> NDArray[np.int64] | None:
@@ -73,16 +75,22 @@ class CsvTable:
                 raise InputError(f"{self.path}, line {line}, column {name}: {complaint}")
 
 
-def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> CsvTable:
+def read_table(
+    path: Path,
+    required: Sequence[str],
+    filled: Sequence[str],
+    enough: Sequence[Collection[str]] = (),
+) -> CsvTable:
     """Read a CSV file of numbers whose first line names the columns, in any order.
 
     An incomplete last line without a line end (from a power failure) is skipped. `filled`: columns
-    without empty cells. InputError if the file is not valid; the message names line, column and
-    content.
+    without empty cells. `enough`: headers that will do without the other columns that are required;
+    under any further name these might be meant. InputError if the file is not valid; the message
+    names line, column and content.
     """
     try:
         _refuse_too_large(path)
-        names = _header(path, required, filled)
+        names = _header(path, required, filled, enough)
         cut = _cut_line(path, names, [names.index(name) for name in filled])
         values = _values(path, names, cut)
     except IsADirectoryError:
@@ -112,7 +120,12 @@ def _refuse_too_large(path: Path) -> None:
                 )
 
 
-def _header(path: Path, required: Sequence[str], filled: Sequence[str]) -> tuple[str, ...]:
+def _header(
+    path: Path,
+    required: Sequence[str],
+    filled: Sequence[str],
+    enough: Sequence[Collection[str]],
+) -> tuple[str, ...]:
     wanted = ",".join(required)
     with path.open(encoding="utf-8-sig", newline=None) as file:
         line, row = file.readline(65536), file.readline(65536)
@@ -122,7 +135,7 @@ def _header(path: Path, required: Sequence[str], filled: Sequence[str]) -> tuple
     names = tuple(name.strip() for name in next(csv.reader([line.lstrip("#% ")]), []))
     place = f"{path}, line 1"
     missing = [name for name in required if name not in names]
-    if missing:
+    if missing and set(names) not in map(set, enough):
         if all(_NUMBER.match(name) for name in names):
             raise InputError(f"{place}: there is no header; the first line must be {wanted}")
         if line.lstrip()[:1] in ("#", "%"):

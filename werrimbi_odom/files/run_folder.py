@@ -30,6 +30,13 @@ that matters little."""
 LATEST = 1e12
 """Upper limit of a time in seconds [s]; Unix time in milliseconds or nanoseconds exceeds it."""
 SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
+OF_PART = (
+    {"t_s", "x_m", "y_m"},
+    {"t_s", "x_m", "y_m", "sigma_xy_m"},
+    {"t_s", "yaw_rad"},
+    {"t_s", "yaw_rad", "sigma_yaw_rad"},
+)
+"""Headers of references that measure positions alone, or headings alone."""
 
 
 def read_run_folder(path: str | Path) -> Run:
@@ -145,7 +152,7 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
 
     InputError if it is not usable; the message names file, line and column.
     """
-    table = read_table(path, REFERENCE_COLUMNS, REFERENCE_COLUMNS[:1])
+    table = read_table(path, REFERENCE_COLUMNS, REFERENCE_COLUMNS[:1], OF_PART)
     for name in table.names:
         if name.startswith("sigma") and name not in SIGMA_COLUMNS:
             known = " and ".join(SIGMA_COLUMNS)
