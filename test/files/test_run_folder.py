@@ -187,7 +187,7 @@ def test_wrong_ticks(tmp_path: Path, text: str | bytes, said: str) -> None:
     [
         ("", "reference.csv is empty; its first line must be t_s,x_m,y_m,yaw_rad"),
         (REFERENCE, "reference.csv has a header and no rows"),
-        ("t_s,x_m,theta\n0,1,2\n", "reference.csv, line 1: no column yaw_rad"),
+        ("t_s,x_m,y_m,theta\n0,1,2,3\n", "reference.csv, line 1: no column yaw_rad"),
         (
             "t,x,y,theta\n0,1,2,3\n",
             "reference.csv, line 1: no column t_s, x_m, y_m, yaw_rad; the header is 't,x,y,theta'; "
