@@ -125,6 +125,14 @@ def test_topics_as_text_are_those_of_the_bag(
     same(*(read_run(path, robot(), reference_topic=topic) for path in (text, bag)))
 
 
+def test_files_may_end_in_txt(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = drive(ros, 0)
+    named, text = echoed(tmp_path / "csv", entries), echoed(tmp_path / "text", entries)
+    for file in text.iterdir():
+        file.rename(file.with_suffix(".txt"))
+    same(*(read_run(path, robot()) for path in (text, named)))
+
+
 @pytest.mark.parametrize("dot", ["", "."])
 @pytest.mark.parametrize("number", range(4))
 def test_what_bagpy_writes_is_the_bag(
@@ -133,6 +141,19 @@ def test_what_bagpy_writes_is_the_bag(
     entries = drive(ros, number)
     bag, text = ros.write(tmp_path / "bag", entries), by_bagpy(tmp_path / "text", entries, dot)
     same(*(read_run(path, robot()) for path in (text, bag)))
+
+
+def test_an_image_in_one_cell_and_a_binary_file_beside_them(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    entries = drive(ros, 0)
+    text = by_bagpy(tmp_path / "text", entries, "")
+    whole = read_run(text, robot())
+    image = "0, " * 100_000  # as bagpy writes its data
+    head = "Time,header.seq,header.stamp.secs,header.stamp.nsecs,data"
+    (text / "image.csv").write_text(f'{head}\n1.0,0,1,0,"{image}"\n')
+    (text / "map.txt").write_bytes(b"\0\x01" * 300_000)
+    same(read_run(text, robot()), whole)
 
 
 def test_rows_with_other_columns_are_told_and_left_out(

@@ -11,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from werrimbi_odom.files.bag import SUFFIXES
-from werrimbi_odom.files.echoed_topics import SUFFIX
+from werrimbi_odom.files.echoed_topics import SUFFIXES as OF_TEXT
 from werrimbi_odom.files.recordings import BAG
 from werrimbi_odom.files.run_folder import REFERENCE, TICKS
 
@@ -23,7 +23,7 @@ def files_of(path: Path) -> Iterator[Path]:
     elif path.is_dir():
         wanted = {TICKS, REFERENCE} if (path / TICKS).exists() else {BAG}
         for each in sorted(path.iterdir()):
-            bag = TICKS not in wanted and any(end in each.name for end in (*SUFFIXES, SUFFIX))
+            bag = TICKS not in wanted and any(end in each.name for end in (*SUFFIXES, *OF_TEXT))
             if each.name in wanted or bag:
                 yield each
 

@@ -5,6 +5,7 @@
 The first line names the fields of the message: `%time,field.header.seq,field.header.stamp,...`. The
 topic is named as its file, and its type is told by the fields. What bagpy and rosbag_to_csv write
 is read as well: `Time,header.seq,header.stamp.secs,...`, with arrays in one cell or as `ranges_0`.
+Some end the file's name in `.txt`.
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ from typing import Any, NamedTuple
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.unfinished_bag import Raw
 
-SUFFIX = ".csv"
+SUFFIXES = (".csv", ".txt")
+"""Ends of the names of such files."""
+LONGEST_CELL = 2**31 - 1
+"""Characters, as many as C can count: bagpy writes an image into one cell."""
 _FIRST = "%time"
 _STAMP = ("header.stamp.secs", "header.stamp.nsecs")
 """Columns by which the text of other programs is known, whose first is `Time` or `time`."""
@@ -66,7 +70,7 @@ class EchoedTopic(NamedTuple):
 def echoed_files(path: Path) -> list[Path]:
     """Files of such topics: the path itself, or what it holds."""
     files = sorted(path.iterdir()) if path.is_dir() else [path]
-    return [each for each in files if each.suffix == SUFFIX and each.is_file() and _begins(each)]
+    return [each for each in files if each.suffix in SUFFIXES and each.is_file() and _begins(each)]
 
 
 def _begins(file: Path) -> bool:
@@ -120,8 +124,10 @@ class Parsed:
 
 
 def _rows(file: Path) -> Iterator[list[str]]:
+    csv.field_size_limit(LONGEST_CELL)  # of the whole process; a table of numbers needs none
     with file.open(encoding="utf-8", errors="replace", newline="") as opened:
-        yield from (row for row in csv.reader(opened) if row)
+        lines = (line.replace("\0", "") for line in opened)
+        yield from (row for row in csv.reader(lines) if row)
 
 
 def _messages(topic: EchoedTopic) -> Iterator[Raw]:
