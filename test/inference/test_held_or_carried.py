@@ -295,6 +295,15 @@ def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:
     assert driven(counters_of(run, other, None), other, ()).turned > 1.0, "as the file says"
 
 
+def test_a_robot_that_only_trembles_stood_all_the_time() -> None:
+    """A simulator's: it "drove for 4.7 s" and went 0.0 m."""
+    time = np.arange(0.0, 5.0, 0.05)
+    tremble = np.random.default_rng(3).normal(0.0, 1e-4 / ROBOT.left_tick, (2, time.size))
+    run = Run("drive", Path("drive"), Ticks(time, *tremble))
+    (only,) = driven(counters_of(run, ROBOT, None), ROBOT, ()).spans
+    assert only.what == "stood"
+
+
 def test_what_follows_a_carry_is_not_said_to_be_carried() -> None:
     """Of positions alone: half of a car's drive, whose heading was not known after a silence."""
     run = run_of(ROBOT, 1)

@@ -67,6 +67,8 @@ def driven(
     way, turn = 0.5 * (left + right), (right - left) / robot.track
     rolled = 0.5 * (np.abs(left) + np.abs(right))
     moving = rolled > standing_below(rolled)
+    if max(np.ptp(np.cumsum(each)) for each in (left, right)) <= rules.NO_DRIVING_TREMBLES:
+        moving[:] = False  # a simulator's robot, which trembles where it stands
     state = np.where(moving, "drove", "stood").astype(object)
     for begin, end in itertools.pairwise(_changes(state)):
         if state[begin] == "stood" and (end - begin) * _GRID < rules.REST_LASTS:
