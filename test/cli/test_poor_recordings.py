@@ -60,6 +60,7 @@ def test_clocks_apart_show_both_spans(run: Path, said: Callable[..., str], secon
         first, last = (float(row.split(",")[0]) for row in (rows[0], rows[-1]))
         assert f"{first:.14g} to {last:.14g}" in err
     assert f"lies wholly {'after' if seconds > 0 else 'before'} the ticks" in err
+    assert "else it is another drive's" in err, "two bags of one day are no two clocks"
 
 
 def test_shuffled_rows_are_told_with_row_and_time(run: Path, said: Callable[..., str]) -> None:

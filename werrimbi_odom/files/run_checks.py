@@ -129,8 +129,8 @@ def _refuse_apart(run: Run, reference: Reference) -> None:
     word, by = ("before", early) if early > late else ("after", late)
     raise InputError(
         f"{run.path}: the reference (t_s {span_in_words(reference)}) lies wholly {word} the ticks "
-        f"({span_in_words(run.ticks)}), by {by:.6g} s; both need one clock, in seconds (of "
-        "two that have nothing in common, count each from its first row)"
+        f"({span_in_words(run.ticks)}), by {by:.6g} s; both need one clock, in seconds (if "
+        "both began with one drive, count each from its first row; else it is another drive's)"
     )
 
 
