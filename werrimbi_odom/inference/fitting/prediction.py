@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath, noise_of_legs
+from werrimbi_odom.inference.legs.count_interpolation import summed
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of, wiring_of
@@ -226,8 +227,7 @@ def _shown(path: DrivenPath, runs: Concatenated, view: View, model: Model) -> Fl
     last: float | Floats = view.yaw
     if view.heading_delay != 0.0:
         late = _headings_late(path, runs, model.robot, view.heading_delay)
-        first = first + late(begin)
-        last = last + late(end)
+        first, last = first + late[0], last + late[1]
     if np.any(view.wander):
         first = first + view.drifted(_since_start(runs, begin))
         last = last + view.drifted(_since_start(runs, end))
@@ -252,28 +252,26 @@ def _since_start(runs: Concatenated, nodes: NDArray[np.intp]) -> Floats:
     return found
 
 
-def _headings_late(
-    path: DrivenPath, runs: Concatenated, robot: Robot, delay: float
-) -> Callable[[NDArray[np.intp]], Floats]:
-    """Difference of a heading delayed by `delay` [s] to the true one, at each leg's node [rad].
+def _headings_late(path: DrivenPath, runs: Concatenated, robot: Robot, delay: float) -> Floats:
+    """Difference of a heading delayed by `delay` [s] to the true one, at each leg's start and end.
 
-    Between the nodes it follows the counts, as poses do that are late as a whole. A straight line
-    from node to node would round less than they do, and seem the better model for that alone.
+    Shape (2, m) [rad]. Between the nodes it follows the counts, as poses do that are late as a
+    whole. A straight line from node to node would round less than they do, and seem the better
+    model for that alone.
     """
-    counted = np.concatenate([[0.0], np.cumsum(wheels_to_body(runs.raw(robot), robot.track).turn)])
-    wheels = wiring_of(robot.effects).wheels
+    wiring = wiring_of(robot.effects)
 
-    def late(nodes: NDArray[np.intp]) -> Floats:
-        behind = np.empty(runs.count)
-        for index, run in enumerate(runs.runs):
-            own = slice(runs.legs[index], runs.legs[index + 1])
-            steps = slice(runs.steps[index], runs.steps[index + 1] + 1)
-            here = nodes[own]
-            asked = run.time[here - runs.steps[index]] - delay
-            left, right = wheels(*run.counters.at(asked).T)
-            turned = (right * robot.right_tick - left * robot.left_tick) / robot.track
-            beside = path.yaw[steps] - (counted[steps] - counted[steps.start])
-            behind[own] = turned + np.interp(asked, run.time, beside) - path.yaw[here]
-        return behind
+    def counted(left: Floats, right: Floats) -> Floats:
+        left, right = wiring.wheels(left, right)
+        return wheels_to_body(
+            WheelTravel(left * robot.left_tick, right * robot.right_tick), robot.track
+        ).turn
 
-    return late
+    found = []
+    for index, run in enumerate(runs.runs):
+        yaw = path.yaw[runs.steps[index] : runs.steps[index + 1] + 1]
+        asked = run.time[run.ends] - delay
+        beside = np.interp(asked, run.time, yaw - counted(summed(run.left), summed(run.right)))
+        behind = counted(*run.counters.at(asked).T) + beside - yaw[run.ends]
+        found.append(np.stack([behind[:-1], behind[1:]]))
+    return np.concatenate(found, axis=1)
