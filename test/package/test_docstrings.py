@@ -54,26 +54,17 @@ def named(tree: ast.Module) -> Iterator[str]:
                 yield from re.findall(r"`([A-Za-z_]\w*(?:\.\w+)*)`", text)
 
 
-@cache
-def ends_of_modules() -> dict[str, list[set[str]]]:
-    """What each module defines, by every end of its dotted name."""
-    found: dict[str, list[set[str]]] = {}
-    for module, names in names_of_modules().items():
-        parts = module.split(".")
-        for first in range(len(parts)):
-            found.setdefault(".".join(parts[first:]), []).append(names)
-    return found
-
-
-@cache
 def is_there(dotted: str) -> bool:
     """Whether some module has this name, or holds what follows its name."""
     parts = dotted.split(".")
-    return any(
-        names.issuperset(parts[count:])
-        for count in range(1, len(parts) + 1)
-        for names in ends_of_modules().get(".".join(parts[:count]), ())
-    )
+    for count in range(1, len(parts) + 1):
+        end = "." + ".".join(parts[:count])
+        if any(
+            f".{module}".endswith(end) and names.issuperset(parts[count:])
+            for module, names in names_of_modules().items()
+        ):
+            return True
+    return False
 
 
 def test_modules_that_docstrings_name_are_there() -> None:
