@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # The matrices are small: two threads of OpenBLAS mostly wait for each other.
 export OPENBLAS_NUM_THREADS = 1
 
-.PHONY: help setup demo test lint mypy ruff imports bench evidence peers recordings docs pictures lock clean
+.PHONY: help setup demo test lint mypy ruff imports machine-code bench evidence peers recordings docs pictures lock clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -68,14 +68,15 @@ export PROGRESS
 demo: $(TRY)  ## ticks through the real node, then a robot that finds out what it lacks; ROBOT=robot.yaml RUN=folder-or-bag for your own
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
-test: setup lint  ## linters, then all tests but the long ones
+test: setup  ## linters, then all tests but the long ones
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync mypy ruff imports machine-code
 	$(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile --no-loadscope-reorder
 
 # mypy takes most of it, and does not wait for the others.
 lint: setup
 	@$(MAKE) --no-print-directory --jobs 2 --output-sync mypy ruff imports
 
-mypy ruff imports: setup
+mypy ruff imports machine-code: setup
 mypy:
 	$(BIN)/mypy
 ruff:
@@ -83,6 +84,8 @@ ruff:
 	$(BIN)/ruff format --check .
 imports:
 	$(BIN)/lint-imports
+machine-code:
+	$(BIN)/python -m test.machine_code
 
 bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/core_speed.py

@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import werrimbi_odom as wo
+from test.inference.driven import common
 from test.inference.positions import positions_of_a_point
 from test.model.drives import ROBOT
 from test.robot_file import BARE
@@ -28,6 +30,20 @@ def on_a_circle() -> Run:
     """To the left, on a circle of one metre."""
     speeds = [0.3] * 4
     return positions_of_a_point("circle", speeds, speeds, truth=BUMPED, seed=1)
+
+
+EFFECTS = common(
+    *("left_tread_bump", "right_tread_bump", "eccentric_left_wheel", "eccentric_right_wheel"),
+    *("oval_left_wheel", "oval_right_wheel"),
+)
+"""Among them all that goes with the angle of a wheel."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def library() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("werrimbi_odom.effects.lookup.LIBRARY", EFFECTS)
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,7 @@ def missing(comparing: Comparing) -> tuple[Any, dict[str, str]]:
 def test_what_is_missing_is_told_and_written_beside_the_file_in_use(
     launch: Any, compare: Any, tmp_path: Path
 ) -> None:
-    launched, comparing, file, words = watched(launch, compare, tmp_path, wide=1.04)
+    launched, comparing, file, words = watched(launch, compare, tmp_path, wide=1.04, seconds=65.0)
     before = file.read_bytes()
     status, told = missing(comparing)
     assert status.level == DiagnosticStatus.WARN

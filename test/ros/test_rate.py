@@ -25,8 +25,8 @@ from werrimbi_odom.model.trajectory import trajectory
 RATE = 1000.0
 
 
-def test_ten_seconds(launch: Callable[..., Any], robot: dict[str, Any], tmp_path: Path) -> None:
-    soak(launch(robot), tmp_path, 10.0)
+def test_four_seconds(launch: Callable[..., Any], robot: dict[str, Any], tmp_path: Path) -> None:
+    soak(launch(robot), tmp_path, 4.0)
 
 
 @pytest.mark.evidence

@@ -26,7 +26,7 @@ def test_of_a_wrong_transform_it_is_said_what_it_should_be(tmp_path: Path) -> No
     file = wo.read_robot(sim.write_robot_file(ROBOT, tmp_path / "robot.yaml"))
     runs = []
     for seed in (3, 4):
-        drive = sim.free(40.0, seed=seed, speed=0.25, yaw_rate=0.8)
+        drive = sim.free(25.0, seed=seed, speed=0.25, yaw_rate=0.8)
         made = recorded(drive, seed, tmp_path / f"drive_{seed}", entered=entered)
         run = read_run(made.bag, file, ticks_topic="/joint_states", reference_topic="/scan")
         runs.append(run)
