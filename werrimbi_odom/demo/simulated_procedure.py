@@ -118,7 +118,7 @@ def _driven(stage: Stage, file: Path, new: Path) -> OdometryError | None:
         return None
     drive = drive_of(stage.odometry, stage.measured)
     print(f"\ncompare_node, live: {stage.told(HONEST)}.")
-    stage.until(lambda: bool(stage.diagnoses), "diagnosis", 120.0)
+    stage.until(lambda: bool(stage.diagnoses), "diagnosis", 600.0)
     words = stage.diagnoses[-1].partition("Check it:")[0].rstrip()
     print(f"\ncompare_node, of what was driven:\n{words}")
     return drive
