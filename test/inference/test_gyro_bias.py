@@ -16,9 +16,12 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.matched_run import at_edges
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -34,9 +37,18 @@ def short_drive(base: float = 1.0, bias: float = BIAS, seed: int = 1) -> Run:
     return by_gyro(speed, turning, base, bias, seed)
 
 
-def by_gyro(speed: np.ndarray, turning: np.ndarray, base: float, bias: float, seed: int) -> Run:
+def by_gyro(
+    speed: np.ndarray,
+    turning: np.ndarray,
+    base: float,
+    bias: float,
+    seed: int,
+    right: float = 1.0,
+) -> Run:
     ticks = read(ROBOT, 20.0, speed, turning)
-    turns: Robot = replace(ROBOT, wheel_separation_multiplier=base)
+    turns: Robot = replace(
+        ROBOT, wheel_separation_multiplier=base, right_wheel_radius_multiplier=right
+    )
     truth = trajectory(turns, *ticks)
     walk = np.cumsum(np.random.default_rng(seed).normal(0.0, 2e-4, truth.yaw.size))
     reference = of_headings(truth.time, truth.yaw + bias * truth.time + walk)
@@ -95,3 +107,32 @@ def test_coming_to_rest_in_short_pauses_is_no_bias() -> None:
     seen = with_no_driving(coasts, ROBOT).reference
     assert seen is not None
     np.testing.assert_array_equal(seen.yaw, coasts.reference.yaw)
+
+
+def veering(rest: int) -> Run:
+    """A minute at one speed, by wheels of which the right one is 3 % larger."""
+    still, turns = np.zeros(rest), np.repeat([0.2, -0.2, 0.0, 0.3, -0.1, -0.2], 200)
+    speed = np.concatenate([still, np.full(turns.size, 0.5), still])
+    turning = np.concatenate([still, turns, still])
+    return by_gyro(speed, turning, 1.0, 0.0, seed=1, right=1.03)
+
+
+def test_a_robot_that_veers_at_one_speed_is_no_gyro_that_drifts() -> None:
+    """It rests for 5 s before and after; 100°/min were taken for drift, and the rests as wrong."""
+    legs = compare([veering(100)], ROBOT, INCREMENTAL).main.all
+    veered = 0.03 * 30.0 / ROBOT.track  # in 30 m
+    assert legs.figures.rmse_yaw_rad * legs.figures.count == pytest.approx(veered, rel=0.1)
+
+
+def test_rests_at_the_ends_tell_which_wheel_is_larger() -> None:
+    found = diagnose([veering(100)], ROBOT, LIBRARY, INCREMENTAL)
+    assert found.found[:1] == ("unequal_wheel_radii",)
+    ratio = sizes_of(found.told.point.model.robot).as_effects["unequal_wheel_radii"]
+    assert ratio == pytest.approx(1.03, abs=1e-3)
+
+
+def test_legs_at_the_ends_stay_if_the_record_begins_and_ends_at_rest() -> None:
+    for rest, left_out in ((100, 0), (0, 2)):
+        (group,) = prepare([veering(rest)], ROBOT, INCREMENTAL).groups
+        (skipped,) = at_edges(group.every.runs)
+        assert skipped[[0, -1]].sum() == left_out

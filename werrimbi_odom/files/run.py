@@ -228,6 +228,9 @@ class Run:
     """Number of reference poses removed by `run_checks.without_held_poses`."""
     no_driving: tuple[NoDriving, ...] | None = None
     """Stretches that are not driving; None if not yet determined."""
+    at_rest: tuple[float, float] | None = None
+    """Of a gyro: how its heading turns while the wheels stand, and the standard deviation [rad/s],
+    by all rests of the drive that this may be a part of; None if there are none."""
     taken_out: tuple[tuple[float, float], ...] = ()
     """Stretches of the reference that are excluded on purpose, start and end in its stamps [s]:
     legs end there, and start again."""

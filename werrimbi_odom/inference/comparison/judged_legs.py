@@ -26,6 +26,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.prediction import predicted_legs
 from werrimbi_odom.inference.fitting.run_phases import model_in_runs
+from werrimbi_odom.inference.legs.gyro_bias import AtRest
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -150,7 +151,7 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
     Fits leave this drift free too. To what the model has of it the rest is added: the slope of
     heading errors over time by least absolute deviations, a median of slopes weighted by the legs'
     durations. Of a run of fewer than `DRIFT_LEGS` nothing is, as it would absorb the whole error of
-    one leg.
+    one leg. Rests limit it: a robot that veers at a steady speed is no gyro that drifts.
     """
     seen = predicted_legs(model, runs)[:, 2]
     error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
@@ -163,7 +164,9 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
         weight = np.cumsum(runs.duration[rows][order])
         middle = int(np.searchsorted(weight, 0.5 * weight[-1])) if rows.size else 0
         drift = float(slopes[order][middle]) if rows.size >= rules.DRIFT_LEGS else 0.0
-        own.append({**mine, YAW_DRIFT: mine.get(YAW_DRIFT, 0.0) + drift})
+        drift += mine.get(YAW_DRIFT, 0.0)
+        at_rest = runs.runs[index].record.at_rest
+        own.append({**mine, YAW_DRIFT: AtRest(*at_rest).limited(drift) if at_rest else drift})
     return Model(model.robot, tuple(own))
 
 

@@ -74,6 +74,7 @@ def record_of(
         typical_sigma(reference.sigma_xy),
         typical_sigma(reference.sigma_yaw),
         happened,
+        run.at_rest,
     )
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,13 +16,39 @@ from werrimbi_odom.inference.legs.motion_states import TimeSpan
 from werrimbi_odom.model.pose import wrap_all
 
 
-def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
+class AtRest(NamedTuple):
+    """How a gyro's heading turns while the wheels stand."""
+
+    rate: float
+    """[rad/s]"""
+    unsure: float
+    """Its standard deviation, as of a random walk: the larger one."""
+
+    def limited(self, drift: float) -> float:
+        """The nearest drift [rad/s] that a gyro of such a rest may have while the robot drives."""
+        room = rules.LAID_DRIFT + rules.BIAS_SURE * self.unsure
+        return float(np.clip(drift, self.rate - room, self.rate + room))
+
+
+def without_bias(
+    reference: Reference, spans: Sequence[TimeSpan]
+) -> tuple[Reference, AtRest | None]:
     """Remove the bias estimated at rest from the headings of a gyro, if it is significant.
 
-    The robot model takes no part, so all parts of a drive get the same bias. Its change while the
-    robot drives is left to the fits, where the drift of each run is free. `reference`: headings
-    alone. `spans`: what the robot did when, in order.
+    Also returned is how the headings turn at rest from then on. The robot model takes no part, so
+    all parts of a drive get the same bias. Its change while the robot drives is left to the fits,
+    where the drift of each run is free. `reference`: headings alone. `spans`: what the robot did
+    when, in order.
     """
+    told = _turning_at_rest(reference, spans)
+    if told is None or abs(told.rate) < rules.BIAS_SURE * told.unsure:
+        return reference, told
+    lapsed = reference.time - reference.time[0]
+    return replace(reference, yaw=reference.yaw - told.rate * lapsed), told._replace(rate=0.0)
+
+
+def _turning_at_rest(reference: Reference, spans: Sequence[TimeSpan]) -> AtRest | None:
+    """The turning of headings while the wheels stand; None if they never do so for long enough."""
     seen = reference.has_yaw
     time, turned = reference.time[seen], wrap_all(np.diff(reference.yaw[seen]))
     duration = np.diff(time)
@@ -34,10 +61,7 @@ def without_bias(reference: Reference, spans: Sequence[TimeSpan]) -> Reference:
                 rest |= within
     seconds = float(duration[rest].sum())
     if not rest.any():
-        return reference
-    bias = float(turned[rest].sum()) / seconds
-    scatter = turned[rest] - bias * duration[rest]
-    unsure = float(np.sqrt(scatter @ scatter)) / seconds  # as of a random walk: the larger one
-    if abs(bias) < rules.BIAS_SURE * unsure:
-        return reference
-    return replace(reference, yaw=reference.yaw - bias * (reference.time - reference.time[0]))
+        return None
+    rate = float(turned[rest].sum()) / seconds
+    scatter = turned[rest] - rate * duration[rest]
+    return AtRest(rate, float(np.sqrt(scatter @ scatter)) / seconds)

@@ -62,9 +62,11 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         return run  # cutting into legs raises the error
     in_time = seen.earlier(clock_offset(robot))
     found = no_driving(counters, in_time, robot)
+    at_rest = None
     if not seen.has_position.any():  # a gyro
-        in_time = without_bias(in_time, driven(counters, robot, found).spans)
-    return replace(run, reference=replace(seen, yaw=in_time.yaw), no_driving=found)
+        in_time, at_rest = without_bias(in_time, driven(counters, robot, found).spans)
+    seen = replace(seen, yaw=in_time.yaw)
+    return replace(run, reference=seen, no_driving=found, at_rest=at_rest)
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

@@ -47,6 +47,8 @@ class AlignedRun:
     """Stated standard deviation of the reference's heading [rad]."""
     happened: tuple[tuple[float, float], ...] = ()
     """See `Run.happened`; free of the delay, as `measured`."""
+    at_rest: tuple[float, float] | None = None
+    """See `Run.at_rest`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,15 +126,23 @@ def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
     """Legs of each run that a clock shift could move outside the ticks; all False if legs are few.
 
     Beyond the ends of the record the motion is unknown. If it begins or ends in motion, these legs
-    would count against a delay even if that is true.
+    would count against a delay even if that is true. Where it begins or ends at rest they stay: a
+    rest is what tells a gyro's drift from a robot that veers.
     """
     found = []
     for run in runs:
         first, last = run.counters.time[0], run.counters.time[-1]
         begin, end = run.measured.time[:-1], run.measured.time[1:]
-        outside = (begin < first + rules.EDGE) | (end > last - rules.EDGE)
+        early, late = _moves(run.counters, first), _moves(run.counters, last - rules.EDGE)
+        outside = (early & (begin < first + rules.EDGE)) | (late & (end > last - rules.EDGE))
         found.append(outside if run.legs > rules.EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
     return tuple(found)
+
+
+def _moves(counters: Counters, begin: float) -> bool:
+    """Whether a wheel turns by more than its rounding within `EDGE` from a time on."""
+    turned = np.diff(counters.at(np.array([begin, begin + rules.EDGE])), axis=0)
+    return bool(np.abs(turned).max() > 1.0)
 
 
 def divided(record: AlignedRun, rows: NDArray[np.intp]) -> MatchedRun:
