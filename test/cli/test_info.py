@@ -318,6 +318,26 @@ def test_a_run_folder_is_looked_at_too(werrimbi: Werrimbi) -> None:
     assert "werrimbi compare --robot" in printed
 
 
+@pytest.mark.parametrize("both_ways", [False, True])
+def test_one_circle_does_not_tell_the_base_from_the_ratio_of_the_radii(
+    tmp_path: Path, werrimbi: Werrimbi, both_ways: bool
+) -> None:
+    time, turns = 0.1 * np.arange(600), np.full(600, 20.0)
+    if both_ways:
+        turns[300:] = -20.0
+    left, right = (np.round(np.cumsum(100.0 + side * turns)) for side in (-1.0, 1.0))
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(ROBOT_FILE)
+    path = wo.odometry(wo.read_robot(robot), time, left, right)
+    run = tmp_path / "run"
+    poses = np.column_stack((time, path.x, path.y, path.yaw))
+    poses[:, 1:] += np.random.default_rng(1).normal(0.0, 0.003, (600, 3))
+    wo.write_run(run, time, left, right, poses)
+    said = werrimbi("info", run, "--robot", robot).words
+    assert ("It can show the base, the ratio of the radii" in said) == both_ways
+    assert ("the base apart from the ratio of the radii: it drove one curve" in said) != both_ways
+
+
 def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:
     counts = [100.0 * max(0.0, 0.1 * n - 3.0) for n in range(90)]
     rows = [f"{0.1 * n},{each:.0f},{each:.0f}" for n, each in enumerate(counts)]

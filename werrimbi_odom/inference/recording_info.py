@@ -187,6 +187,9 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
         told(drive.turned >= rules.TURN_SHOWS, "the base", f"too little turning{while_so}")
         long = drive.turned >= rules.TURN_SHOWS or drive.way >= rules.WAY_SHOWS
         told(long, "the ratio of the radii", f"too little driving{while_so}")
+        if len(can) == 2 and drive.one_curve:
+            apart = "the base apart from the ratio of the radii: it drove one curve"
+            can, cannot = [], [f"{apart}; drive straight too, or to the other side{while_so}"]
     if sizes or not far:
         told(
             far and drive.way >= rules.WAY_SHOWS,

@@ -16,6 +16,7 @@ from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.inference.legs.windows import standing_below
 from werrimbi_odom.model.effect import wiring_of
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # [s]
@@ -48,6 +49,8 @@ class DrivenAmount(NamedTuple):
     """Absolute turning by the wheels [rad]."""
     reversals: int
     """Changes between forwards and backwards."""
+    one_curve: bool = False
+    """Whether it turned by the same share of its way throughout: on one circle."""
 
 
 def driven(
@@ -95,7 +98,15 @@ def driven(
         float(np.abs(way[drove]).sum()),
         float(np.abs(turn[drove]).sum()),
         int(np.count_nonzero(np.diff(along))),
+        _one_curve(np.where(drove, way, 0.0), np.where(drove, turn, 0.0)),
     )
+
+
+def _one_curve(way: Floats, turn: Floats) -> bool:
+    """Whether turn and way of each second are proportional, by the angle between them."""
+    begin = np.arange(0, way.size, round(1.0 / _GRID))
+    ways, turns = np.add.reduceat(way, begin), np.add.reduceat(turn, begin)
+    return bool(abs(ways @ turns) > rules.ONE_CURVE * np.sqrt((ways @ ways) * (turns @ turns)))
 
 
 def _changes(state: NDArray[Any]) -> list[int]:

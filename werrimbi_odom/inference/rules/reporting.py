@@ -127,6 +127,10 @@ TURN_SHOWS, WAY_SHOWS = 3.14, 2.0
 """Turn [rad], and travel [m], above which a recording can show base and radii. Chosen: half a turn
 and two metres show them to a percent, with a reference good to a degree and to 2 cm."""
 
+ONE_CURVE = 0.995
+"""Correlation of turn and way, second by second, above which a drive is one curve. Chosen: base and
+ratio of the radii are then ten times less sure than of a drive whose turn and way go apart."""
+
 SEEN_IN_FULL = 0.9
 """Share of the driving that the reference measured, below which `info` tells it beside the whole.
 Chosen: a reference that begins a little later than the wheels, or ends before, loses less."""
