@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -84,11 +85,12 @@ def diagnose(
     def search(
         runs: Sequence[Run], holdout: Sequence[Run], first: bool
     ) -> tuple[Diagnosis, Events]:
-        shown = show if first else silent
+        shown = show if first else partial(_once_more, show)
         found, judge = _searched(runs, holdout, robot, effects, options, shown)
         if found.of_another_drive:
             return found, Events()
         found.runs.cache.forget_steps()
+        show(0.95, "what happened at once")
         return found, events_beside(found.runs, found.final.point, judge)
 
     found, happened = refit_without_events(search, runs, holdout)
@@ -107,6 +109,10 @@ def diagnose(
         if explained and (again.verdict == "none" or not nothing_left):
             return replace(again, wander=wander_of(again.final.point.variances))
     return replace(found, happened=happened)
+
+
+def _once_more(show: Show, _: float, words: str) -> None:
+    show(0.95, f"{words}, without what happened at once")
 
 
 def _searched(
@@ -152,7 +158,7 @@ def _searched(
         if rounds[-1].before is fit
         else dependences(laid, fit.point, (*CALIBRATION, *fit.numbers))
     )
-    show(0.95, "held-out runs")
+    show(0.92, "what would explain it as well")
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, effects, set_up.robot)
