@@ -98,11 +98,27 @@ def model_averaged_covariance(
     products = [
         inside + np.outer(there - there_now, there - there_now) for _, there, inside in found
     ]
+    if not fit.design.sized:
+        alike = np.eye(len(names))
+        alike[np.ix_(sized, sized)] = _in_the_scale_of(told, now[sized])
+        products = [alike @ product @ alike.T for product in products]
     widened = {
         number.name: by for (number, _), by in zip(fit.design.columns, fit.widening, strict=True)
     }
     doubt = np.array([widened.get(name, 1.0) for name in names])
     return names, np.average(products, axis=0, weights=weights) * np.outer(doubt, doubt)
+
+
+def _in_the_scale_of(told: FreeSizes, now: Floats) -> Floats:
+    """Map (3, 3) of the multipliers' deviations to sizes that headings tell apart from `told`.
+
+    A robot of twice the size turns alike. Of a left wheel that is 2 % smaller and a right one that
+    is 2 % larger, with a base to match, headings alone are the same: no deviation of one from the
+    other. So the common scale is taken off that leaves alone what `told` leaves alone, if it can.
+    """
+    common = np.ones((len(MULTIPLIERS), 1))
+    scale = np.linalg.pinv(np.column_stack([told.directions, common]))[-1:]
+    return np.asarray((np.eye(len(MULTIPLIERS)) - common @ scale) * now[:, None] / now)
 
 
 def _shared(design: Design) -> tuple[list[str], Floats, Floats]:
