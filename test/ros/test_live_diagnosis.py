@@ -37,7 +37,7 @@ SERVICE = "compare_node/write_robot_file"
 
 
 def watched(
-    launch: Any, compare: Any, folder: Path, wide: float, seconds: float = 100.0
+    launch: Any, compare: Any, folder: Path, wide: float
 ) -> tuple[Any, Comparing, Path, list[Any]]:
     """A drive of a robot whose base is `wide` times that of its file, looked at when it ends."""
     values = robot_file() | {"wheel_separation": TRUE.separation / wide}
@@ -51,7 +51,7 @@ def watched(
         qos_overrides={"/odom": DEEP, "/reference": DEEP, "/joint_states": DEEP},
     )
     words = launched.keep(String, "compare_node/diagnosis")
-    play(launched, recorded(3, seconds), comparing)
+    play(launched, recorded(3, 100.0), comparing)
     launched.until(lambda: bool(words), "a diagnosis", 300.0)
     comparing.verdict()
     return launched, comparing, file, words
@@ -65,7 +65,7 @@ def missing(comparing: Comparing) -> tuple[Any, dict[str, str]]:
 def test_what_is_missing_is_told_and_written_beside_the_file_in_use(
     launch: Any, compare: Any, tmp_path: Path
 ) -> None:
-    launched, comparing, file, words = watched(launch, compare, tmp_path, wide=1.04, seconds=65.0)
+    launched, comparing, file, words = watched(launch, compare, tmp_path, wide=1.04)
     before = file.read_bytes()
     status, told = missing(comparing)
     assert status.level == DiagnosticStatus.WARN
