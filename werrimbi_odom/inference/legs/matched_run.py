@@ -126,14 +126,17 @@ def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
     """Legs of each run that a clock shift could move outside the ticks; all False if legs are few.
 
     Beyond the ends of the record the motion is unknown. If it begins or ends in motion, these legs
-    would count against a delay even if that is true. Where it begins or ends at rest they stay: a
-    rest is what tells a gyro's drift from a robot that veers.
+    would count against a delay even if that is true. By headings alone they stay where it begins or
+    ends at rest: a rest is what tells a gyro's drift from a robot that veers.
     """
     found = []
     for run in runs:
         first, last = run.counters.time[0], run.counters.time[-1]
         begin, end = run.measured.time[:-1], run.measured.time[1:]
-        early, late = _moves(run.counters, first), _moves(run.counters, last - rules.EDGE)
+        gyro = not run.measured.has_position.any()
+        early, late = (
+            not gyro or _moves(run.counters, begun) for begun in (first, last - rules.EDGE)
+        )
         outside = (early & (begin < first + rules.EDGE)) | (late & (end > last - rules.EDGE))
         found.append(outside if run.legs > rules.EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
     return tuple(found)
