@@ -87,6 +87,14 @@ def test_two_wheels_keep_the_base_and_hear_of_skidding() -> None:
     assert "left_wheel_names" in said(found)
 
 
+def test_four_driven_wheels_have_no_castor() -> None:
+    of_two, of_four = (
+        {each.effect for each in diagnosed(robot).ranking} for robot in (ROBOT, FOUR_WHEELS)
+    )
+    assert "castor_kick" in of_two
+    assert "castor_kick" not in of_four
+
+
 def test_whoever_asks_for_it_gets_it_and_no_other_number_moves() -> None:
     runs = [drive(number) for number in (1, 2, 3)]
     added = add_effects([find("skid_steer")], runs[:2], ROBOT, holdout=runs[2:])

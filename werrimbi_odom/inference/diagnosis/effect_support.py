@@ -89,14 +89,16 @@ def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tupl
 
 
 def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:
-    """Effects that such counters can show and such a reference can have.
+    """Effects that such counters can show, and such a robot and such a reference can have.
 
     The acceleration by a coarse counter is that of its steps, which a linear law adds up to the
     true one, and no other does. A scan tells place and heading of one instant: no gyro has a part
     in it, and its heading is not later than its place, unless a gyro's headings were put in. Where
     no heading was measured, none is late or drifts. A clock gains nothing where the recorder's
-    shows that it does not.
+    shows that it does not. A robot that is driven by four wheels has no castor.
     """
+    if robot.wheels_a_side > 1:
+        effects = [each for each in effects if not _of_a_castor(each)]
     if runs.has_coarse_counters:
         drive = runs.drive(robot)
         effects = [each for each in effects if each.lacks(()) or not _bends(each, drive)]
@@ -106,6 +108,10 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
     if not of_places or runs.has_gyro_headings:
         return tuple(effects)
     return tuple(each for each in effects if each.stage != "reference" or not _of_a_gyro(each))
+
+
+def _of_a_castor(effect: Effect) -> bool:
+    return effect.sketch is not None and effect.sketch.drawing == "castor"
 
 
 def _of_a_clock(effect: Effect) -> bool:
