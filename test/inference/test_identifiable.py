@@ -338,21 +338,34 @@ def test_a_gyros_own_scale_is_told_beside_a_base_that_is_found_second() -> None:
     assert found.rivals_of_others == {"track_width": ("reference_scale",)}
 
 
-def test_a_scale_that_no_heading_shows_is_no_doubt_about_the_ratio_of_the_radii() -> None:
-    """A smaller left wheel and a larger right one turn alike: ratio and base were ± 2.6 %."""
-    truth = replace(ROBOT, left_wheel_radius_multiplier=0.97, wheel_separation_multiplier=1.01)
+def by_headings(truth: Robot) -> list[Run]:
     runs = []
     for run in runs_of(truth, (1, 2), 40):
         assert run.reference is not None
         seen = of_headings(run.reference.time, run.reference.yaw)
         runs.append(replace(run, reference=seen))
-    found = diagnose(runs, ROBOT, COMMON)
+    return runs
+
+
+def test_a_scale_that_no_heading_shows_is_no_doubt_about_the_ratio_of_the_radii() -> None:
+    """A smaller left wheel and a larger right one turn alike: ratio and base were ± 2.6 %."""
+    truth = replace(ROBOT, left_wheel_radius_multiplier=0.97, wheel_separation_multiplier=1.01)
+    found = diagnose(by_headings(truth), ROBOT, COMMON)
     assert set(found.found) == {"unequal_wheel_radii", "track_width"}
     true = {"unequal_wheel_radii": ("ratio", 1.0 / 0.97), "track_width": ("multiplier", 1.01)}
     for name, (parameter, size) in true.items():
         told = values_of(found, name)[parameter]
         assert told.std < 0.001
         assert abs(told.value - size) < 4.0 * told.std
+
+
+def test_one_wheel_that_is_larger_is_no_other_base_to_a_gyro() -> None:
+    """Headings know each wheel over the base, and a base of 0.995 was "beyond any chance"."""
+    found = diagnose(by_headings(replace(ROBOT, right_wheel_radius_multiplier=1.01)), ROBOT, COMMON)
+    assert (found.verdict, found.found) == ("named", ("unequal_wheel_radii",))
+    assert found.robot.wheel_separation_multiplier == 1.0
+    assert found.robot.left_wheel_radius_multiplier == 1.0
+    assert found.robot.right_wheel_radius_multiplier == pytest.approx(1.01, abs=1e-3)
 
 
 @pytest.mark.parametrize("scale", [1.02, in_evidence(0.85)])

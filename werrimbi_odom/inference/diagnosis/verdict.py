@@ -165,6 +165,8 @@ def _answer(
         for name in final.calibrated
         if _is_news(name, final, rounds[0].number, given, set_up.robot)
     ]
+    if laid.headings_alone and set(_OF_ONE_WHEEL) <= set(sizes):
+        sizes = _without_needless_base(sizes, final, set_up.robot)
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     names = {"track_width": name_of_base(final.point.model.robot)}
     found = tuple(dict.fromkeys([*mistakes, *(names.get(name, name) for name in effects)]))
@@ -208,6 +210,17 @@ def _is_news(name: str, final: Fitted, tried: int, given: Robot, start: Robot) -
     certain = bonferroni(tried, p_value_of_size(final, name, given, start)) < rules.SURE
     differs = deviations_from(given, final, name) > rules.SIGNIFICANT
     return certain and differs and worth > rules.CALIBRATION_WORTH * final.penalty_of_one
+
+
+_OF_ONE_WHEEL = ("track_width", "unequal_wheel_radii")
+"""What headings see of one wheel that is larger: both, for they know each wheel over the base."""
+
+
+def _without_needless_base(sizes: list[str], final: Fitted, given: Robot) -> list[str]:
+    """Without the base, if one wheel alone is the simpler cause of its ratio to both wheels."""
+    base, ratio = _OF_ONE_WHEEL
+    alone = sizes_needed(final, given, (ratio,)).parts in (("", "left"), ("", "right"))
+    return [name for name in sizes if name != base or not alone]
 
 
 def _plain(fit: Fitted, given: Robot) -> Model:
