@@ -76,7 +76,7 @@ def test_json_of_one_and_of_all(tmp_path: Path) -> None:
     one = json.loads((tmp_path / "one.json").read_text())
     assert one["effect"] == "castor_kick"
     assert one["parameters"]["length"]["unit"] == "m"
-    assert one["parameters"]["length"]["bounds"] == [0.003, 0.5]
+    assert one["parameters"]["length"]["bounds"] == [0.001, 0.5]
     assert one["ruler"]
     run("--json", str(tmp_path / "all.json"))
     everything = json.loads((tmp_path / "all.json").read_text())

@@ -34,7 +34,7 @@ from werrimbi_odom.model.motion import BodyMotion, Number
         "m",
         null=0.04,
         typical=0.04,
-        bounds=(0.003, 0.5),
+        bounds=(0.001, 0.5),
         says="way over which the swing dies out by a factor e: about the castor's trail",
         tries=(0.01, 0.04, 0.15),
     ),
