@@ -49,7 +49,7 @@ def drives_of(levels: np.ndarray, random: np.random.Generator) -> DriveNumbers:
 
 
 def found_in(drives: DriveNumbers, kinds: tuple = ("step", "alone", "trend")) -> ChangePoints:
-    return find_changes(drives, groups_of(MULTIPLIERS, np.ones(3), 3), PRICE, kinds)
+    return find_changes(drives, groups_of(MULTIPLIERS, np.ones(3), 3), np.ones(3), PRICE, kinds)
 
 
 def test_what_a_change_would_explain_is_what_least_squares_says() -> None:

@@ -90,7 +90,7 @@ def _beside(
     groups = groups_of(
         [number.name for number in evidence.numbers], evidence.values, len(drives.names)
     )
-    found = find_changes(drives, groups, fit.penalty_of_one)
+    found = find_changes(drives, groups, evidence.values, fit.penalty_of_one)
     place = np.argsort(order)
     steps = [
         step
@@ -115,7 +115,8 @@ def _beside(
     if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
         return ()
     if len(steps) < len(found.steps):
-        found = find_changes(drives, [step.group for step in steps], fit.penalty_of_one)
+        changed = [step.group for step in steps]
+        found = find_changes(drives, changed, evidence.values, fit.penalty_of_one)
     names = [runs.runs[index].name for index in order.tolist()]
     moved = parameter_changes_of(found, evidence.numbers, drives.names, names)
     # The levels are linear in the derivatives: beyond what is possible, these do not hold.

@@ -57,6 +57,7 @@ class ChangePoints:
 def find_changes(
     drives: DriveNumbers,
     groups: Sequence[NumberGroup],
+    given: Floats,
     penalty: float,
     kinds: Sequence[Kind] = ("step", "alone"),
     most: int = rules.MOST_CHANGES,
@@ -64,8 +65,10 @@ def find_changes(
     """Find the changes.
 
     `drives`: in the order in which they were driven. `groups`: groups of parameters that may
-    change. `penalty`: penalty of each free parameter; the drive of the change counts as one.
-    `kinds`: shapes of changes to try. `most`: largest number of changes.
+    change. `given` (s,): values of the parameters, near which the levels stay in what the drives do
+    not determine: by headings alone, the robot's scale. `penalty`: penalty of each free parameter;
+    the drive of the change counts as one. `kinds`: shapes of changes to try. `most`: largest number
+    of changes.
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)
@@ -91,7 +94,7 @@ def find_changes(
         ),
         key=lambda step: (step.shape.first, -step.gain),
     )
-    return ChangePoints(tuple(told), *levels_of(rows, told), tried)
+    return ChangePoints(tuple(told), *levels_of(rows, told, given), tried)
 
 
 def _wheel_by_wheel(
@@ -112,14 +115,16 @@ def _wheel_by_wheel(
     return found
 
 
-def levels_of(rows: Rows, steps: Sequence[GroupChange]) -> tuple[Floats, Floats]:
+def levels_of(rows: Rows, steps: Sequence[GroupChange], given: Floats) -> tuple[Floats, Floats]:
     """Parameters in each drive (R, s) and their covariance (R, s, s), with these changes."""
     columns = _columns(rows, steps)
     size = np.sqrt(np.sum(columns**2, axis=0))
     unit = np.where(size > 0.0, size, 1.0)
     inverse = np.linalg.pinv((columns / unit).T @ (columns / unit), rcond=1e-12, hermitian=True)
     inverse = inverse / np.outer(unit, unit)
-    found = inverse @ (columns.T @ rows.seen.ravel())
+    near = np.zeros(unit.size)
+    near[: given.size] = given
+    found = near + inverse @ (columns.T @ (rows.seen.ravel() - columns @ near))
     count, width = rows.seen.shape
     moves = np.concatenate(
         [

@@ -138,11 +138,11 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
     penalty = max(rules.PENALTY_FLOOR, math.log(max(sum(each.data for each in estimates), 2)))
     groups = groups_of(names, given, given.size)
     most = rules.MOST_CHANGES if len(estimates) >= rules.SCATTER_DRIVES else 1
-    found = find_changes(wide, groups, penalty, KINDS, most)
+    found = find_changes(wide, groups, given, penalty, KINDS, most)
     lasting = beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
-        none = ChangePoints((), *levels_of(rows_of(wide), ()), 0)
-        found = find_changes(wide, lasting, penalty, KINDS) if lasting else none
+        none = ChangePoints((), *levels_of(rows_of(wide), (), given), 0)
+        found = find_changes(wide, lasting, given, penalty, KINDS) if lasting else none
     values = Values(given[None], np.zeros((1, given.size, given.size)))
     return Course(
         tuple(
