@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON
+from test.inference.driven import COMMON, of_headings
 from test.recorded_robots import ROBOTS
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
@@ -24,6 +25,7 @@ from werrimbi_odom.inference.changes.between_drives import (
     of_several,
 )
 from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
+from werrimbi_odom.inference.changes.history import course_of, estimate_of_drive
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup, groups_of
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
@@ -190,6 +192,29 @@ def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
     assert change == pytest.approx(0.003, abs=4.0 * std / moved.before)
     assert std / moved.before < 5e-4
     assert moved.p_value < 1e-6
+
+
+def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
+    """No heading tells the robot's scale: its levels were of no size, which physics refuses."""
+    runs = []
+    for run in session(-0.01):
+        assert run.reference is not None
+        seen = of_headings(run.reference.time, run.reference.yaw)
+        runs.append(replace(run, reference=seen))
+    given = BUILT.entered()
+    (moved,) = told_of(runs)
+    assert (moved.what, moved.from_run) == ("right_wheel_radius_multiplier", "drive_3")
+    std = np.hypot(moved.before_std, moved.after_std) / moved.before
+    assert moved.after / moved.before == pytest.approx(0.99, abs=4.0 * std)
+    assert std < 2e-3
+
+    of_each = [estimate_of_drive(run, given, EvaluationOptions()) for run in runs]
+    course = course_of(of_each, given, np.arange(6.0))
+    (since,) = course.changes
+    assert (since.what, since.from_run) == ("right_wheel_radius_multiplier", "3")
+    ratio = next(each for each in course.numbers if each.name == "unequal_wheel_radii")
+    assert ratio.level[-1] / ratio.level[0] == pytest.approx(0.99, abs=2e-3)
+    assert ratio.level_std[-1] < 1e-3
 
 
 def test_clocks_that_stand_otherwise_in_each_drive_are_told() -> None:

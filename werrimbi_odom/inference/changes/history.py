@@ -113,11 +113,30 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
     fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
     evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
     drive = evidence.drives(np.zeros(1))
+    if laid.headings_alone:
+        drive = _in_logarithms(drive, evidence.values, robot)
     way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
     begin = float(laid.runs[0].counters.time[0])
     return DriveEstimate(
         drive.names, drive.information[0], drive.weighted[0], begin, laid.data, way
     )
+
+
+def _in_logarithms(drive: DriveNumbers, values: Floats, robot: Robot) -> DriveNumbers:
+    """A drive with its multipliers as `given * (1 + log(value / given))`, at the same `values`.
+
+    By headings alone a robot of another scale is the same. With base and radii of each drive's own
+    that is another direction in each, and between them drives would seem to tell the scale.
+    """
+    sized = [drive.names.index(name) for name in MULTIPLIERS]
+    given = np.array([getattr(robot, name) for name in MULTIPLIERS])
+    score = drive.information[0] @ values - drive.weighted[0]
+    there, factor = values.copy(), np.ones_like(values)
+    factor[sized] = values[sized] / given
+    there[sized] = given * (1.0 + np.log(factor[sized]))
+    information = drive.information * np.outer(factor, factor)
+    weighted = information @ there - factor * score
+    return DriveNumbers(drive.names, information, weighted, drive.time)
 
 
 def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
