@@ -32,6 +32,7 @@ from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS
 from werrimbi_odom.inference.linear import nuisance, score_test
+from werrimbi_odom.report.changes import changes_words
 
 IN_JUNE = ROBOTS / "optitrack_in_june"
 PRICE = 9.0
@@ -194,13 +195,18 @@ def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
     assert moved.p_value < 1e-6
 
 
-def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
-    """No heading tells the robot's scale: its levels were of no size, which physics refuses."""
-    runs = []
-    for run in session(-0.01):
+def by_headings(runs: list[Run]) -> list[Run]:
+    found = []
+    for run in runs:
         assert run.reference is not None
         seen = of_headings(run.reference.time, run.reference.yaw)
-        runs.append(replace(run, reference=seen))
+        found.append(replace(run, reference=seen))
+    return found
+
+
+def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
+    """No heading tells the robot's scale: its levels were of no size, which physics refused."""
+    runs = by_headings(session(-0.01))
     given = BUILT.entered()
     (moved,) = told_of(runs)
     assert (moved.what, moved.from_run) == ("right_wheel_radius_multiplier", "drive_3")
@@ -215,6 +221,20 @@ def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
     ratio = next(each for each in course.numbers if each.name == "unequal_wheel_radii")
     assert ratio.level[-1] / ratio.level[0] == pytest.approx(0.99, abs=2e-3)
     assert ratio.level_std[-1] < 1e-3
+
+
+def test_a_gyro_alone_does_not_tell_a_base_that_changed_from_both_wheels() -> None:
+    random = np.random.default_rng(12)
+    runs = []
+    for number in range(6):
+        robot = replace(BUILT, separation=BUILT.separation * (0.98 if number > 2 else 1.0))
+        run = drive(robot, wandering(random, 40.0), random)
+        runs.append(replace(run, name=f"drive_{number}", path=Path(f"drive_{number}")))
+    (moved,) = told_of(by_headings(runs))
+    assert (moved.group, moved.from_run) == ("wheels_over_base", "drive_3")
+    assert moved.after / moved.before == pytest.approx(0.98, abs=4e-3)
+    (words,) = changes_words([moved], BUILT.entered())
+    assert "both wheels, or the base, or the gyro's own scale" in words
 
 
 def test_clocks_that_stand_otherwise_in_each_drive_are_told() -> None:

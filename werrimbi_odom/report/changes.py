@@ -19,6 +19,7 @@ WHAT = {
     "right_wheel": "the right wheel",
     "both_wheels": "both wheels",
     "wheel_base": "the wheel base",
+    "wheels_over_base": "the wheels over the base",
     "mount": "how the reference is mounted",
     "reference_delay": "the reference's clock",
 }
@@ -66,6 +67,12 @@ def _what(moves: Sequence[ParameterChange], robot: Robot) -> str:
         share = _share(moves[0], "wider", "narrower")
         sizes = _sizes(moves[0], robot.wheel_separation)
         return f"{WHAT[group]} {_verb(moves[0], group)} {share}: {sizes}"
+    if group == "wheels_over_base":
+        share = _share(moves[0], "smaller", "larger")
+        return (
+            f"{WHAT[group]} {_verb(moves[0], group)} {share}: both wheels, or the base, or the "
+            "gyro's own scale, which headings alone do not tell apart"
+        )
     numbers = listed([_from_to(move) for move in moves])
     if group == "mount":
         return f"the reference {_verb(moves[0], group)} mounted otherwise: {numbers}"
@@ -76,7 +83,7 @@ def _what(moves: Sequence[ParameterChange], robot: Robot) -> str:
 
 def _verb(move: ParameterChange, group: str) -> str:
     if move.kind == "alone":
-        return "were" if group == "both_wheels" else "was"
+        return "were" if group in ("both_wheels", "wheels_over_base") else "was"
     if group == "mount":
         return "came to be"
     return "became"

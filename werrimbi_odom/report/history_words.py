@@ -34,6 +34,8 @@ _LOOK = {
     "right_wheel": "look at the right wheel: tread, pressure, and whether it sits firmly",
     "both_wheels": "look at both tyres: tread, pressure, load",
     "wheel_base": "look at what the wheels stand on: axle, bearings, a tyre's width, the floor",
+    "wheels_over_base": "look at both tyres, at axle and bearings, and at the gyro: headings alone "
+    "do not tell which",
     "mount": "look at how the reference is mounted, and enter its place anew",
 }
 _DATE_WORDS = {

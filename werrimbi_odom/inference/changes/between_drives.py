@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.change_evidence import Evidence, evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
-from werrimbi_odom.inference.changes.parameter_groups import DELAY, PARTS, groups_of
+from werrimbi_odom.inference.changes.parameter_groups import DELAY, PARTS, groups_of, tell_the_scale
 from werrimbi_odom.inference.changes.shapes import Kind, Shape
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -88,7 +88,10 @@ def _beside(
     order = driven_in_order([float(run.counters.time[0]) for run in runs.runs])
     drives = evidence.drives(np.arange(order.size, dtype=np.float64)).chosen(order)
     groups = groups_of(
-        [number.name for number in evidence.numbers], evidence.values, len(drives.names)
+        [number.name for number in evidence.numbers],
+        evidence.values,
+        len(drives.names),
+        sized=tell_the_scale(drives.information, drives.names, evidence.values),
     )
     found = find_changes(drives, groups, evidence.values, fit.penalty_of_one)
     place = np.argsort(order)

@@ -28,7 +28,13 @@ from werrimbi_odom.inference.changes.between_drives import ParameterChange, para
 from werrimbi_odom.inference.changes.change_evidence import evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
-from werrimbi_odom.inference.changes.parameter_groups import MOUNT, groups_of, numbers_of, value_at
+from werrimbi_odom.inference.changes.parameter_groups import (
+    MOUNT,
+    groups_of,
+    numbers_of,
+    tell_the_scale,
+    value_at,
+)
 from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
@@ -155,7 +161,8 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
     scatter = np.array([scatter_of(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
     wide = drives.with_scatter(scatter)
     penalty = max(rules.PENALTY_FLOOR, math.log(max(sum(each.data for each in estimates), 2)))
-    groups = groups_of(names, given, given.size)
+    sized = tell_the_scale(drives.information, names, given)
+    groups = groups_of(names, given, given.size, sized=sized)
     most = rules.MOST_CHANGES if len(estimates) >= rules.SCATTER_DRIVES else 1
     found = find_changes(wide, groups, given, penalty, KINDS, most)
     lasting = beyond_scatter(wide, found, own, scatter)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
@@ -25,7 +26,10 @@ YAW, ARM, DELAY = "reference_yaw_offset", "reference_lever_arm", "reference_dela
 MOUNT = (YAW, ARM)
 """Effects of the reference's mount, which may be changed even if the file does not hold them."""
 
-PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", "mount", DELAY)
+OVER_BASE = "wheels_over_base"
+"""What headings alone know of the sizes, beside the ratio of the radii."""
+
+PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", OVER_BASE, "mount", DELAY)
 """Groups that are sizes of parts, or how two clocks stand, not parameters of an effect's law."""
 
 
@@ -69,19 +73,34 @@ def value_at(robot: Robot, name: str, nulls: Mapping[str, float]) -> float:
         return nulls.get(name, 0.0)
 
 
-def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[NumberGroup, ...]:
+def tell_the_scale(information: Floats, names: Sequence[str], values: Floats) -> bool:
+    """Whether any drive tells a robot from one of another scale: headings alone do not.
+
+    `information` (R, s, s): of each drive about the s parameters, which have these `names` and
+    `values`.
+    """
+    scale = np.where(np.isin(names, MULTIPLIERS), values, 0.0)
+    return bool(np.sum(scale @ information @ scale) > rules.CALIBRATION_KNOWN**-2)
+
+
+def groups_of(
+    names: Sequence[str], values: Floats, size: int, *, sized: bool = True
+) -> tuple[NumberGroup, ...]:
     """Groups of parameters that may change by one cause, the simplest first.
 
     `names`: names of the parameters that may change, the first of all. `values` (s,): their values:
-    both wheels change by the same share. `size`: number of all parameters, s.
+    both wheels change by the same share. `size`: number of all parameters, s. `sized`: whether the
+    drives tell the robot's scale.
     """
     found = []
     columns = np.eye(size)
     base, left, right = (names.index(name) for name in MULTIPLIERS)
-    for what, index in (("left_wheel", left), ("right_wheel", right), ("wheel_base", base)):
+    bases = ("wheel_base" if sized else OVER_BASE, base)
+    for what, index in (("left_wheel", left), ("right_wheel", right), bases):
         found.append(NumberGroup(what, (names[index],), columns[:, [index]]))
-    alike = columns[:, [left]] * values[left] + columns[:, [right]] * values[right]
-    found.append(NumberGroup("both_wheels", (names[left], names[right]), alike))
+    if sized:
+        alike = columns[:, [left]] * values[left] + columns[:, [right]] * values[right]
+        found.append(NumberGroup("both_wheels", (names[left], names[right]), alike))
     effects = dict.fromkeys(name.rpartition(".")[0] for name in names if "." in name)
     for effect in effects:
         own = [index for index, name in enumerate(names) if name.rpartition(".")[0] == effect]
