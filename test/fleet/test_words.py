@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -78,6 +79,13 @@ ALL = Fleet((slips("robot_1", 0.0075, 0.0025, 0.03), WIDE, RIVALS, BY_HAND, WARM
 def test_a_value_that_the_file_has_wrong_is_to_be_fitted_anew() -> None:
     old = row("robot_9", "none", 0.008, 0.002, outdated=[{"effect": "castor_kick"}])
     assert cells(old)[3:] == ["nothing", "8.0 → 2.0", "add castor_kick"]
+
+
+def test_all_that_is_missing_is_to_be_added_and_headings_err_in_degrees() -> None:
+    turned = {"before": None, "after": None, "rmse_yaw_rad": {"before": 0.02, "after": 0.003}}
+    both = {"unequal_wheel_radii": {}, "track_width": {}}
+    late = row("robot_9", "named", math.nan, math.nan, holdout=turned, found=both)
+    assert cells(late)[4:] == ["1.15° → 0.17°", "add unequal_wheel_radii,track_width"]
 
 
 def test_the_page_of_the_docs_shows_what_is_printed() -> None:

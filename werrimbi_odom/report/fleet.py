@@ -267,7 +267,7 @@ def _with_values(row: Row, effect: str) -> str:
 def next_words(row: Row) -> str:
     """Next step in a few words; `add` and `draft` are verbs of this tool."""
     if row.verdict == "named":
-        return f"add {row.missing[0]}"
+        return f"add {','.join(row.missing)}"
     if row.verdict == "unknown":
         return "draft"
     if row.verdict == "none" and row.figures is not None and row.figures["outdated"]:
@@ -282,9 +282,17 @@ def next_words(row: Row) -> str:
 
 
 def error_words(row: Row) -> str:
-    """Held-out error before and after in millimetres; "" if there is none."""
+    """Held-out error before and after in millimetres, by headings alone in degrees, or ""."""
     before, after = row.errors
-    return "" if math.isnan(before) else f"{_millimetres(before)} → {_millimetres(after)}"
+    if not math.isnan(before):
+        return f"{_millimetres(before)} → {_millimetres(after)}"
+    turns = {} if row.figures is None else row.figures["holdout"].get("rmse_yaw_rad", {})
+    before, after = (_number(turns.get(side)) for side in ("before", "after"))
+    return "" if math.isnan(before) else f"{_degrees(before)} → {_degrees(after)}"
+
+
+def _degrees(value: float) -> str:
+    return "-" if math.isnan(value) else f"{math.degrees(value):.2f}°"
 
 
 def _millimetres(value: float) -> str:
