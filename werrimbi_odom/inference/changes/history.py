@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from werrimbi_odom.inference.changes.between_drives import ParameterChange, para
 from werrimbi_odom.inference.changes.change_evidence import evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
+from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms, out_of_logarithms
 from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
     groups_of,
@@ -120,29 +121,12 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
     evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
     drive = evidence.drives(np.zeros(1))
     if laid.headings_alone:
-        drive = _in_logarithms(drive, evidence.values, robot)
+        drive = in_logarithms(drive, evidence.values, robot)
     way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
     begin = float(laid.runs[0].counters.time[0])
     return DriveEstimate(
         drive.names, drive.information[0], drive.weighted[0], begin, laid.data, way
     )
-
-
-def _in_logarithms(drive: DriveNumbers, values: Floats, robot: Robot) -> DriveNumbers:
-    """A drive with its multipliers as `given * (1 + log(value / given))`, at the same `values`.
-
-    By headings alone a robot of another scale is the same. With base and radii of each drive's own
-    that is another direction in each, and between them drives would seem to tell the scale.
-    """
-    sized = [drive.names.index(name) for name in MULTIPLIERS]
-    given = np.array([getattr(robot, name) for name in MULTIPLIERS])
-    score = drive.information[0] @ values - drive.weighted[0]
-    there, factor = values.copy(), np.ones_like(values)
-    factor[sized] = values[sized] / given
-    there[sized] = given * (1.0 + np.log(factor[sized]))
-    information = drive.information * np.outer(factor, factor)
-    weighted = information @ there - factor * score
-    return DriveNumbers(drive.names, information, weighted, drive.time)
 
 
 def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
@@ -169,6 +153,13 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
     if len(lasting) < len(found.steps):
         none = ChangePoints((), *levels_of(rows_of(wide), (), given), 0)
         found = find_changes(wide, lasting, given, penalty, KINDS) if lasting else none
+    pooled = _pooled(drives, found, scatter)
+    if not sized:
+        own, pooled, levels = (
+            out_of_logarithms(each, names, robot)
+            for each in (own, pooled, Values(found.levels, found.spread))
+        )
+        found = replace(found, levels=levels.value, spread=levels.spread)
     values = Values(given[None], np.zeros((1, given.size, given.size)))
     return Course(
         tuple(
@@ -177,7 +168,7 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
                 _titles(numbers, scatter, given),
                 _shown(names, values),
                 _silenced(_shown(names, own), [*limits, *limits[1:3]]),
-                _shown(names, _pooled(drives, found, scatter)),
+                _shown(names, pooled),
                 _shown(names, Values(found.levels, found.spread)),
                 strict=True,
             )
