@@ -256,7 +256,8 @@ def _values(item: NodeParameter) -> st.SearchStrategy[Value]:
     if item.kind == "integer":
         assert item.minimum is not None
         assert item.maximum is not None
-        return st.integers(int(item.minimum), int(item.maximum))
+        whole = st.integers(int(item.minimum), int(item.maximum))
+        return whole.filter(lambda bits: bits != 1) if item.name == "encoder_bits" else whole
     if item.kind == "float" and item.name in SIZES:
         return st.floats(*SIZES[item.name])
     if item.kind == "float":
