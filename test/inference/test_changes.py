@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, of_headings
+from test.inference.driven import COMMON, parts
 from test.recorded_robots import ROBOTS
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
@@ -195,18 +195,9 @@ def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
     assert moved.p_value < 1e-6
 
 
-def by_headings(runs: list[Run]) -> list[Run]:
-    found = []
-    for run in runs:
-        assert run.reference is not None
-        seen = of_headings(run.reference.time, run.reference.yaw)
-        found.append(replace(run, reference=seen))
-    return found
-
-
 def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
     """No heading tells the robot's scale: its levels were of no size, which physics refused."""
-    runs = by_headings(session(-0.01))
+    runs = [parts(run, "yaw") for run in session(-0.01)]
     given = BUILT.entered()
     (moved,) = told_of(runs)
     assert (moved.what, moved.from_run) == ("right_wheel_radius_multiplier", "drive_3")
@@ -229,8 +220,9 @@ def test_a_gyro_alone_does_not_tell_a_base_that_changed_from_both_wheels() -> No
     for number in range(6):
         robot = replace(BUILT, separation=BUILT.separation * (0.98 if number > 2 else 1.0))
         run = drive(robot, wandering(random, 40.0), random)
-        runs.append(replace(run, name=f"drive_{number}", path=Path(f"drive_{number}")))
-    (moved,) = told_of(by_headings(runs))
+        named = replace(run, name=f"drive_{number}", path=Path(f"drive_{number}"))
+        runs.append(parts(named, "yaw"))
+    (moved,) = told_of(runs)
     assert (moved.group, moved.from_run) == ("wheels_over_base", "drive_3")
     assert moved.after / moved.before == pytest.approx(0.98, abs=4e-3)
     (words,) = changes_words([moved], BUILT.entered())

@@ -339,12 +339,7 @@ def test_a_gyros_own_scale_is_told_beside_a_base_that_is_found_second() -> None:
 
 
 def by_headings(truth: Robot) -> list[Run]:
-    runs = []
-    for run in runs_of(truth, (1, 2), 40):
-        assert run.reference is not None
-        seen = of_headings(run.reference.time, run.reference.yaw)
-        runs.append(replace(run, reference=seen))
-    return runs
+    return [parts(run, "yaw") for run in runs_of(truth, (1, 2), 40)]
 
 
 def test_a_scale_that_no_heading_shows_is_no_doubt_about_the_ratio_of_the_radii() -> None:

@@ -184,12 +184,14 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     far = measures in ("poses", "positions")
     if sizes:  # without it neither distance nor a wheel counting backwards is known
         while_so = _while_measured(held)
-        told(drive.turned >= rules.TURN_SHOWS, "the base", f"too little turning{while_so}")
-        long = drive.turned >= rules.TURN_SHOWS or drive.way >= rules.WAY_SHOWS
-        told(long, "the ratio of the radii", f"too little driving{while_so}")
-        if len(can) == 2 and drive.one_curve:
+        turned = drive.turned >= rules.TURN_SHOWS
+        if turned and drive.one_curve:
             apart = "the base apart from the ratio of the radii: it drove one curve"
-            can, cannot = [], [f"{apart}; drive straight too, or to the other side{while_so}"]
+            cannot.append(f"{apart}; drive straight too, or to the other side{while_so}")
+        else:
+            told(turned, "the base", f"too little turning{while_so}")
+            long = turned or drive.way >= rules.WAY_SHOWS
+            told(long, "the ratio of the radii", f"too little driving{while_so}")
     if sizes or not far:
         told(
             far and drive.way >= rules.WAY_SHOWS,

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from werrimbi_odom.report.document import Paragraph, paragraphs
+from werrimbi_odom.report.number_format import error_words as leg_error
 from werrimbi_odom.report.number_format import listed, with_std
 
 ERROR = "error"
@@ -288,11 +289,9 @@ def error_words(row: Row) -> str:
         return f"{_millimetres(before)} → {_millimetres(after)}"
     turns = {} if row.figures is None else row.figures["holdout"].get("rmse_yaw_rad", {})
     before, after = (_number(turns.get(side)) for side in ("before", "after"))
-    return "" if math.isnan(before) else f"{_degrees(before)} → {_degrees(after)}"
-
-
-def _degrees(value: float) -> str:
-    return "-" if math.isnan(value) else f"{math.degrees(value):.2f}°"
+    if math.isnan(before):
+        return ""
+    return f"{leg_error(before, 'rad')} → {leg_error(after, 'rad')}"
 
 
 def _millimetres(value: float) -> str:

@@ -116,7 +116,10 @@ def _wheel_by_wheel(
 
 
 def levels_of(rows: Rows, steps: Sequence[GroupChange], given: Floats) -> tuple[Floats, Floats]:
-    """Parameters in each drive (R, s) and their covariance (R, s, s), with these changes."""
+    """Parameters in each drive (R, s) and their covariance (R, s, s), with these changes.
+
+    `given` (s,): as of `find_changes`.
+    """
     columns = _columns(rows, steps)
     size = np.sqrt(np.sum(columns**2, axis=0))
     unit = np.where(size > 0.0, size, 1.0)
