@@ -95,7 +95,10 @@ def test_version() -> None:
         (("--robot", "x"), "werrimbi: "),
         (("odom",), "werrimbi odom: the following arguments are required: RUN, --robot, --out"),
         (("odom", "--rob", "x"), "werrimbi odom: the following arguments are required"),
-        (("odom", "r", "--robot", "x", "--out", "y", "--nonsense"), "werrimbi: unrecognized argu"),
+        (
+            ("odom", "r", "--robot", "x", "--out", "y", "--nonsense"),
+            "werrimbi odom: unrecognized argu",
+        ),
         (
             ("odom", "r", "--robot", "none.yaml", "--out", "y"),
             "werrimbi odom: none.yaml: there is no such file",
