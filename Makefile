@@ -95,7 +95,7 @@ bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/diagnosis_four_hours.py
 	$(BIN)/python benchmark/page_hour.py
 
-evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; ALL=1: more, HALF=1: fewer), many seeds, soaks
+evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; ALL=1: all of them), many seeds, soaks
 	$(BIN)/python -m test.hidden
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[docs,release]'
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[evidence]' || echo "no atheris for this Python: tests that need it will skip"

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The proof on hidden effects: makes the sets, judges them, prints and writes the tables.
 
-    python -m test.hidden [PART...] [--all | --half] [--only WORD] [--workers N] [--start SEED]
+    python -m test.hidden [PART...] [--all] [--only WORD] [--workers N] [--start SEED]
                           [--sessions N]
 
 Parts: make, judge, field, scans, survive, coverage, smallest, gaps, margins, table; all if none is
@@ -33,7 +33,7 @@ from test.hidden import (
     survive,
 )
 from test.hidden.page import draw, page
-from test.hidden.plan import ALL, HALF, SAMPLE, Sizes
+from test.hidden.plan import ALL, SAMPLE, Sizes
 from test.hidden.result_line import Judged, judgement
 from test.hidden.resumable_jobs import Line, done, kept, mark, results_of
 from test.hidden.sets import ROOT, HiddenSet, make_all
@@ -77,25 +77,13 @@ EVERYTHING = Extent(
 PART_OF_IT = Extent(
     "",
     SAMPLE,
-    survive=12,
-    fits=64,  # with five numbers each 400 intervals in all
-    smallest=2,
-    gaps=40,
-    margins=(1, 3),
-    field=(1, 2, 8),
-    scans=(1, 1, 3),  # those of "field" are judged by their scans too
-)
-
-HALF_OF_IT = Extent(
-    " --half",
-    HALF,
     survive=6,
     fits=32,
     smallest=1,
     gaps=20,
     margins=(1, 6),
     field=(1, 1, 4),
-    scans=(1, 1, 2),
+    scans=(1, 4, len(plan.EFFECTS)),
 )
 
 SCANS = 1000
@@ -212,11 +200,9 @@ def pictures(
     return draw(scores, found, *margins.sureness(lines), sure, folder)
 
 
-def extent_wanted(*, whole: bool = False, half: bool = False) -> Extent:
-    """What an hour is enough for, or all, or half; ALL=1 and HALF=1 say the same as the options."""
-    if whole or os.environ.get("ALL") == "1":
-        return EVERYTHING
-    return HALF_OF_IT if half or os.environ.get("HALF") == "1" else PART_OF_IT
+def extent_wanted(*, whole: bool = False) -> Extent:
+    """What an hour is enough for, or all; ALL=1 says the same as the option."""
+    return EVERYTHING if whole or os.environ.get("ALL") == "1" else PART_OF_IT
 
 
 def main() -> None:
@@ -227,9 +213,7 @@ def main() -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
-    extents = parser.add_mutually_exclusive_group()
-    extents.add_argument("--all", action="store_true", help="all sets, not some of each kind")
-    extents.add_argument("--half", action="store_true", help="half as many, for slow cores")
+    parser.add_argument("--all", action="store_true", help="all sets, not some of each kind")
     parser.add_argument("--only", default="", help="sets whose name holds this; nothing is written")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--start", type=int, help="of the seeds; 0: those that were judged before")
@@ -240,7 +224,7 @@ def main() -> None:
     if unknown:
         parser.error(f"no part {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
     parts = arguments.parts or PARTS
-    extent = extent_wanted(whole=arguments.all, half=arguments.half)
+    extent = extent_wanted(whole=arguments.all)
     if arguments.sessions is not None:
         extent = replace(extent, smallest=arguments.sessions)
     start = plan.start_of(mark()) if arguments.start is None else arguments.start
