@@ -14,6 +14,7 @@ import pytest
 from test.cli.commands import PLAIN, written, written_by
 from test.command_line import Complaint
 from test.soft_tyres import soft_tyres
+from werrimbi_odom.cli.draft import _place
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import load_file
 from werrimbi_odom.effects.contract import check_effect
@@ -73,3 +74,10 @@ def test_where_nothing_is_missing_nothing_is_drafted(tmp_path: Path, complaint: 
     told = complaint("draft", *runs(folder), "--out", tmp_path / "package")
     assert "the verdict is" in told
     assert not (tmp_path / "package").exists()
+
+
+@pytest.mark.parametrize(
+    ("out", "place"), [("e", "./e"), ("a/e", "a/e"), ("/tmp/e", "/tmp/e"), ("../e", "../e")]
+)
+def test_pip_is_given_a_folder_and_no_name_of_a_package(out: str, place: str) -> None:
+    assert _place(Path(out)) == place

@@ -62,5 +62,10 @@ def _next(folder: Path, given: Recordings, name: str) -> str:
     add = next_command(["add", name], given, effects=[file], out=new)
     return (
         f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files may name it:\n"
-        f"    {shlex.join(['pip', 'install', str(folder)])}"
+        f"    {shlex.join(['pip', 'install', _place(folder)])}"
     )
+
+
+def _place(folder: Path) -> str:
+    """As pip takes it for a folder; a bare name it looks for on PyPI."""
+    return str(folder) if len(folder.parts) > 1 else f"./{folder}"
