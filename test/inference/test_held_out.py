@@ -12,15 +12,17 @@ import numpy as np
 import pytest
 
 from test.evidence import in_evidence
-from test.inference.driven import COMMON, run_of, runs_of
+from test.inference.driven import COMMON, parts, run_of, runs_of
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT
 from werrimbi_odom.api.drives import read_robot
 from werrimbi_odom.effects import Collection, find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.manoeuvres.advice import advised_diagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
@@ -88,6 +90,18 @@ def test_a_fitted_drive_recorded_otherwise_is_told_and_left_out(runs: list[Run])
     ]
     assert found.verdict == "named"
     assert found.effect == "castor_kick"
+
+
+def test_only_the_drive_that_was_recorded_otherwise_is_left_out() -> None:
+    """Two drives of different days have one name, and another was measured by a gyro alone."""
+    drives = runs_of(GIVEN, range(1, 6), seconds=30)
+    places = [Path(f"day_{day}") / name for day, name in enumerate("abcdd")]
+    named = [replace(run, name=at.name, path=at) for run, at in zip(drives, places, strict=True)]
+    named[0] = parts(named[0], "yaw")
+    named[3] = swapped(named[3])
+    begun = begin(named, [run_of(GIVEN, 9, 30)], GIVEN, EvaluationOptions())
+    assert [each.effects for each in begun.otherwise] == [("wheels_swapped",)]
+    assert [run.path for run in begun.judge.fitted_on] == [*places[:3], places[4]]
 
 
 def test_nothing_of_the_held_out_drives_moves_a_fit(runs: list[Run]) -> None:

@@ -104,6 +104,13 @@ def test_an_error_that_no_noise_makes_is_told_from_one_that_noise_makes() -> Non
     assert not far_above_noise(prepared, Model(right, ({},)))
 
 
+def test_a_drive_of_headings_alone_hides_no_error_of_the_others() -> None:
+    wide = replace(NOMINAL, wheel_separation=2.0 * NOMINAL.wheel_separation)
+    first, second = runs_of(NOMINAL, [4, 5], 30)
+    prepared = prepare([first, parts(second, "yaw")], wide)
+    assert far_above_noise(prepared, Model(wide, ({}, {})))
+
+
 def test_a_noise_that_few_poses_tell_makes_no_model_wrong() -> None:
     """Of 80 sound drives with 8 to 25 poses of 1 to 30 mm, 17 were *unknown*.
 

@@ -270,6 +270,7 @@ def far_above_noise(prepared: PreparedRuns, model: Model) -> bool:
     )
     ratio = float(np.mean(error[known] / (reference + wheels)))
     share = float(np.median(reference / (reference + wheels)))
-    freedom = min(group.own.freedom[by_heading] for group in prepared.groups) / share**2
+    judging = (each for each in prepared.groups if by_heading or each.measure != "heading")
+    freedom = min(group.own.freedom[by_heading] for group in judging) / share**2
     chance = fisher_survival(ratio, float(np.isfinite(kept.error[:, places]).sum()), freedom)
     return freedom > 0.0 and ratio > rules.FAR_ABOVE_NOISE**2 and chance < rules.SURE

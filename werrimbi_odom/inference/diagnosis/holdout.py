@@ -163,16 +163,16 @@ def begin(
     otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, options)
     sides = []
     for side, held_out in ((fitted, False), (held, True)):
-        odd = {each.run for each in otherwise if each.held_out == held_out}
-        sides.append(tuple(run for run in side if run.name not in odd) or side)
+        odd = {each.path for each in otherwise if each.held_out == held_out}
+        sides.append(tuple(run for run in side if run.path not in odd) or side)
     if (sides[0], sides[1]) != (fitted, held):
         set_up = set_up_of(sides[0])
         judge = judge_of(sides[0], sides[1], given, options, set_up.on_its_clock(given))
 
     def prepared_by(cutter: Robot) -> Judge:
-        kept = ({run.name for run in side} for side in sides)
+        kept = ({run.path for run in side} for side in sides)
         both = zip(divided(cutter), kept, strict=True)
-        some, others = ([run for run in side if run.name in names] for side, names in both)
+        some, others = ([run for run in side if run.path in paths] for side, paths in both)
         return judge_of(some, others, given, options, cutter)
 
     # What an effect of the file has anew in each drive is no mistake.

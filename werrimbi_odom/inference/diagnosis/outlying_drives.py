@@ -9,8 +9,10 @@ other drives.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -31,6 +33,7 @@ class RecordedOtherwise:
     """A drive whose set-up differs from that of the fitted drives."""
 
     run: str
+    path: Path
     held_out: bool
     findings: tuple[SetUpFinding, ...]
     """Differences from the set-up of the fitted drives."""
@@ -49,7 +52,8 @@ def recorded_otherwise(
     `mended`: Robot with the set-up mistakes common to the fitted drives corrected.
     """
     own = typical_errors(fitted, mended)
-    usual = float(np.median(own))
+    known = [error for error in own if math.isfinite(error)]  # headings alone have none of position
+    usual = float(np.median(known)) if known else math.inf
     found = []
     for prepared, errors in ((fitted, own), (held_out, typical_errors(held_out, mended))):
         for run, error in zip(prepared.runs, errors, strict=True):
@@ -57,7 +61,7 @@ def recorded_otherwise(
                 continue
             findings = _differing(run, mended, options)
             if findings:
-                found.append(RecordedOtherwise(run.name, prepared is held_out, findings))
+                found.append(RecordedOtherwise(run.name, run.path, prepared is held_out, findings))
     return tuple(found)
 
 
