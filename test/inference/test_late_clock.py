@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from test.evidence import in_evidence
-from test.inference.driven import COMMON, common, run_by, run_of
+from test.inference.driven import COMMON, common, run_by, run_of, runs_of
 from test.inference.test_gyro_bias import BIAS, INCREMENTAL, by_gyro, short_drive
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
@@ -137,6 +137,24 @@ def test_a_late_clock_that_drifts_is_one_effect() -> None:
         assert values == pytest.approx(truth, abs={"delay": 0.01, "rate": 3e-4}[key])
     mended = replace(ROBOT, effects=(find("reference_clock_drift").using(),))
     assert diagnose(runs, mended, effects, EvaluationOptions(leg=0.5)).verdict == "none"
+
+
+def test_a_drifting_clock_takes_the_place_of_a_late_one_behind_another_effect() -> None:
+    """First the kick, then the delay, then the drift in its place: two effects of three rounds."""
+    truth = replace(ROBOT, effects=(find("castor_kick").using(angle=0.05, length=0.05),))
+    few = [find(name) for name in ("castor_kick", "reference_delay", "reference_clock_drift")]
+    runs = []
+    for run in runs_of(truth, (1, 2), 45):
+        assert run.reference is not None
+        seconds = run.reference.time - run.reference.time[0]
+        clock = run.reference.time + 0.05 + 1e-4 * seconds
+        runs.append(replace(run, reference=replace(run.reference, time=clock)))
+    found = diagnose(runs, ROBOT, few)
+    assert found.final.names == ("castor_kick", "reference_clock_drift")
+    assert set(found.found) == set(found.final.names)
+    assert found.verdict == "named"
+    chances = {each.effect: each.p_value for each in found.ranking}
+    assert all(chances[name] < 1e-3 for name in found.final.names)
 
 
 def test_no_clock_drifts_that_the_recorders_shows_to_keep_its_rate() -> None:

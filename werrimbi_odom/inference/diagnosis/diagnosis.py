@@ -44,7 +44,7 @@ from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
-from werrimbi_odom.inference.diagnosis.sequential_replacement import reconsidered
+from werrimbi_odom.inference.diagnosis.sequential_replacement import reconsidered, rounds_of
 from werrimbi_odom.inference.diagnosis.verdict import diagnosis_of
 from werrimbi_odom.inference.diagnosis.wandering_reference import (
     error_may_wander,
@@ -150,7 +150,8 @@ def _searched(
             beyond = beyond if best is None else None
         if best is None or beyond is not None or not holds_when_cross_validated(laid, fit, best):
             break
-        rounds += further
+        found_by = (*fit.names, *(each.before.names[-1] for each in further), best.names[-1])
+        rounds = rounds_of(best.names, found_by, (*rounds, *further))
         fit = refit_to_rest(laid, best, set_up.robot)
         fit, rounds = reconsidered(laid, fit, rounds, set_up.robot)
     remaining = (

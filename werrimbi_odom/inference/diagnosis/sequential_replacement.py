@@ -29,6 +29,25 @@ from werrimbi_odom.model.effect import Effect, applied_of
 from werrimbi_odom.model.robot import Robot
 
 
+def rounds_of(names: Sequence[str], found: Sequence[str], rounds: Sequence[Round]) -> list[Round]:
+    """The rounds of the effects that a model holds, in their order.
+
+    An effect that gave way to one that extends it has none. The first round has what was before any
+    effect, and stays the first.
+
+    Parameters
+    ----------
+    found
+        The effect that each round found.
+    """
+    kept = [this for this, name in zip(rounds, found, strict=True) if name in names]
+    if kept and kept[0] is not rounds[0]:
+        tried = [fit for fit in kept[0].tried if fit.names[-1] == names[0]]
+        known = any(fit.names[-1] == names[0] for fit in rounds[0].tried)
+        kept[0] = rounds[0] if known else replace(rounds[0], tried=(*tried, *rounds[0].tried))
+    return kept
+
+
 def reconsidered(
     runs: Concatenated, fit: Fitted, rounds: Sequence[Round], given: Robot
 ) -> tuple[Fitted, list[Round]]:
@@ -93,8 +112,9 @@ def _nearly_as_good(fit: Fitted, at: int, this: Round) -> list[Fitted]:
     name = fit.names[at]
     taken = next((each.total for each in fits if each.names[-1] == name), this.before.total)
     least = this.before.total - rules.EXCHANGED * (this.before.total - taken)
-    found = fit.names[at:]
-    return [each for each in fits if each.names[-1] not in found and each.total < least]
+    later = (applied_of(fit.point.model.robot.effects, each).effect for each in fit.names[at + 1 :])
+    not_it = {*fit.names[at:], *(effect.extends for effect in later)}
+    return [each for each in fits if each.names[-1] not in not_it and each.total < least]
 
 
 def _with_the_later_ones(
