@@ -12,13 +12,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.inference.driven import parts, runs_of
+from test.inference.driven import parts, run_of, runs_of
+from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY as ALL
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.effect_support import askable
-from werrimbi_odom.inference.diagnosis.forward_selection import Round, fit_calibration, search_round
+from werrimbi_odom.inference.diagnosis.forward_selection import (
+    Round,
+    fit_calibration,
+    instead_of_calibration,
+    search_round,
+)
 from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import halves, rivals_in_halves, rivals_of
@@ -159,3 +165,23 @@ def test_what_was_found_beside_an_effect_is_no_rival_of_it(
     beside: Any = SimpleNamespace(tried=[SimpleNamespace(names=("a", "b"), at_bound=())])
     final: Any = SimpleNamespace(names=("a", "b") if also_found else ("a",))
     assert rivals_of("a", (first, beside), final, ()) == rivals
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 8e-4])
+def test_in_place_of_a_calibration_the_phases_of_each_drive_cost_what_they_cost(
+    amplitude: float,
+) -> None:
+    """A base that is 0.1 % wider, and a file that holds an eccentric wheel, or does not."""
+    held = (find("eccentric_left_wheel").using(amplitude=amplitude),) if amplitude else ()
+    file = replace(ROBOT, effects=held)
+    random = np.random.default_rng(0)
+    drives = []
+    for seed in range(1, 9):
+        wheel = (each.learnt(phase=random.uniform(-3, 3)) for each in held)
+        truth = replace(ROBOT, wheel_separation_multiplier=1.001, effects=tuple(wheel))
+        drives.append(run_of(truth, seed, 40))
+    laid = concatenated(match_for_fit(drives, file, leg=1.0))
+    calibrated = fit_calibration(laid, file)
+    assert calibrated.calibrated == ("track_width",)
+    (instead,) = instead_of_calibration(laid, calibrated, [find("turn_dependent_track")], file)
+    assert instead.total - calibrated.total > 30.0

@@ -32,7 +32,14 @@ from werrimbi_odom.inference.fitting.candidate_starts import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, Model, changed
+from werrimbi_odom.inference.fitting.free_parameters import (
+    CALIBRATION,
+    MULTIPLIERS,
+    NUISANCES,
+    Model,
+    changed,
+    own_of,
+)
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
     Score,
@@ -129,8 +136,11 @@ def instead_of_calibration(
         numbers = (*parameters_with(calibrated.numbers, score.candidate), *nuisances)
         fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
-            paid = penalty * len(fit.free) * calibrated.scatter
-            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + paid))
+            own = [each.name for each in own_of(numbers) if each.name not in NUISANCES]
+            owned = sum(name in values for values in fit.point.model.own for name in own)
+            paid = penalty * len(fit.free) + calibrated.penalty_of_own * owned
+            total = fit.minus_two_log_likelihood + paid * calibrated.scatter
+            results.append(Instead(score.candidate.name, total))
     return tuple(sorted(results, key=lambda item: item.total))
 
 
