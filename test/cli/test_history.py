@@ -149,3 +149,9 @@ def test_drives_none_of_which_can_be_used_are_an_error(
     (tmp_path / "empty").mkdir()
     given = ("--robot", tmp_path / "robot.yaml", tmp_path / "empty", "--cache", tmp_path / "kept")
     assert "no drive can be used" in complaint("history", *given)
+
+
+@pytest.mark.parametrize("jobs", [-2, 0])
+def test_processes_are_one_or_more(months: Path, complaint: Complaint, jobs: int) -> None:
+    given = ("--robot", months / "robot.yaml", *sorted(months.glob("drive_*")), "--jobs", jobs)
+    assert "not a whole number greater than zero" in complaint("history", *given)
