@@ -338,6 +338,18 @@ def test_one_circle_does_not_tell_the_base_from_the_ratio_of_the_radii(
     assert ("the base apart from the ratio of the radii: it drove one curve" in said) != both_ways
 
 
+def test_a_heading_that_was_measured_once_is_no_bias(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    time, counts = 0.1 * np.arange(100), np.arange(100) * 100
+    seen = np.column_stack((time, 0.0157 * np.arange(100), 0.0 * time, np.full(100, np.nan)))
+    seen[:, 1:3] += np.random.default_rng(1).normal(0.0, 0.003, (100, 2))
+    seen[0, 3] = 0.0
+    run = wo.write_run(tmp_path / "run", time, counts, counts, seen)
+    robot = Path(wo.__file__).parent / "recordings" / "square" / "robot.yaml"
+    printed = werrimbi("info", run, "--robot", robot).words
+    assert "Reference: reference.csv" in printed
+    assert "bias" not in printed
+
+
 def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:
     counts = [100.0 * max(0.0, 0.1 * n - 3.0) for n in range(90)]
     rows = [f"{0.1 * n},{each:.0f},{each:.0f}" for n, each in enumerate(counts)]
