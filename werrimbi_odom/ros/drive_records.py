@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 import time
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -136,12 +137,11 @@ class Records:
 
     def next_command(self) -> str:
         """The command that diagnoses the recording."""
-        bag = str(self._bag.folder) if self._bag else "BAG"
-        ticks, reference = (
-            next((each for each in self._topics if each.endswith(name)), name)
-            for name in ("/joint_states", "/reference")
-        )
-        return (
-            f"werrimbi diagnose --robot {self._robot} --ticks-topic {ticks} "
-            f"--reference-topic {reference} {bag}"
-        )
+        bag, topics = "BAG", self._topics
+        if self._bag is not None:
+            bag, topics = str(self._bag.folder), self._bag.topics
+        words = ["werrimbi", "diagnose", "--robot", self._robot]
+        for option, name in (("ticks", "/joint_states"), ("reference", "/reference")):
+            there = [each for each in topics if each.endswith(name)]
+            words += [f"--{option}-topic", there[0]] if there else []
+        return shlex.join([*words, bag])
