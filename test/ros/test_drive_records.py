@@ -11,13 +11,14 @@ from typing import Any
 
 import pytest
 
-rclpy = pytest.importorskip("rclpy")
+pytest.importorskip("rclpy")
 
+import rclpy
 from rclpy.context import Context
 from sensor_msgs.msg import JointState
 
 from werrimbi_odom.ros.domain import free_domain
-from werrimbi_odom.ros.drive_records import Records
+from werrimbi_odom.ros.drive_records import Records, _class_of
 
 TOPICS = ("joint_states", "odom", "reference")
 
@@ -53,3 +54,10 @@ def test_without_a_recording_it_has_the_names_to_record_under(node: Any) -> None
         "werrimbi diagnose --robot ROBOT.yaml --ticks-topic /r1/joint_states "
         "--reference-topic /r1/reference BAG"
     )
+
+
+def test_a_type_that_is_not_installed_here_is_not_recorded() -> None:
+    """As tf2_msgs beside a ROS from PyPI, where another computer broadcasts /tf."""
+    assert _class_of("sensor_msgs/msg/JointState") is JointState
+    assert _class_of("no_such_msgs/msg/Thing") is None
+    assert _class_of("sensor_msgs/msg/NoSuchThing") is None
