@@ -24,11 +24,14 @@ from werrimbi_odom.cli.main import main
 from werrimbi_odom.simulation.lidar import Lidar
 
 
-def bag_of(folder: Path, *, described: bool = True, measured: bool = True) -> tuple[Path, float]:
+def bag_of(
+    folder: Path, *, described: bool = True, measured: bool = True, again: str = "/joint_states"
+) -> tuple[Path, float]:
     """A bag as people have it: joints, gyro, own odometry, poses of a tracker; begin of a hold."""
     ros, late = Messages(), np.random.default_rng(4)
     run, begin, _ = held(run_of(ROBOT, 1, 40), 20.0, 26.0)
     sent = list(joints(ros, run))
+    sent += [(again, at, what) for topic, at, what in sent if topic != again]
     sent += [("/odom", at, ros.odometry(at, 0.0, 0.0, 0.0)) for _, at, _ in sent]
     if measured:
         sent += gyro(ros, run)
@@ -98,6 +101,23 @@ def test_from_python_it_is_the_same(recording: tuple[Path, float], tmp_path: Pat
     assert found["next"].startswith("werrimbi compare --robot")
     assert "The" not in repr(result)
     assert str(bag) in result.summary()
+
+
+def test_the_commands_keep_the_wheels_that_were_asked_for(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    bag, _ = bag_of(tmp_path, again="/motors")
+    taken = wo.info(bag).to_dict()["runs"][0]["wheels"]
+    (other,) = (
+        each["topic"] for each in taken if each["gives"] == "positions" and not each["taken"]
+    )
+    words = ["info", str(bag), "--ticks-topic", other]
+    for then in ("info", "compare"):
+        printed = werrimbi(*words).out.splitlines()
+        words = shlex.split(next(line for line in printed if line.startswith("    werrimbi")))[1:]
+        words = [str(tmp_path / word) if word == "robot.yaml" else word for word in words]
+        assert words[0] == then
+        assert words[words.index("--ticks-topic") + 1] == other
 
 
 def test_without_sizes_it_says_what_to_measure(
