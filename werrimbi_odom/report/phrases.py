@@ -192,11 +192,11 @@ def remark_words(remark: ReferenceRemark) -> str:
 
 
 def remarks_json(remarks: Sequence[ReferenceRemark]) -> list[dict[str, Any]]:
-    """Fields of each remark; sizes are shares of the path, or angles [rad]."""
+    """Fields of each remark; sizes are shares of the path, lengths [m], or angles [rad]."""
     return [
         {
             **picked(remark, "what size"),
-            "unit": "" if remark.what in ("short", "metre") else "rad",
+            "unit": {"short": "", "metre": "", "scale": "m"}.get(remark.what, "rad"),
             "usual": remark.usual,
             "stretches": [
                 picked(part, "run from_s:begin to_s:end size") for part in remark.stretches
