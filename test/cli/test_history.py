@@ -14,6 +14,8 @@ import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run, written_by
 from test.command_line import Complaint, Printed
 from test.inference.driven import run_of
+from werrimbi_odom.inference.changes.dated_drives import Unusable
+from werrimbi_odom.report.history_words import words_of
 
 BEGAN = 1_700_000_000.0
 DAY = 86400.0
@@ -140,6 +142,14 @@ def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Pa
     assert [drive.run.name for drive in result.found.drives] == ["drive_0", "drive_3", "drive_6"]
     assert "Nothing changed" in repr(result)
     assert list(result.figures()) == ["history"]
+
+
+def test_of_one_more_unusable_drive_it_is_told_as_of_one(months: Path) -> None:
+    robot = wo.read_robot(months / "robot.yaml")
+    found = wo.history(robot, months / "drive_0").found
+    broken = [Unusable(Path(f"drive_{number}"), "it is empty") for number in range(6)]
+    said = [part.text for part in words_of(replace(found, unusable=tuple(broken)))]
+    assert said[-1] == "So is 1 more drive."
 
 
 def test_drives_none_of_which_can_be_used_are_an_error(

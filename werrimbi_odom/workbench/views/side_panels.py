@@ -13,7 +13,7 @@ from werrimbi_odom.effects.effect_docstring import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.document import Table
-from werrimbi_odom.report.number_format import capital
+from werrimbi_odom.report.number_format import capital, counted
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
@@ -29,11 +29,11 @@ def floor(tab: Tab) -> None:
     figures = figures_of(comparison, chosen)
     error = millimetres(figures.rmse_position_m)
     if part is None:
-        told = f"All {figures.count} legs: {error} rms."
+        told = f"All {counted(figures.count, 'leg')}: {error} rms."
     else:
         rest = figures_of(comparison, ~chosen)
         told = (
-            f"{capital(part.words)}: {figures.count} legs, {error} rms; "
+            f"{capital(part.words)}: {counted(figures.count, 'leg')}, {error} rms; "
             f"the other {rest.count}: {millimetres(rest.rmse_position_m)}."
         )
     with box("section", "floor", aria_label="The floor"):
