@@ -13,6 +13,8 @@ import pytest
 import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run, written_by
 from test.command_line import Complaint, Printed
+from test.files.conftest import Messages
+from test.files.unseen import JOINTS, joints, poses
 from test.inference.driven import run_of
 from werrimbi_odom.inference.changes.dated_drives import Unusable
 from werrimbi_odom.report.history_words import words_of
@@ -142,6 +144,21 @@ def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Pa
     assert [drive.run.name for drive in result.found.drives] == ["drive_0", "drive_3", "drive_6"]
     assert "Nothing changed" in repr(result)
     assert list(result.figures()) == ["history"]
+
+
+def test_what_a_bag_is_read_by_is_no_other_robot_s(tmp_path: Path) -> None:
+    """Names of the joints that are exchanged in the file make another robot of the same bag."""
+    ros, run = Messages(), run_of(PLAIN, 3, 25)
+    assert run.reference is not None
+    sent = [*joints(ros, run), *poses(ros, run)]
+    bag = ros.write(tmp_path / "bag", sorted(sent, key=lambda each: each[1]), "sqlite3")
+    file, known = tmp_path / "robot.yaml", []
+    for left, right in (JOINTS, JOINTS[::-1]):
+        names = f"    left_wheel_names: [{left}]\n    right_wheel_names: [{right}]\n"
+        file.write_text(ROBOT_FILE + names)
+        found = wo.history(wo.read_robot(file), bag, cache=tmp_path / "kept").found
+        known.append(found.drives[0].kept)
+    assert known == [False, False]
 
 
 def test_of_one_more_unusable_drive_it_is_told_as_of_one(months: Path) -> None:

@@ -162,7 +162,8 @@ def _tasks(
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     common = replace(how, references=(), effects=())
-    words = (repr(common), repr(robot.robot), repr(robot.limits), code_mark())
+    values = repr(sorted(robot.values.items()))  # also joints and frames, which a bag is read by
+    words = (repr(common), repr(robot.robot), values, code_mark())
     found = []
     for path, reference in zip(paths, references, strict=True):
         own = (path,) if reference is None else (path, reference)
