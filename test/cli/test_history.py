@@ -146,6 +146,17 @@ def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Pa
     assert list(result.figures()) == ["history"]
 
 
+def test_a_robot_file_that_was_edited_is_read_anew(months: Path, tmp_path: Path) -> None:
+    file, drive = tmp_path / "robot.yaml", months / "drive_0"
+    bases = []
+    for base in ("0.35", "0.37"):
+        file.write_text(ROBOT_FILE.replace("wheel_separation: 0.35", f"wheel_separation: {base}"))
+        robot = wo.read_robot(file)
+        told = wo.history(robot, drive, cache=tmp_path / "kept").to_dict()["numbers"]
+        bases.append(robot.robot.wheel_separation * told["wheel_separation_multiplier"]["now"])
+    assert bases[1] == pytest.approx(bases[0], rel=0.005), "the robot is the same"
+
+
 def test_what_a_bag_is_read_by_is_no_other_robot_s(tmp_path: Path) -> None:
     """Names of the joints that are exchanged in the file make another robot of the same bag."""
     ros, run = Messages(), run_of(PLAIN, 3, 25)

@@ -27,7 +27,7 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
 from werrimbi_odom.files.recordings import DriveOptions, gathered, reference_of_each, refuse_twice
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_file import RobotFile, robot_file_of_text
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference import rules
@@ -45,6 +45,8 @@ class DriveTask:
 
     run: Path
     robot: Path
+    text: str
+    """Of the robot file."""
     how: DriveOptions
     """With the reference of this drive only."""
     keep: Path | None
@@ -130,7 +132,8 @@ def history_of(
 def told_of_task(task: DriveTask) -> Looked:
     """Process a drive, and cache the result."""
     try:
-        found = _looked_at(task.run, _source(task.robot, task.how.effects), task.how)
+        robot = _source(task.robot, task.text, task.how.effects)
+        found = _looked_at(task.run, robot, task.how)
     except (InputError, OSError) as error:
         return unusable_task(task, str(error))
     if task.keep is not None:
@@ -171,7 +174,8 @@ def _tasks(
         if folder is not None:
             with suppress(OSError):  # unreadable files are reported when the drive is processed
                 keep = folder / f"{mark_of((*own, *how.effects), *words)}.json"
-        found.append(DriveTask(path, robot.path, replace(how, references=own[1:]), keep))
+        of_drive = replace(how, references=own[1:])
+        found.append(DriveTask(path, robot.path, robot.text, of_drive, keep))
     return found
 
 
@@ -210,8 +214,8 @@ def _collection(effects: tuple[Path, ...]) -> Any:
 
 
 @cached
-def _source(robot: Path, effects: tuple[Path, ...]) -> RobotFile:
-    return read_robot_file(robot, _collection(effects))
+def _source(robot: Path, text: str, effects: tuple[Path, ...]) -> RobotFile:
+    return robot_file_of_text(text, robot, _collection(effects).find)
 
 
 def _plain(told: DriveEstimate) -> dict[str, Any]:
