@@ -157,6 +157,33 @@ def test_a_robot_file_that_was_edited_is_read_anew(months: Path, tmp_path: Path)
     assert bases[1] == pytest.approx(bases[0], rel=0.005), "the robot is the same"
 
 
+STRETCHED = """\
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
+
+@wheel_effect(gain=Parameter("", 0.0, 0.01, (-0.5, 0.5), "share of the travel"))
+def stretched(travel, drive, gain):
+    \"""Wheels go farther than they turn.
+
+    Formula    travel *= 1 + gain      [m]
+    Signature  distances are wrong
+    Ruler      tape
+    \"""
+    return WheelTravel(travel.left * (1.0 + gain), travel.right * (1.0 + gain))
+"""
+
+
+def test_an_effect_of_one_s_own_that_was_edited_is_read_anew(months: Path, tmp_path: Path) -> None:
+    file, law = tmp_path / "robot.yaml", tmp_path / "stretched.py"
+    file.write_text(ROBOT_FILE + "    effects: [stretched]\n    stretched: {gain: 0.02}\n")
+    gains = []
+    for text in (STRETCHED, STRETCHED.replace("+ gain)", "+ 3.0 * gain)")):
+        law.write_text(text)
+        told = wo.history(wo.read_robot(file, [law]), months / "drive_0", effects=[law]).to_dict()
+        gains.append(told["numbers"]["stretched.gain"]["now"])
+    assert gains[1] != pytest.approx(gains[0], rel=0.01)
+
+
 def test_what_a_bag_is_read_by_is_no_other_robot_s(tmp_path: Path) -> None:
     """Names of the joints that are exchanged in the file make another robot of the same bag."""
     ros, run = Messages(), run_of(PLAIN, 3, 25)

@@ -208,14 +208,22 @@ def _as_given(drives: Sequence[Dated], given: Sequence[Run | str | Path]) -> lis
     return sorted(drives, key=lambda drive: places.get(str(drive.run), 0))
 
 
-@cached
 def _collection(effects: tuple[Path, ...]) -> Any:
+    return _collected(effects, mark_of(effects))
+
+
+@cached
+def _collected(effects: tuple[Path, ...], content: str) -> Any:
     return collection_of(effects)
 
 
-@cached
 def _source(robot: Path, text: str, effects: tuple[Path, ...]) -> RobotFile:
-    return robot_file_of_text(text, robot, _collection(effects).find)
+    return _parsed(robot, text, effects, mark_of(effects))
+
+
+@cached
+def _parsed(robot: Path, text: str, effects: tuple[Path, ...], content: str) -> RobotFile:
+    return robot_file_of_text(text, robot, _collected(effects, content).find)
 
 
 def _plain(told: DriveEstimate) -> dict[str, Any]:
