@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from werrimbi_odom.workbench.html import box, button, text
+from werrimbi_odom.workbench.saving import file_of
 from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
 
 TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
@@ -58,7 +59,7 @@ def _state(tab: Tab, view: str) -> str:
     if view == "add":
         count = sum(len(step.added.effects) for step in session.past if step.added is not None)
         return "nothing yet" if not count else "1 effect" if count == 1 else f"{count} effects"
-    if session.is_saved:
+    if file_of(session) is not None:
         return "saved"
     return "not saved" if session.can_undo else "nothing to save"
 
