@@ -155,7 +155,7 @@ class Tab:
 
     def insist(self) -> None:
         """Add the proposed effect despite the objection."""
-        if self.session.proposed is None:
+        if self.job is not None or self.session.proposed is None:
             return
         self.session = self.session.insisted()
         self.tell(f"{self.session.now.name} added, against the objection: {self.error_told()}")

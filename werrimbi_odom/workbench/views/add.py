@@ -82,7 +82,8 @@ def _proposed(tab: Tab, step: ModelVersion) -> None:
         text("p", f"{step.name}: not added, something speaks against it.", "headline")
         text("p", f"{step.added.objection}.")
         button(tab, "Leave it out", tab.decline, key="decline", classes="primary")
-        button(tab, "Add it all the same", tab.insist, key="insist")
+        busy = tab.job is not None
+        button(tab, "Add it all the same", tab.insist, key="insist", disabled=busy)
 
 
 def _following(tab: Tab) -> None:
