@@ -15,7 +15,7 @@ from werrimbi_odom.workbench.session import Diagnosed, ModelVersion, Session, be
 
 
 def look(error: float) -> Any:
-    return SimpleNamespace(holdout_error=error)
+    return SimpleNamespace(holdout_error=error, unit="m")
 
 
 def step(name: str, error: float, objection: str | None = None) -> ModelVersion:
