@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import os
+import shlex
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import pytest
 
 import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run, written_by
-from test.command_line import Complaint, Printed
+from test.command_line import Complaint, Printed, Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import JOINTS, joints, poses
 from test.inference.driven import run_of
@@ -134,6 +136,21 @@ def test_diagnose_tells_the_same_change_before_its_verdict(
     assert f"ask again with the drives from {since[0]} on alone:" in " ".join(printed.split())
     command = printed[printed.index("    werrimbi diagnose") :].partition("\n")[2].split("\n")[0]
     assert sorted(Path(word).name for word in command.split()) == sorted(since)
+
+
+@pytest.mark.usefixtures("few_effects")
+def test_drives_of_one_name_are_told_apart_by_their_folders(
+    months: Path, tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """One shape on each day: "between square and square", and a command with all of them."""
+    drives = [tmp_path / f"day_{number}" / "square" for number in range(DRIVES)]
+    for number, drive in enumerate(drives):
+        shutil.copytree(months / f"drive_{(number * 3) % DRIVES}", drive)
+    said = werrimbi("diagnose", "--robot", months / "robot.yaml", *drives).words
+    assert f"Between day_{FIRST_NEW - 1}/square and day_{FIRST_NEW}/square the right wheel" in said
+    again = said.partition(f"with the drives from day_{FIRST_NEW}/square on alone:")[2]
+    command = shlex.split(again.partition(" Nothing is missing")[0].replace("\\ ", ""))
+    assert command[4:] == list(map(str, drives[FIRST_NEW:]))
 
 
 def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Path) -> None:
