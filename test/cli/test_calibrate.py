@@ -4,15 +4,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import werrimbi_odom as wo
 from test.cli.commands import RECORDING, written_by
 from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.report.calibration.fit_words import fit_in_words
 
 
 @pytest.mark.parametrize("kind", ["umbmark", "noise"])
@@ -91,6 +95,15 @@ def test_a_wrong_base_and_radius_are_found_in_one_drive_of_the_engine(tmp_path: 
     assert written.robot.wheel_separation_multiplier == pytest.approx(0.9722, abs=2e-3)
     assert "# m, between the wheels' contact points" in (tmp_path / "new.yaml").read_text()
     assert page.stat().st_size > 1_000_000
+
+
+def test_one_leg_on_which_the_reference_jumped_is_told_as_one() -> None:
+    robot = wo.read_robot(RECORDING / "robot.yaml")
+    found = wo.calibrate_fit(robot, RECORDING).found
+    assert [int(legs.sum()) for legs in found.excluded] == [0]
+    one = np.arange(found.excluded[0].size) == 3
+    said = [getattr(part, "text", "") for part in fit_in_words(replace(found, excluded=(one,)))]
+    assert "1 leg on which the reference jumped was left out." in said
 
 
 @with_recordings

@@ -109,6 +109,13 @@ def test_a_calibration_that_did_not_help_is_called_so(
     assert "no better than before" in capsys.readouterr().out
 
 
+def test_squares_that_end_where_they_should_are_told_as_that(desk: Path, printed: Printed) -> None:
+    rows = "cw,0,0\n" * 2 + "ccw,0,0\n" * 2
+    (desk / "nothing.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
+    assert umbmark(desk, "--after", desk / "nothing.csv") == 0
+    assert "after the calibration: 0.0 mm, before: 135.1 mm." in printed()
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

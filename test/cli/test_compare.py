@@ -11,8 +11,10 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+import werrimbi_odom as wo
 from test.cli.commands import RECORDING, ROBOT, written_by
 from test.command_line import WERRIMBI, Complaint, ran
 from test.recorded_robots import ROBOTS, with_recordings
@@ -46,6 +48,21 @@ def wrong_base(tmp_path: Path) -> Path:
     assert text != ROBOT.read_text()
     path.write_text(text)
     return path
+
+
+def test_without_a_leg_the_page_shows_the_paths(tmp_path: Path) -> None:
+    """A robot whose wheels did not turn: it was carried."""
+    page, time = tmp_path / "page.html", 0.05 * np.arange(600)
+    left = np.cumsum(np.round(100.0 + 40.0 * np.sin(time)))
+    right = np.cumsum(np.round(100.0 - 40.0 * np.cos(1.4 * time)))
+    path = wo.odometry(wo.read_robot(ROBOT), time, left, right)
+    poses = np.column_stack((time, path.x, path.y, path.yaw))[::5]
+    poses[:, 1:] += np.random.default_rng(1).normal(0.0, 0.002, (120, 3))
+    run = wo.write_run(tmp_path / "run", time, 0.0 * time, 0.0 * time, poses)
+    found = compared(tmp_path, "--robot", ROBOT, run, "--report", page)
+    assert found["legs"]["count"] == 0
+    assert "Where the model fails" in (told := page.read_text())
+    assert "Errors by type of motion" not in told
 
 
 def test_the_shipped_drive_is_explained_and_the_json_is_the_contracts(

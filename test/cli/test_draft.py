@@ -7,14 +7,18 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from test.cli.commands import PLAIN, written, written_by
-from test.command_line import Complaint
+import werrimbi_odom as wo
+from test.cli.commands import PLAIN, RECORDING, called, written, written_by
+from test.command_line import Complaint, Printed
 from test.soft_tyres import soft_tyres
-from werrimbi_odom.cli.draft import _place
+from werrimbi_odom.api.drives import recordings_of
+from werrimbi_odom.cli import draft
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import load_file
 from werrimbi_odom.effects.contract import check_effect
@@ -80,4 +84,19 @@ def test_where_nothing_is_missing_nothing_is_drafted(tmp_path: Path, complaint: 
     ("out", "place"), [("e", "./e"), ("a/e", "a/e"), ("/tmp/e", "/tmp/e"), ("../e", "../e")]
 )
 def test_pip_is_given_a_folder_and_no_name_of_a_package(out: str, place: str) -> None:
-    assert _place(Path(out)) == place
+    assert draft._place(Path(out)) == place
+
+
+def test_what_is_printed_takes_a_reference_that_wanders_as_it_was_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, printed: Printed
+) -> None:
+    given = recordings_of(wo.read_robot(RECORDING / "robot.yaml"), RECORDING)
+    found = SimpleNamespace(name="by_load", diagnosis=SimpleNamespace(wander="some"))
+    result: Any = SimpleNamespace(
+        found=found, write_package=lambda out: [], summary=lambda: "", write_report=None
+    )
+    monkeypatch.setattr(draft, "on_recordings", lambda *_: (given, result))
+    words = (RECORDING, "--robot", RECORDING / "robot.yaml", "--out", tmp_path / "package")
+    assert called(draft, *words) == 0
+    assert "werrimbi add by_load" in (said := printed())
+    assert "--reference-kind local_map" in said

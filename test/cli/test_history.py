@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import os
+import shlex
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +14,12 @@ import pytest
 
 import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run, written_by
-from test.command_line import Complaint, Printed
+from test.command_line import Complaint, Printed, Werrimbi
+from test.files.conftest import Messages
+from test.files.unseen import JOINTS, joints, poses
 from test.inference.driven import run_of
+from werrimbi_odom.inference.changes.dated_drives import Unusable
+from werrimbi_odom.report.history_words import words_of
 
 BEGAN = 1_700_000_000.0
 DAY = 86400.0
@@ -132,6 +138,21 @@ def test_diagnose_tells_the_same_change_before_its_verdict(
     assert sorted(Path(word).name for word in command.split()) == sorted(since)
 
 
+@pytest.mark.usefixtures("few_effects")
+def test_drives_of_one_name_are_told_apart_by_their_folders(
+    months: Path, tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """One shape on each day: "between square and square", and a command with all of them."""
+    drives = [tmp_path / f"day_{number}" / "square" for number in range(DRIVES)]
+    for number, drive in enumerate(drives):
+        shutil.copytree(months / f"drive_{(number * 3) % DRIVES}", drive)
+    said = werrimbi("diagnose", "--robot", months / "robot.yaml", *drives).words
+    assert f"Between day_{FIRST_NEW - 1}/square and day_{FIRST_NEW}/square the right wheel" in said
+    again = said.partition(f"with the drives from day_{FIRST_NEW}/square on alone:")[2]
+    command = shlex.split(again.partition(" Nothing is missing")[0].replace("\\ ", ""))
+    assert command[4:] == list(map(str, drives[FIRST_NEW:]))
+
+
 def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Path) -> None:
     robot = wo.read_robot(months / "robot.yaml")
     drives = [wo.read_run(months / f"drive_{number}", robot) for number in (0, 3, 6)]
@@ -142,6 +163,67 @@ def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Pa
     assert list(result.figures()) == ["history"]
 
 
+def test_a_robot_file_that_was_edited_is_read_anew(months: Path, tmp_path: Path) -> None:
+    file, drive = tmp_path / "robot.yaml", months / "drive_0"
+    bases = []
+    for base in ("0.35", "0.37"):
+        file.write_text(ROBOT_FILE.replace("wheel_separation: 0.35", f"wheel_separation: {base}"))
+        robot = wo.read_robot(file)
+        told = wo.history(robot, drive, cache=tmp_path / "kept").to_dict()["numbers"]
+        bases.append(robot.robot.wheel_separation * told["wheel_separation_multiplier"]["now"])
+    assert bases[1] == pytest.approx(bases[0], rel=0.005), "the robot is the same"
+
+
+STRETCHED = """\
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
+
+@wheel_effect(gain=Parameter("", 0.0, 0.01, (-0.5, 0.5), "share of the travel"))
+def stretched(travel, drive, gain):
+    \"""Wheels go farther than they turn.
+
+    Formula    travel *= 1 + gain      [m]
+    Signature  distances are wrong
+    Ruler      tape
+    \"""
+    return WheelTravel(travel.left * (1.0 + gain), travel.right * (1.0 + gain))
+"""
+
+
+def test_an_effect_of_one_s_own_that_was_edited_is_read_anew(months: Path, tmp_path: Path) -> None:
+    file, law = tmp_path / "robot.yaml", tmp_path / "stretched.py"
+    file.write_text(ROBOT_FILE + "    effects: [stretched]\n    stretched: {gain: 0.02}\n")
+    gains = []
+    for text in (STRETCHED, STRETCHED.replace("+ gain)", "+ 3.0 * gain)")):
+        law.write_text(text)
+        told = wo.history(wo.read_robot(file, [law]), months / "drive_0", effects=[law]).to_dict()
+        gains.append(told["numbers"]["stretched.gain"]["now"])
+    assert gains[1] != pytest.approx(gains[0], rel=0.01)
+
+
+def test_what_a_bag_is_read_by_is_no_other_robot_s(tmp_path: Path) -> None:
+    """Names of the joints that are exchanged in the file make another robot of the same bag."""
+    ros, run = Messages(), run_of(PLAIN, 3, 25)
+    assert run.reference is not None
+    sent = [*joints(ros, run), *poses(ros, run)]
+    bag = ros.write(tmp_path / "bag", sorted(sent, key=lambda each: each[1]), "sqlite3")
+    file, known = tmp_path / "robot.yaml", []
+    for left, right in (JOINTS, JOINTS[::-1]):
+        names = f"    left_wheel_names: [{left}]\n    right_wheel_names: [{right}]\n"
+        file.write_text(ROBOT_FILE + names)
+        found = wo.history(wo.read_robot(file), bag, cache=tmp_path / "kept").found
+        known.append(found.drives[0].kept)
+    assert known == [False, False]
+
+
+def test_of_one_more_unusable_drive_it_is_told_as_of_one(months: Path) -> None:
+    robot = wo.read_robot(months / "robot.yaml")
+    found = wo.history(robot, months / "drive_0").found
+    broken = [Unusable(Path(f"drive_{number}"), "it is empty") for number in range(6)]
+    said = [part.text for part in words_of(replace(found, unusable=tuple(broken)))]
+    assert said[-1] == "So is 1 more drive."
+
+
 def test_drives_none_of_which_can_be_used_are_an_error(
     tmp_path: Path, complaint: Complaint
 ) -> None:
@@ -149,3 +231,9 @@ def test_drives_none_of_which_can_be_used_are_an_error(
     (tmp_path / "empty").mkdir()
     given = ("--robot", tmp_path / "robot.yaml", tmp_path / "empty", "--cache", tmp_path / "kept")
     assert "no drive can be used" in complaint("history", *given)
+
+
+@pytest.mark.parametrize("jobs", [-2, 0])
+def test_processes_are_one_or_more(months: Path, complaint: Complaint, jobs: int) -> None:
+    given = ("--robot", months / "robot.yaml", *sorted(months.glob("drive_*")), "--jobs", jobs)
+    assert "not a whole number greater than zero" in complaint("history", *given)

@@ -24,11 +24,14 @@ from werrimbi_odom.cli.main import main
 from werrimbi_odom.simulation.lidar import Lidar
 
 
-def bag_of(folder: Path, *, described: bool = True, measured: bool = True) -> tuple[Path, float]:
+def bag_of(
+    folder: Path, *, described: bool = True, measured: bool = True, again: str = "/joint_states"
+) -> tuple[Path, float]:
     """A bag as people have it: joints, gyro, own odometry, poses of a tracker; begin of a hold."""
     ros, late = Messages(), np.random.default_rng(4)
     run, begin, _ = held(run_of(ROBOT, 1, 40), 20.0, 26.0)
     sent = list(joints(ros, run))
+    sent += [(again, at, what) for topic, at, what in sent if topic != again]
     sent += [("/odom", at, ros.odometry(at, 0.0, 0.0, 0.0)) for _, at, _ in sent]
     if measured:
         sent += gyro(ros, run)
@@ -98,6 +101,23 @@ def test_from_python_it_is_the_same(recording: tuple[Path, float], tmp_path: Pat
     assert found["next"].startswith("werrimbi compare --robot")
     assert "The" not in repr(result)
     assert str(bag) in result.summary()
+
+
+def test_the_commands_keep_the_wheels_that_were_asked_for(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    bag, _ = bag_of(tmp_path, again="/motors")
+    taken = wo.info(bag).to_dict()["runs"][0]["wheels"]
+    (other,) = (
+        each["topic"] for each in taken if each["gives"] == "positions" and not each["taken"]
+    )
+    words = ["info", str(bag), "--ticks-topic", other]
+    for then in ("info", "compare"):
+        printed = werrimbi(*words).out.splitlines()
+        words = shlex.split(next(line for line in printed if line.startswith("    werrimbi")))[1:]
+        words = [str(tmp_path / word) if word == "robot.yaml" else word for word in words]
+        assert words[0] == then
+        assert words[words.index("--ticks-topic") + 1] == other
 
 
 def test_without_sizes_it_says_what_to_measure(
@@ -336,6 +356,18 @@ def test_one_circle_does_not_tell_the_base_from_the_ratio_of_the_radii(
     said = werrimbi("info", run, "--robot", robot).words
     assert ("It can show the base, the ratio of the radii" in said) == both_ways
     assert ("the base apart from the ratio of the radii: it drove one curve" in said) != both_ways
+
+
+def test_a_heading_that_was_measured_once_is_no_bias(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    time, counts = 0.1 * np.arange(100), np.arange(100) * 100
+    seen = np.column_stack((time, 0.0157 * np.arange(100), 0.0 * time, np.full(100, np.nan)))
+    seen[:, 1:3] += np.random.default_rng(1).normal(0.0, 0.003, (100, 2))
+    seen[0, 3] = 0.0
+    run = wo.write_run(tmp_path / "run", time, counts, counts, seen)
+    robot = Path(wo.__file__).parent / "recordings" / "square" / "robot.yaml"
+    printed = werrimbi("info", run, "--robot", robot).words
+    assert "Reference: reference.csv" in printed
+    assert "bias" not in printed
 
 
 def test_the_bias_of_a_gyro_is_told(tmp_path: Path, werrimbi: Werrimbi) -> None:

@@ -6,13 +6,19 @@ from __future__ import annotations
 
 import shlex
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import werrimbi_odom as wo
 from test.cli.commands import RECORDING
 from test.command_line import Werrimbi, ran
+from werrimbi_odom.api.drives import recordings_of
+from werrimbi_odom.api.next_command import next_command
 from werrimbi_odom.cli.main import _parser
+from werrimbi_odom.errors import InputError
 
 
 def pasted(command: str) -> list[str]:
@@ -45,3 +51,43 @@ def test_what_compare_prints_can_be_pasted(tmp_path: Path, werrimbi: Werrimbi, e
     assert ("/*" in command) == every
     assert _parser(again).parse_args(again).leg == 0.5
     assert shlex.split(command.replace("\\\n", " "))[:2] == ["werrimbi", "diagnose"]
+
+
+@pytest.mark.parametrize("own", ["local_map", None])
+def test_a_kind_of_reference_that_was_asked_for_is_kept(own: str | None) -> None:
+    robot = wo.read_robot(RECORDING / "robot.yaml")
+    run = wo.read_run(RECORDING, robot)
+    assert run.reference is not None
+    seen = replace(run.reference, kind=own)
+    given = recordings_of(robot, replace(run, reference=seen), reference_kind="absolute")
+    asks = "--reference-kind absolute" in next_command(["diagnose"], given)
+    assert asks == (own is not None), "by itself a localiser is taken as local_map"
+
+
+def test_references_stay_with_their_drives(tmp_path: Path) -> None:
+    drives, others = [tmp_path / "drives" / name for name in "ba"], []
+    for drive in drives:
+        shutil.copytree(RECORDING, drive)
+        others.append(tmp_path / f"poses of {drive.name}")
+        others[-1].mkdir()
+        (drive / "reference.csv").rename(others[-1] / "reference.csv")
+    robot = wo.read_robot(RECORDING / "robot.yaml")
+    again = pasted(next_command(["diagnose"], recordings_of(robot, drives, references=others)))
+    references = [word for other in others for word in ("--reference", str(other))]
+    assert again[3:] == [*references, *map(str, drives)]
+
+
+def test_what_was_forced_is_forced_again(tmp_path: Path) -> None:
+    """Odometry of these very counts, by its numbers: nothing in its name says so."""
+    robot = wo.read_robot(RECORDING / "robot.yaml")
+    ticks = wo.read_run(RECORDING, robot).ticks
+    path = wo.odometry(robot, ticks.time, ticks.left, ticks.right)
+    poses = np.column_stack((ticks.time, path.x, path.y, path.yaw))
+    run = wo.write_run(tmp_path / "run", ticks.time, ticks.left, ticks.right, poses)
+    with pytest.raises(InputError, match="--force takes it all the same"):
+        recordings_of(robot, run)
+    with pytest.warns(UserWarning, match="taken all the same"):
+        given = recordings_of(robot, run, force_reference=True)
+    assert " --force " in next_command(["diagnose"], given)
+    sound = recordings_of(robot, RECORDING, force_reference=True)
+    assert "--force" not in next_command(["diagnose"], sound)

@@ -140,6 +140,7 @@ def test_wrong_use_is_one_line_with_the_mend(
     both = refused("--fleet", fleet, "--jobs", "2", "--scheduler", "tcp://a:1")
     assert "leave out one" in both
     assert "leave out --robot" in refused("--fleet", fleet, "--robot", robot)
+    assert "leave out --reference" in refused("--fleet", fleet, "--reference", robot)
     assert "leave out RUN" in refused("--fleet", fleet, "--", run)
     assert "leave out --holdout" in refused("--fleet", fleet, "--holdout", run)
     assert "give --fleet FOLDER" in refused("--robot", robot, run, "--jobs", "2")

@@ -108,6 +108,11 @@ def test_a_path_that_is_short_by_place() -> None:
     assert told["stretches"][0]["to_s"] > told["stretches"][0]["from_s"]
 
 
+def test_the_json_says_in_what_a_size_is() -> None:
+    said = [ReferenceRemark(what, 2.0, 1.0) for what in ("metre", "scale", "sideways")]
+    assert [each["unit"] for each in remarks_json(said)] == ["", "m", "rad"]
+
+
 def test_a_metre_that_is_none() -> None:
     found = remarks(lambda it: replace(it, x=0.93 * it.x, y=0.93 * it.y))
     assert set(found) == {"metre"}

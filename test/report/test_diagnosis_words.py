@@ -24,7 +24,7 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.adding.words import _headline
-from werrimbi_odom.report.diagnosis import as_json, phrases, words
+from werrimbi_odom.report.diagnosis import as_json, phrases, tables, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
 from werrimbi_odom.report.diagnosis.remarks import drowned, instead_of_held, like_noise, nearest
@@ -307,3 +307,19 @@ def test_no_better_reference_is_promised_to_tell_twins_apart() -> None:
     assert "turned by 90 degrees" in twins
     assert "sideways_drift" not in others
     assert "measures more often tells them apart" in others
+
+
+@pytest.mark.parametrize(
+    ("value", "other", "told"),
+    [
+        (0.0996, -0.1003, ("0.0996 ± 0.0010 or -0.1003 ± 0.0010", "m")),
+        (0.1003, -0.0996, ("0.1003 ± 0.0010 or -0.0996 ± 0.0010", "m")),
+        (0.05, -0.06, ("50.0 ± 1.0 or -60.0 ± 1.0", "mm")),
+        (0.05, None, ("50.0 ± 1.0", "mm")),
+    ],
+)
+def test_a_row_of_the_table_has_one_unit(
+    value: float, other: float | None, told: tuple[str, str]
+) -> None:
+    or_else = None if other is None else (other, 1e-3)
+    assert tables._told(Value(value, 1e-3, "m", "ahead", 0.0, or_else=or_else)) == told

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.response_curve import before_after, parts_of, response
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
+from werrimbi_odom.inference.events.events import Events, Way
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES
 from werrimbi_odom.model.effect import Sketch
@@ -34,6 +36,7 @@ from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.over_variable import error_against_figure, variables_of
 from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure, evidence_map_figure
 from werrimbi_odom.report.diagnosis.figures import manoeuvre_figure, ranking_figure
+from werrimbi_odom.report.events import over_time
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.report.style import FEWEST, MARKS, MOST, along_path
 
@@ -253,3 +256,18 @@ def test_a_manoeuvre_is_drawn_to_scale(ideal, diagnosis: Diagnosis) -> None:  # 
     apart = np.hypot(np.asarray(left.x) - right.x, np.asarray(left.y) - right.y)
     assert apart == pytest.approx(PLAIN.track, rel=1e-3)
     assert figure.layout.yaxis.scaleanchor == "x"
+
+
+def test_events_of_drives_of_one_name_stand_on_lines_of_their_own() -> None:
+    """day1/square and day2/square were one line, with the events of both."""
+    time, nothing = np.array([0.0, 10.0]), np.full(2, np.nan)
+    ways = [
+        Way(Path(f"{day}/square"), held, time, nothing, nothing)
+        for day, held in (("day1", False), ("day2", False), ("day3", True))
+    ]
+    drawn: Any = over_time(Events(ways=tuple(ways)), 0.35)
+    assert [line.y[0] for line in drawn.data] == [
+        "day1/square",
+        "day2/square",
+        "square (held out)",
+    ]

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import pytest
@@ -45,3 +46,18 @@ def test_a_spin_that_the_gyro_denies_makes_the_heading_unsure(
     assert spin(0.0) == pytest.approx(0.36, rel=0.1)
     _, _, values = node.report()
     assert values["slip"].startswith("1 times, 3")
+
+
+def test_a_gyro_without_stamps_is_taken_as_it_comes(launch: Any, robot: dict[str, Any]) -> None:
+    """As counters without a stamp are: its slips were never seen, and /diagnostics was content."""
+    node = launch(robot | {"slip_imu_topic": "imu"}).begin()
+    for step in range(75):
+        left, right = (-13.4, 6.7) if 10 <= step < 60 else (0.0, 0.0)
+        node.ticks(node.left + left, node.right + right, time.time())
+        node.send(Imu, "imu", Imu())
+        node.rest(0.02)
+    node.rest(1.0)
+    _, _, values = node.report()
+    times, _, missed = values["slip"].partition(" times, ")
+    assert times == "1"
+    assert float(missed.split()[0]) == pytest.approx(34.5, abs=6.0)

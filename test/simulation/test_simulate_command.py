@@ -192,9 +192,9 @@ def test_the_next_command_takes_its_own_bags(
     monkeypatch.setattr(
         "werrimbi_odom.simulation.sessions.drives", lambda seed: {"train/there": there}
     )
-    assert call("--out", str(tmp_path / "day"), "--like", "field") == 0
+    assert call("--out", str(tmp_path / "a day"), "--like", "field") == 0
     words = shlex.split(capsys.readouterr().out.partition("next: werrimbi ")[2])
-    assert command.main([*words[:-1], str(tmp_path / "day" / "train" / "there")]) == 0
+    assert command.main([*words[:-1], str(tmp_path / "a day" / "train" / "there")]) == 0
 
 
 def test_a_day_has_seven_drives_to_learn_from_and_four_to_test() -> None:

@@ -101,3 +101,10 @@ def test_drives_without_a_reference_are_refused_in_a_line(day: Day, tmp_path: Pa
     assert end.returncode == 2
     assert len(end.stderr.splitlines()) == 1
     assert "reference" in end.stderr
+
+
+def test_numbers_that_cannot_be_written_end_it_with_the_reason(tmp_path: Path) -> None:
+    robot, train, _ = written(tmp_path)
+    end = ran([*WERRIMBI, "workbench", "--robot", robot, *train, "--json", "/dev/full"])
+    assert end.returncode == 2
+    assert "/dev/full cannot be written" in end.stderr

@@ -15,7 +15,7 @@ from test.workbench.session import ROBOT
 from werrimbi_odom.api.next_command import beside
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.workbench.saving import Target, saved, text_of
+from werrimbi_odom.workbench.saving import Target, file_of, saved, text_of
 from werrimbi_odom.workbench.session import Session, begun
 
 
@@ -41,7 +41,7 @@ def test_what_is_shown_before_is_what_is_written(source: RobotFile, tmp_path: Pa
     assert "# As its maker believes it to be." in text
     assert read_robot_file(tmp_path / "new.yaml").robot == at.now.look.robot
     assert (tmp_path / "robot.yaml").read_text() == ROBOT
-    assert done.is_saved
+    assert file_of(done) == tmp_path / "new.yaml"
 
 
 def test_a_tab_writes_its_own_file_again_and_another_tab_the_next_number(

@@ -10,11 +10,12 @@ from typing import Any, cast
 
 import pytest
 
+from werrimbi_odom.workbench.saving import file_of
 from werrimbi_odom.workbench.session import Diagnosed, ModelVersion, Session, begun
 
 
 def look(error: float) -> Any:
-    return SimpleNamespace(holdout_error=error)
+    return SimpleNamespace(holdout_error=error, unit="m")
 
 
 def step(name: str, error: float, objection: str | None = None) -> ModelVersion:
@@ -79,12 +80,26 @@ def test_a_diagnosis_belongs_to_its_step(two: Session) -> None:
     assert two.undone().diagnosis is None
 
 
-def test_saved_is_said_of_the_step_that_the_file_holds(two: Session) -> None:
-    file = Path("robot_new.yaml")
+def test_saved_is_said_of_the_step_that_the_file_holds(two: Session, tmp_path: Path) -> None:
+    file = tmp_path / "robot_new.yaml"
+    file.write_text("its text")
     kept = two.written(file, "its text")
-    assert kept.is_saved
-    assert not kept.undone().is_saved
-    assert kept.undone().redone().is_saved
+    assert file_of(kept) == file
+    assert file_of(kept.undone()) is None
+    assert file_of(kept.undone().redone()) == file
     other = kept.undone().fitted(step("other", 1.5))
-    assert not other.is_saved
+    assert file_of(other) is None
     assert file in other.saved, "the file is still this tab's own"
+
+
+def test_saved_is_said_as_long_as_the_file_is_as_it_was_written(
+    two: Session, tmp_path: Path
+) -> None:
+    """Else the page named the file that is next as the one that was written."""
+    file = tmp_path / "robot_new.yaml"
+    file.write_text("its text")
+    kept = two.written(file, "its text")
+    file.write_text("its text, and a line by hand")
+    assert file_of(kept) is None
+    file.unlink()
+    assert file_of(kept) is None

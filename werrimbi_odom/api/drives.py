@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import UnionType
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -122,7 +123,7 @@ def recordings_of(
     fitted, held = _several(runs), _several(holdout)
     if not fitted:
         raise InputError("no drives were given")
-    found = gathered(robot, collection_of(how.effects), fitted, held, how)
+    found = told_apart(gathered(robot, collection_of(how.effects), fitted, held, how))
     for words in refuse_circles(found):
         warnings.warn(words, stacklevel=3)
     return found
@@ -145,6 +146,22 @@ def how_of(**options: Unpack[Options]) -> DriveOptions:
     for name in ("effects", "references"):
         given[name] = tuple(Path(each) for each in given.get(name, ()))
     return DriveOptions(**given)
+
+
+def told_apart(given: Recordings) -> Recordings:
+    """With their folders in the names of drives, fitted or held out, of which two are called alike.
+
+    A drive is told, and chosen, by its name.
+    """
+    from werrimbi_odom.report.phrases import drive_names
+
+    def named(runs: tuple[Run, ...]) -> tuple[Run, ...]:
+        if len({run.name for run in runs}) == len(runs):
+            return runs
+        names = drive_names(run.path for run in runs)
+        return tuple(replace(run, name=names[run.path]) for run in runs)
+
+    return replace(given, runs=named(given.runs), holdout=named(given.holdout))
 
 
 def refuse_circles(given: Recordings) -> list[str]:

@@ -27,7 +27,7 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
 from werrimbi_odom.files.recordings import DriveOptions, gathered, reference_of_each, refuse_twice
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_file import RobotFile, robot_file_of_text
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference import rules
@@ -45,6 +45,8 @@ class DriveTask:
 
     run: Path
     robot: Path
+    text: str
+    """Of the robot file."""
     how: DriveOptions
     """With the reference of this drive only."""
     keep: Path | None
@@ -130,7 +132,8 @@ def history_of(
 def told_of_task(task: DriveTask) -> Looked:
     """Process a drive, and cache the result."""
     try:
-        found = _looked_at(task.run, _source(task.robot, task.how.effects), task.how)
+        robot = _source(task.robot, task.text, task.how.effects)
+        found = _looked_at(task.run, robot, task.how)
     except (InputError, OSError) as error:
         return unusable_task(task, str(error))
     if task.keep is not None:
@@ -162,7 +165,8 @@ def _tasks(
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     common = replace(how, references=(), effects=())
-    words = (repr(common), repr(robot.robot), repr(robot.limits), code_mark())
+    values = repr(sorted(robot.values.items()))  # also joints and frames, which a bag is read by
+    words = (repr(common), repr(robot.robot), values, code_mark())
     found = []
     for path, reference in zip(paths, references, strict=True):
         own = (path,) if reference is None else (path, reference)
@@ -170,7 +174,8 @@ def _tasks(
         if folder is not None:
             with suppress(OSError):  # unreadable files are reported when the drive is processed
                 keep = folder / f"{mark_of((*own, *how.effects), *words)}.json"
-        found.append(DriveTask(path, robot.path, replace(how, references=own[1:]), keep))
+        of_drive = replace(how, references=own[1:])
+        found.append(DriveTask(path, robot.path, robot.text, of_drive, keep))
     return found
 
 
@@ -203,14 +208,22 @@ def _as_given(drives: Sequence[Dated], given: Sequence[Run | str | Path]) -> lis
     return sorted(drives, key=lambda drive: places.get(str(drive.run), 0))
 
 
-@cached
 def _collection(effects: tuple[Path, ...]) -> Any:
+    return _collected(effects, mark_of(effects))
+
+
+@cached
+def _collected(effects: tuple[Path, ...], content: str) -> Any:
     return collection_of(effects)
 
 
+def _source(robot: Path, text: str, effects: tuple[Path, ...]) -> RobotFile:
+    return _parsed(robot, text, effects, mark_of(effects))
+
+
 @cached
-def _source(robot: Path, effects: tuple[Path, ...]) -> RobotFile:
-    return read_robot_file(robot, _collection(effects))
+def _parsed(robot: Path, text: str, effects: tuple[Path, ...], content: str) -> RobotFile:
+    return robot_file_of_text(text, robot, _collected(effects, content).find)
 
 
 def _plain(told: DriveEstimate) -> dict[str, Any]:

@@ -335,8 +335,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     if recorded.reference is not None and run.reference is not None:
         given, used = recorded.reference, run.reference
         scans = float(np.std(used.time - given.time))
-        if used.has_yaw.any():
-            last = int(np.flatnonzero(used.has_yaw)[-1])
+        last = int(np.flatnonzero(used.has_yaw)[-1]) if used.has_yaw.any() else 0
+        if last:
             bias = float(given.yaw[last] - used.yaw[last]) / float(np.ptp(used.time[: last + 1]))
     return replace(
         held,

@@ -6,8 +6,11 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+from werrimbi_odom.api.drives import refuse_circles
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 
@@ -27,14 +30,15 @@ def next_command(
     robot file, if it differs from the input; `effects` are additional ones; `out` is the value of
     --out.
     """
-    words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given.how)]
-    if given.how.force_reference and any(run.circle for run in given.runs):
+    words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given)]
+    if _needs_force(given):
         words.append("--force")
     for file in dict.fromkeys((*given.how.effects, *effects)):
         words += ["--effects", str(file)]
-    lines = [shlex.join(words), _paths(given.runs)]
+    in_order = bool(given.how.references)
+    lines = [shlex.join(words), _paths(given.runs, in_order)]
     if given.holdout:
-        lines.append(f"--holdout {_paths(given.holdout)}")
+        lines.append(f"--holdout {_paths(given.holdout, in_order)}")
     if out:
         lines.append(shlex.join(["--out", out]))
     return " ".join(lines) if one_line else "    " + " \\\n      ".join(lines)
@@ -45,9 +49,22 @@ def beside(robot: Path, word: str) -> str:
     return str(robot.with_name(f"{robot.stem}_{word}{robot.suffix}"))
 
 
-def _options(how: DriveOptions) -> Iterator[str]:
+def _needs_force(given: Recordings) -> bool:
+    """Whether a reference is computed from the wheels, and taken because that was asked for."""
+    if not given.how.force_reference:
+        return False
+    try:
+        refuse_circles(replace(given, how=replace(given.how, force_reference=False)))
+    except InputError:
+        return True
+    return False
+
+
+def _options(given: Recordings) -> Iterator[str]:
     """Options that differ from their defaults."""
-    plain = DriveOptions(reference_kind="absolute")
+    how, runs = given.how, (*given.runs, *given.holdout)
+    own = {run.reference.kind for run in runs if run.reference is not None}
+    plain = DriveOptions(reference_kind="absolute" if own <= {None, "absolute"} else None)
     for name in (
         "leg",
         "reference_kind",
@@ -65,11 +82,11 @@ def _options(how: DriveOptions) -> Iterator[str]:
             yield f"{each:g}" if isinstance(each, float) else str(each)
 
 
-def _paths(runs: Sequence[Run]) -> str:
-    """Paths as given; a complete folder as FOLDER/*."""
+def _paths(runs: Sequence[Run], in_order: bool) -> str:
+    """Paths as given; a complete folder as FOLDER/*, unless they must stay `in_order`."""
     paths = list(dict.fromkeys(run.path for run in runs))
     folders = {path.parent for path in paths}
-    if len(paths) > 1 and len(folders) == 1 and paths[0].exists():
+    if len(paths) > 1 and len(folders) == 1 and paths[0].exists() and not in_order:
         (folder,) = folders
         there = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
         if there == {path.name for path in paths}:

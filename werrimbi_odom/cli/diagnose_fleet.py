@@ -61,7 +61,8 @@ def refuse_mixing(arguments: argparse.Namespace) -> None:
             if getattr(arguments, name) is not None:
                 raise InputError(f"--{name} is for many robots; give --fleet FOLDER with it")
         return
-    for name, word in (("robot", "--robot"), ("runs", "RUN"), ("holdout", "--holdout")):
+    own = ("robot", "--robot"), ("runs", "RUN"), ("holdout", "--holdout")
+    for name, word in (*own, ("reference", "--reference")):
         if getattr(arguments, name):
             raise InputError(
                 f"--fleet brings robot files and runs of its own; leave out {word}, or --fleet"

@@ -32,6 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Diagnose, draft, test, write; return 0."""
+    from werrimbi_odom.api.compare_diagnose_add import as_judged
     from werrimbi_odom.api.draft import drafted
 
     insist = "" if arguments.force else "--force drafts"
@@ -48,6 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     written = write_figures(arguments, figures, result.write_report)
     print(result.summary())
     tell_written([*files, *written])
+    given = as_judged(given, result.found.diagnosis)
     print(_next(arguments.out, given, result.found.name))
     return 0
 

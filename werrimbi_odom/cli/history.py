@@ -9,10 +9,11 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.options import add_recording_arguments, how_of, read_effects, remark
+from werrimbi_odom.cli.options import add_recording_arguments, how_of, number, read_effects, remark
 from werrimbi_odom.cli.outputs import write_and_tell
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--jobs",
         metavar="N",
-        type=int,
+        type=number(int, 1, inf, "not a whole number greater than zero"),
         default=0,
         help="processes; if not given, one for each processor",
     )

@@ -137,7 +137,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
 
     InputError if an input is not usable, or a run is given twice.
     """
-    from werrimbi_odom.api.drives import refuse_circles
+    from werrimbi_odom.api.drives import refuse_circles, told_apart
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.recordings import Asked, read
     from werrimbi_odom.files.run_checks import words_about
@@ -146,7 +146,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
     collection = read_effects(arguments)
     with share_done("reading") as show:
-        found = read(asked, collection, show)
+        found = told_apart(read(asked, collection, show))
     circles = refuse_circles(found)
     wanders = any(
         run.reference is not None and run.reference.kind == "local_map"

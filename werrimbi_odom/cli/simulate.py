@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
 import shutil
 import tempfile
 import zlib
@@ -128,8 +129,9 @@ def run(arguments: argparse.Namespace) -> int:
         (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     out = arguments.out
     print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden is in truth.json")
-    topic = " --reference-topic /tf:map:base_link" if arguments.like == "field" else ""
-    print(f"next: werrimbi compare --robot {out}/robot.yaml{topic} {out}/train/*")
+    words = ["werrimbi", "compare", "--robot", str(out / "robot.yaml")]
+    words += ["--reference-topic", "/tf:map:base_link"] if arguments.like == "field" else []
+    print(f"next: {shlex.join([*words, str(out / 'train')])}/*")
     return 0
 
 

@@ -49,6 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ.pop("NICEGUI_REDIS_URL", None)
     try:
         from werrimbi_odom.api.next_command import beside
+        from werrimbi_odom.report.number_format import picked
         from werrimbi_odom.workbench.saving import Target
         from werrimbi_odom.workbench.server import listening, serve
         from werrimbi_odom.workbench.tab import Opening
@@ -70,11 +71,12 @@ def run(arguments: argparse.Namespace) -> int:
 
     def opened(address: str, shared: Shared) -> None:
         if arguments.json is not None:  # the page's address and its first errors, for programs
+            errors, look = "rmse_position_m rmse_yaw_rad", shared.look
             found = {
                 "address": address,
                 "out": str(shared.target.path),
-                "holdout": {"rmse_position_m": shared.look.holdout_error},
-                "train": {"rmse_position_m": shared.look.train_error},
+                "holdout": picked(look.holdout.main.all.figures, errors),
+                "train": picked(look.train.main.all.figures, errors),
             }
             write_json(arguments.json, found)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Lock
 
 from werrimbi_odom.api.compare_diagnose_add import diagnosed
-from werrimbi_odom.api.drives import refuse_circles
+from werrimbi_odom.api.drives import refuse_circles, told_apart
 from werrimbi_odom.effects.lookup import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, read
@@ -33,7 +33,7 @@ def row_of(task: Task) -> Row:
     try:
         with _ONE_AT_A_TIME:
             asked = task.asked
-            given = read(asked, all_effects(asked.how.effects))
+            given = told_apart(read(asked, all_effects(asked.how.effects)))
             refuse_circles(given)
             figures = diagnosed(given).to_dict()
         return Row(task.name, _drives(task), figures)

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from werrimbi_odom.inference.events.common_cause import Alike
-from werrimbi_odom.inference.events.events import Event, Events, Way
+from werrimbi_odom.inference.events.events import Event, Events
 from werrimbi_odom.report import style
 from werrimbi_odom.report.number_format import from_start, in_unit, picked, with_std
 from werrimbi_odom.report.path_figure import add_path
@@ -190,7 +191,7 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
     seen = [way for way in happened.ways if np.isfinite(way.x).any()]
     if not seen:
         return None
-    figure = style.blank()
+    figure, names = style.blank(), _names(happened)
     for number, way in enumerate(seen):
         path = way.x + 1j * way.y
         add_path(
@@ -198,7 +199,7 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
             path[style.along_path(path, max(style.MOST // len(seen), 200))],
             "measured",
             {"color": style.paled(style.GREY, 0.5), "width": 3},
-            said=style.escaped(_name(way)),
+            said=names[way.run, way.held_out],
             group="measured",
             shown=number == 0,
         )
@@ -208,10 +209,10 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
 
 def over_time(happened: Events, track: float) -> Figure:
     """Events over time, drive by drive."""
-    figure = style.blank()
+    figure, names = style.blank(), _names(happened)
     starts = {}
     for way in happened.ways:
-        name = style.escaped(_name(way))
+        name = names[way.run, way.held_out]
         starts[(way.run, way.held_out)] = (name, float(way.time[0]))
         line = {"color": style.paled(style.GREY, 0.5), "width": 3}
         times = [0.0, float(way.time[-1] - way.time[0])]
@@ -248,9 +249,15 @@ def _marks(
 
 
 def _said(happened: Events, event: Event, track: float) -> str:
-    where = f"{style.escaped(event.run.name)}, {when(event)}"
+    where = f"{_names(happened)[event.run, event.held_out]}, {when(event)}"
     return f"{where}<br>{style.escaped(event_words(event, track, either=either(happened)))}"
 
 
-def _name(way: Way) -> str:
-    return f"{way.run.name} (held out)" if way.held_out else way.run.name
+def _names(happened: Events) -> dict[tuple[Path, bool], str]:
+    """A name for each drive, escaped, by its path and whether it was held out."""
+    found = {}
+    for held_out, beside in ((False, ""), (True, " (held out)")):
+        runs = [way.run for way in happened.ways if way.held_out == held_out]
+        for run, name in drive_names(runs).items():
+            found[run, held_out] = style.escaped(f"{name}{beside}")
+    return found

@@ -81,8 +81,8 @@ def words_of(history: History) -> tuple[Paragraph, ...]:
         lines.append(_against_words(history, differing))
     lines.append(f"{_drives(history)}.")
     lines += [f"Not used: {each.run}: {each.why.rstrip('.')}." for each in history.unusable[:_MOST]]
-    if len(history.unusable) > _MOST:
-        lines.append(f"So are {len(history.unusable) - _MOST} more drives.")
+    if (more := len(history.unusable) - _MOST) > 0:
+        lines.append(f"So {'is' if more == 1 else 'are'} {counted(more, 'more drive')}.")
     return paragraphs(lines, hanging=["Next", "Not used"])
 
 

@@ -180,8 +180,9 @@ def _otherwise(found: Info) -> tuple[str, str]:
         if others:
             words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
             file = found.given or found.written or found.parameters
-            robot = [] if file is None else ["--robot", str(file)]
-            command = shlex.join([*words, *robot, "--reference-topic", others[0].name])
+            words += [] if file is None else ["--robot", str(file)]
+            words += _wheels_asked([held])
+            command = shlex.join([*words, "--reference-topic", others[0].name])
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged as it is.", ""
 
@@ -193,6 +194,15 @@ def _names_to_write(held: Held, found: Info) -> str:
         for side, names in (("left", held.joints.left), ("right", held.joints.right))
     )
     return f"if these are its wheels, write {' and '.join(lines)} into {found.given}."
+
+
+def _wheels_asked(usable: Sequence[Held]) -> list[str]:
+    """The option for wheels that are not the first to be looked at."""
+    for held in usable:
+        known = () if held.contents is None else held.contents.wheels
+        if held.wheels is not None and known and held.wheels.name != known[0].name:
+            return ["--ticks-topic", held.wheels.name]
+    return []
 
 
 def _asked(usable: Sequence[Held]) -> list[str]:
@@ -221,7 +231,7 @@ def command_of(found: Info) -> str:
         given = [] if found.parameters is None else ["--robot", str(found.parameters)]
         return shlex.join(
             [
-                *("werrimbi", "info", *paths, *given, *_asked(usable)),
+                *("werrimbi", "info", *paths, *given, *_wheels_asked(usable), *_asked(usable)),
                 *(*_others(usable), "--out", "robot.yaml"),
             ]
         )

@@ -27,7 +27,7 @@ from werrimbi_odom.report.info_wheels import (
     rate_words,
     wheels_words,
 )
-from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, listed
+from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, counted, listed
 from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
@@ -229,7 +229,7 @@ def _clock(name: str, stamps: Stamps) -> str:
     if stamps.late > 0.01:
         extras.append(f"{100 * stamps.late:.0f} % are late by a tenth of a second and more")
     if stamps.back:
-        extras.append(f"the stamps go back {stamps.back} times")
+        extras.append(f"the stamps go back {counted(stamps.back, 'time')}")
     return f"{words}{'; ' if extras else ''}{', '.join(extras)}."
 
 

@@ -21,10 +21,13 @@ _TOLD = 3  # the same, for a suspect reference
 
 
 def drive_names(runs: Iterable[Path]) -> dict[Path, str]:
-    """A name for each drive: that of its folder, with the one above where two are called alike."""
+    """A name for each drive: that of its folder, with those above where two are called alike."""
     every = dict.fromkeys(runs)
-    twice = len({run.name for run in every}) < len(every)
-    return {run: "/".join(run.parts[-2:]) if twice else run.name for run in every}
+    for parts in range(1, max((len(run.parts) for run in every), default=0) + 1):
+        names = {run: "/".join(run.parts[-parts:]) for run in every}
+        if len(set(names.values())) == len(every):
+            return names
+    return {run: str(run) for run in every}
 
 
 def left_out_words(parts: Sequence[LeftOut], *, named: bool = True) -> list[str]:
@@ -192,11 +195,11 @@ def remark_words(remark: ReferenceRemark) -> str:
 
 
 def remarks_json(remarks: Sequence[ReferenceRemark]) -> list[dict[str, Any]]:
-    """Fields of each remark; sizes are shares of the path, or angles [rad]."""
+    """Fields of each remark; sizes are shares of the path, lengths [m], or angles [rad]."""
     return [
         {
             **picked(remark, "what size"),
-            "unit": "" if remark.what in ("short", "metre") else "rad",
+            "unit": {"short": "", "metre": "", "scale": "m"}.get(remark.what, "rad"),
             "usual": remark.usual,
             "stretches": [
                 picked(part, "run from_s:begin to_s:end size") for part in remark.stretches

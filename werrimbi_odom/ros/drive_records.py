@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 import time
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -21,9 +22,10 @@ from werrimbi_odom.ros.topics import full_topic
 
 
 class Bagging:
-    """A bag being recorded from topics, by their full names; those of unknown type are skipped.
+    """A bag being recorded from topics, by their full names.
 
-    InputError if rosbags is not installed, or the folder cannot be written; it must not exist.
+    Those whose type is unknown, or not installed here, are skipped. InputError if rosbags is not
+    installed, or the folder cannot be written; it must not exist.
     """
 
     def __init__(self, node: Node, folder: Path, topics: Sequence[str]) -> None:
@@ -35,7 +37,8 @@ class Bagging:
         self._subscriptions = []
         for topic in topics:
             named = kinds.get(topic, [])
-            connection = self._writer.topic(topic, named[0]) if len(named) == 1 else None
+            kind = _class_of(named[0]) if len(named) == 1 else None
+            connection = None if kind is None else self._writer.topic(topic, named[0])
             if connection is None:
                 continue
             self.topics.append(topic)
@@ -45,7 +48,7 @@ class Bagging:
             )
             self._subscriptions.append(
                 node.create_subscription(
-                    _class_of(named[0]),
+                    kind,
                     topic,
                     partial(self._keep, connection),
                     _qos(latched),
@@ -65,8 +68,12 @@ class Bagging:
 
 
 def _class_of(kind: str) -> Any:
+    """Class of a message type; None if its package is not installed here."""
     package, _, name = kind.partition("/msg/")
-    return getattr(import_module(f"{package}.msg"), name)
+    try:
+        return getattr(import_module(f"{package}.msg"), name, None)
+    except ModuleNotFoundError:
+        return None
 
 
 def _qos(latched: bool) -> QoSProfile:
@@ -136,12 +143,11 @@ class Records:
 
     def next_command(self) -> str:
         """The command that diagnoses the recording."""
-        bag = str(self._bag.folder) if self._bag else "BAG"
-        ticks, reference = (
-            next((each for each in self._topics if each.endswith(name)), name)
-            for name in ("/joint_states", "/reference")
-        )
-        return (
-            f"werrimbi diagnose --robot {self._robot} --ticks-topic {ticks} "
-            f"--reference-topic {reference} {bag}"
-        )
+        bag, topics = "BAG", self._topics
+        if self._bag is not None:
+            bag, topics = str(self._bag.folder), self._bag.topics
+        words = ["werrimbi", "diagnose", "--robot", self._robot]
+        for option, name in (("ticks", "/joint_states"), ("reference", "/reference")):
+            there = [each for each in topics if each.endswith(name)]
+            words += [f"--{option}-topic", there[0]] if there else []
+        return shlex.join([*words, bag])

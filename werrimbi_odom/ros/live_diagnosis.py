@@ -125,12 +125,25 @@ class Watching(NoWatching):
             if self._looking.poll() is not None:
                 self._end()
         elif self._kept.driven - self._looked_at >= self._every:
-            self._begin()
+            self._looked_at = self._kept.driven
+            try:
+                self._begin()
+            except OSError as error:  # no room for its files
+                self._found = {"trouble": f"the diagnosis cannot begin: {error}"}
+                self._better = ""
+                tell(self._node.get_logger(), self._found["trouble"], fine=False)
         return [self._status()]
 
     def _begin(self) -> None:
-        self._looked_at = self._kept.driven
         self._folder = Path(tempfile.mkdtemp(prefix="werrimbi_odom_"))
+        try:
+            self._ask()
+        except OSError:
+            shutil.rmtree(self._folder, ignore_errors=True)
+            raise
+
+    def _ask(self) -> None:
+        """Write the messages, and start the process that looks at them."""
         self._kept.write(self._folder / "messages")
         (self._folder / "asked.json").write_text(json.dumps(self._asked), encoding="utf-8")
         self._looking = subprocess.Popen(
@@ -163,6 +176,8 @@ class Watching(NoWatching):
         found = self._found
         if not found:
             return DiagnosticStatus.OK, "not enough was driven yet"
+        if "trouble" in found:
+            return DiagnosticStatus.WARN, found["trouble"]
         if "error" in found:
             return DiagnosticStatus.OK, f"these drives tell nothing: {found['error']}"
         words = found["headline"]

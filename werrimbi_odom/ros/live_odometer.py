@@ -39,7 +39,7 @@ def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
         time += 1.0
         try:
             estimate = odometer.update(time, left, right)
-        except ArithmeticError:
+        except (ArithmeticError, ValueError):  # ValueError: the logarithm of a negative number
             estimate = None
             lost = True
         else:
@@ -95,7 +95,7 @@ class LiveOdometer:
         try:
             estimate = self.odometer.update(time, left, right)
             lost = estimate is not None and not is_finite(estimate)
-        except ArithmeticError:
+        except (ArithmeticError, ValueError):  # ValueError: the logarithm of a negative number
             lost = True
         if lost:
             self.odometer.set_pose(self.pose, self._known)

@@ -47,6 +47,7 @@ class Slip(NoSlip):
         self._topic = topic
         self._guard = SlipGuard(robot.track, max(robot.left_tick, robot.right_tick))
         self._gyro = UprightGyro(topic, wiring.node.get_logger())
+        self._clock = wiring.node.get_clock()
         self._heard = 0
         self._tracker: LiveOdometer | None = None
         subscribe(wiring.node, Imu, topic, self._see)
@@ -83,7 +84,10 @@ class Slip(NoSlip):
             return
         if abs(rate) < FASTEST:
             self._heard += 1
-            self._guard.gyro(self._tracker.seconds(message.header.stamp), rate)
+            stamp = message.header.stamp
+            if stamp.sec == 0 and stamp.nanosec == 0:
+                stamp = self._clock.now().to_msg()
+            self._guard.gyro(self._tracker.seconds(stamp), rate)
 
 
 def slip_of(wiring: counter_inputs.InputOptions, robot: Robot) -> NoSlip:

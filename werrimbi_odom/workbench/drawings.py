@@ -172,6 +172,7 @@ def gain_figure(steps: Sequence[ModelVersion]) -> style.Figure:
             step.name if step.added is None else f"+ {step.name}",
             step.look.train_error,
             step.look.holdout_error,
+            step.look.unit,
         )
         for step in steps
     ]

@@ -4,17 +4,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.api.compare_diagnose_add import compared
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
+
+
+def error_of(figures: LegStatistics) -> tuple[float, str]:
+    """RMSE of legs and its unit: of positions [m], or of headings [rad] without any."""
+    if math.isfinite(figures.rmse_position_m):
+        return figures.rmse_position_m, "m"
+    return figures.rmse_yaw_rad, "rad"
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,14 +38,19 @@ class Look:
     holdout_verdict: Verdict
 
     @property
+    def unit(self) -> str:
+        """Unit of both errors: m of positions, or rad of headings, if only these were measured."""
+        return error_of(self.holdout.main.all.figures)[1]
+
+    @property
     def holdout_error(self) -> float:
-        """Position RMSE of the held-out legs [m]; NaN if no positions were measured."""
-        return self.holdout.main.all.figures.rmse_position_m
+        """RMSE of the held-out legs, in `unit`."""
+        return error_of(self.holdout.main.all.figures)[0]
 
     @property
     def train_error(self) -> float:
-        """Position RMSE of the fitted legs [m]."""
-        return self.train.main.all.figures.rmse_position_m
+        """RMSE of the fitted legs, in `unit`."""
+        return error_of(self.train.main.all.figures)[0]
 
 
 @dataclass(frozen=True, eq=False)

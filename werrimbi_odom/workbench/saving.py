@@ -53,6 +53,18 @@ class Target:
         return self.path.with_name(f"{self.path.stem}_{number}{self.path.suffix}")
 
 
+def file_of(session: Session) -> Path | None:
+    """The file that holds the current step, as it was written; None if there is none."""
+    return next(
+        (
+            path
+            for path, item in session.saved.items()
+            if item.step == session.at and _holds(path, item.text)
+        ),
+        None,
+    )
+
+
 def _holds(path: Path, text: str) -> bool:
     """Whether a file is as it was written, neither edited nor replaced."""
     try:

@@ -55,8 +55,8 @@ def serve(
     """Serve the page on a listening socket until interrupted.
 
     `ready` is called with the address when it can be opened, `opened` with the address and the
-    result when the comparison is done. InputError if the drives could not be opened; the server has
-    ended then.
+    result when the comparison is done. InputError if the drives could not be opened, or from
+    `opened`; the server has ended then.
     """
     import uvicorn
     from fastapi import FastAPI
@@ -91,6 +91,8 @@ def serve(
         timeout_graceful_shutdown=2,
     )
 
+    trouble: list[Exception] = []
+
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets=sockets)
@@ -100,13 +102,15 @@ def serve(
         async def wait(self) -> None:
             try:
                 opened(address, await opening.result())
-            except (InputError, CancelledError):
+            except (InputError, CancelledError) as error:
+                trouble.append(error)
                 self.should_exit = True
 
     address = f"http://{HOST}:{port}/"
     Server(config).run(sockets=[at])
-    if isinstance(opening.trouble, InputError):
-        raise opening.trouble
+    for error in trouble:
+        if isinstance(error, InputError):
+            raise error
 
 
 Message = MutableMapping[str, Any]

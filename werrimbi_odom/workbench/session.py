@@ -96,11 +96,6 @@ class Session:
         """Whether something was undone."""
         return self.at + 1 < len(self.steps)
 
-    @property
-    def is_saved(self) -> bool:
-        """Whether a file has the current step."""
-        return any(item.step == self.at for item in self.saved.values())
-
     def diagnosed(self, diagnosis: Diagnosed) -> Session:
         """Session with a diagnosis of the current step."""
         return replace(self, diagnoses={**self.diagnoses, self.at: diagnosis})

@@ -155,7 +155,7 @@ class Tab:
 
     def insist(self) -> None:
         """Add the proposed effect despite the objection."""
-        if self.session.proposed is None:
+        if self.job is not None or self.session.proposed is None:
             return
         self.session = self.session.insisted()
         self.tell(f"{self.session.now.name} added, against the objection: {self.error_told()}")
@@ -200,16 +200,19 @@ class Tab:
 
     def error_told(self) -> str:
         """The held-out error in words."""
-        return f"held-out error {millimetres(self.session.now.look.holdout_error)}"
+        look = self.session.now.look
+        return f"held-out error {size_told(look.holdout_error, look.unit)}"
 
 
-def millimetres(metres: float) -> str:
-    """A length as text; "not measured" for NaN."""
-    if math.isnan(metres):
+def size_told(error: float, unit: str) -> str:
+    """A leg error as text, of positions [m] or of headings [rad]; "not measured" for NaN."""
+    if math.isnan(error):
         return "not measured"
-    if metres >= 1.0:
-        return f"{metres:.2f} m"
-    value = 1e3 * metres
+    if unit == "rad":
+        return f"{math.degrees(error):.2f}°"
+    if error >= 1.0:
+        return f"{error:.2f} m"
+    value = 1e3 * error
     return f"{value:.2f} mm" if value < 10.0 else f"{value:.1f} mm"
 
 

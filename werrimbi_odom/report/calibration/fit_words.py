@@ -10,7 +10,7 @@ from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.number_format import capital, listed, picked, scaled_with_std
+from werrimbi_odom.report.number_format import capital, counted, listed, picked, scaled_with_std
 
 _MOST = 3  # dependences that are reported
 _UNITS = {
@@ -39,7 +39,8 @@ def fit_in_words(result: Calibration) -> list[Part]:
             "is not written."
         )
     if left_out := _left_out(result):
-        said.append(f"{left_out} legs on which the reference jumped were left out.")
+        legs, were = counted(left_out, "leg"), "was" if left_out == 1 else "were"
+        said.append(f"{legs} on which the reference jumped {were} left out.")
     if not result.trusted:
         said.append(
             "These values are the best of a model that does not fit, so they have no error bars. "

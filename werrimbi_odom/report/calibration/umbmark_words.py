@@ -135,9 +135,10 @@ def gained_in_words(
     parts = []
     if later is not None:
         after = e_max_syst(later)
+        times = f" ({result.e_max / after:.1f} times smaller)" if after > 0.0 else ""
         parts.append(
-            f"E_max,syst after the calibration: {_mm(after)} mm, before: {_mm(result.e_max)} mm "
-            f"({result.e_max / after:.1f} times smaller)."
+            f"E_max,syst after the calibration: {_mm(after)} mm, before: {_mm(result.e_max)} mm"
+            f"{times}."
             if after < result.e_max
             else f"E_max,syst after the calibration: {_mm(after)} mm, no better than before "
             f"({_mm(result.e_max)} mm): these squares do not confirm it."

@@ -11,7 +11,12 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.dependence import ByVariable
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
-from werrimbi_odom.report.comparison.figures import NAMES, legs_by_motion_figure, nees_figure
+from werrimbi_odom.report.comparison.figures import (
+    NAMES,
+    legs_by_motion_figure,
+    measured_channels,
+    nees_figure,
+)
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.over_variable import error_against_figure, variables_of
 from werrimbi_odom.report.comparison.phrases import length_of
@@ -35,17 +40,20 @@ def document_of(comparison: Comparison, command: str = "") -> Document:
 
 
 def _figures(comparison: Comparison) -> list[Shown]:
+    paths = Shown(
+        "path",
+        "Where the model fails",
+        f"Each dot is a leg of {comparison.main.leg:g} m where it was driven, larger and "
+        "stronger in colour the more the model errs on it. Choose one drive to see where the "
+        "model alone would have ended, and whether the truth lies inside its ellipses.",
+        _paths(comparison),
+        "Drive:",
+    )
+    if not measured_channels(comparison):  # no leg
+        return [paths]
     against = {name: error_against_figure(comparison, name) for name in variables_of(comparison)}
     return [
-        Shown(
-            "path",
-            "Where the model fails",
-            f"Each dot is a leg of {comparison.main.leg:g} m where it was driven, larger and "
-            "stronger in colour the more the model errs on it. Choose one drive to see where the "
-            "model alone would have ended, and whether the truth lies inside its ellipses.",
-            _paths(comparison),
-            "Drive:",
-        ),
+        paths,
         Shown(
             "motion",
             "Errors by type of motion",

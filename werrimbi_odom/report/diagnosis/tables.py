@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
-from werrimbi_odom.report.number_format import error_words, in_unit, p_words
+from werrimbi_odom.report.number_format import error_words, in_unit, p_words, with_std
 
 _RANKED = 8
 _MAPPED = 10
@@ -46,10 +46,11 @@ def _parameters(diagnosis: Diagnosis) -> list[Part]:
 
 
 def _told(item: Value) -> tuple[str, str]:
-    text, unit = in_unit(item.value, item.std, item.unit)
-    if item.or_else is None:
-        return text, unit
-    return f"{text} or {in_unit(*item.or_else, item.unit)[0]}", unit
+    values = [(item.value, item.std), *([] if item.or_else is None else [item.or_else])]
+    texts, units = zip(*(in_unit(*each, item.unit) for each in values), strict=True)
+    if len(set(units)) > 1:
+        texts, units = tuple(with_std(*each) for each in values), (item.unit,)
+    return " or ".join(texts), units[0]
 
 
 def _ranking(diagnosis: Diagnosis) -> Table:

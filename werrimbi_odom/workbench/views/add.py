@@ -11,7 +11,7 @@ from werrimbi_odom.report.number_format import listed
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.session import ModelVersion
-from werrimbi_odom.workbench.tab import Tab, millimetres, percent
+from werrimbi_odom.workbench.tab import Tab, percent, size_told
 
 NOTHING = (
     "Nothing is added yet. Diagnose, and press Add beside an effect: it is fitted together with "
@@ -47,16 +47,15 @@ def add_view(tab: Tab) -> None:
 def _gain(tab: Tab) -> None:
     past = tab.session.past
     errors = [step.look.holdout_error for step in past]
-    told = ", then ".join(
-        f"{step.name} {millimetres(error)}" for step, error in zip(past, errors, strict=True)
-    )
+    sizes = [size_told(error, past[-1].look.unit) for error in errors]
+    told = ", then ".join(f"{step.name} {size}" for step, size in zip(past, sizes, strict=True))
     before, after = errors[-2], errors[-1]
     word = "fell" if after < before else "did not fall"
     with box("p", "verdict headline"):
         text(
             "span",
-            f"With {past[-1].name} the held-out error {word}: {millimetres(before)} → "
-            f"{millimetres(after)} ({percent(100.0 * (after / before - 1.0))}).",
+            f"With {past[-1].name} the held-out error {word}: {sizes[-2]} → {sizes[-1]} "
+            f"({percent(100.0 * (after / before - 1.0))}).",
         )
     figure(gain_figure(past), tab.dark, f"Held-out error, bar by bar: {told}", "plot low")
 
@@ -82,7 +81,8 @@ def _proposed(tab: Tab, step: ModelVersion) -> None:
         text("p", f"{step.name}: not added, something speaks against it.", "headline")
         text("p", f"{step.added.objection}.")
         button(tab, "Leave it out", tab.decline, key="decline", classes="primary")
-        button(tab, "Add it all the same", tab.insist, key="insist")
+        busy = tab.job is not None
+        button(tab, "Add it all the same", tab.insist, key="insist", disabled=busy)
 
 
 def _following(tab: Tab) -> None:

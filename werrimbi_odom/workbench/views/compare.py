@@ -13,9 +13,11 @@ from werrimbi_odom.inference.comparison.consistency import consistency
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.report.comparison.document import tables_of
 from werrimbi_odom.report.comparison.words import words_of
+from werrimbi_odom.report.number_format import counted
 from werrimbi_odom.workbench.html import box, button, prose, text
 from werrimbi_odom.workbench.leg_selection import Part, PlacePart, bin_parts, motion_parts
-from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.loaded_input import error_of
+from werrimbi_odom.workbench.tab import Tab, size_told
 from werrimbi_odom.workbench.views.side_panels import floor
 
 
@@ -72,7 +74,11 @@ def _chip(tab: Tab, part: Part, words: str, figures: LegStatistics, key: str) ->
     )
     with pressed:
         text("span", words, "what")
-        text("span", f"{millimetres(figures.rmse_position_m)}, {figures.count} legs", "size")
+        text(
+            "span",
+            f"{size_told(*error_of(figures))}, {counted(figures.count, 'leg')}",
+            "size",
+        )
         text("span", f"✗ {promised}" if fails else f"✓ {promised}", "mark")
 
 

@@ -15,11 +15,11 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
-from werrimbi_odom.report.number_format import capital, chance_words, error_words, listed
+from werrimbi_odom.report.number_format import capital, chance_words, listed
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.leg_selection import CellPart
 from werrimbi_odom.workbench.session import Diagnosed
-from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.tab import Tab, size_told
 from werrimbi_odom.workbench.views.side_panels import floor, why
 
 SHORT = 5
@@ -211,9 +211,7 @@ def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
     top = max(max(one.before, one.after) for one in sides)
     before, after = item.holdout.before, item.holdout.after
     unit = item.holdout.unit
-    told = " → ".join(
-        millimetres(value) if unit == "m" else error_words(value, unit) for value in (before, after)
-    )
+    told = " → ".join(size_told(value, unit) for value in (before, after))
     with box("div", "beforeafter", role="img", aria_label=f"Held-out error {told}"):
         for value, kind in ((before, "before"), (after, "after")):
             share = 100.0 * value / top if top > 0.0 and value == value else 0.0

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.workbench.html import box, button, text
-from werrimbi_odom.workbench.saving import changed_lines, text_of
+from werrimbi_odom.workbench.saving import changed_lines, file_of, text_of
 from werrimbi_odom.workbench.tab import Tab
 
 NEAR = 2
@@ -20,12 +20,13 @@ def save_view(tab: Tab) -> None:
     if not session.can_undo:
         text("p", "Nothing was added, so there is nothing to save.")
         return
-    path = shared.target.of(session, shared.taken - set(session.saved))
+    written = file_of(session)
+    path = written or shared.target.of(session, shared.taken - set(session.saved))
     with box("p"):
-        text("span", "It will be written to " if not session.is_saved else "It was written to ")
+        text("span", "It will be written to " if written is None else "It was written to ")
         text("code", str(path), data_key="path")
         text("span", f". {shared.source.path} stays as it is.")
-    if session.is_saved:
+    if written is not None:
         text("p", "✓ Saved. Give this file to the node, and to the other commands with --robot.",
              "saved")  # fmt: skip
     else:

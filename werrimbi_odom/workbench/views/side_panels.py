@@ -13,12 +13,13 @@ from werrimbi_odom.effects.effect_docstring import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.document import Table
-from werrimbi_odom.report.number_format import capital
+from werrimbi_odom.report.number_format import capital, counted
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.leg_selection import figures_of, worst
-from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.loaded_input import error_of
+from werrimbi_odom.workbench.tab import Tab, size_told
 
 
 def floor(tab: Tab) -> None:
@@ -27,14 +28,14 @@ def floor(tab: Tab) -> None:
     which = None if part is None else part.legs(comparison)
     chosen = np.ones(comparison.legs.run.size, dtype=np.bool_) if which is None else which
     figures = figures_of(comparison, chosen)
-    error = millimetres(figures.rmse_position_m)
+    error = size_told(*error_of(figures))
     if part is None:
-        told = f"All {figures.count} legs: {error} rms."
+        told = f"All {counted(figures.count, 'leg')}: {error} rms."
     else:
         rest = figures_of(comparison, ~chosen)
         told = (
-            f"{capital(part.words)}: {figures.count} legs, {error} rms; "
-            f"the other {rest.count}: {millimetres(rest.rmse_position_m)}."
+            f"{capital(part.words)}: {counted(figures.count, 'leg')}, {error} rms; "
+            f"the other {rest.count}: {size_told(*error_of(rest))}."
         )
     with box("section", "floor", aria_label="The floor"):
         with box("div", "floorhead"):

@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 
 from werrimbi_odom.workbench.html import box, button, text
-from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
+from werrimbi_odom.workbench.saving import file_of
+from werrimbi_odom.workbench.tab import VIEWS, Tab, percent, size_told
 
 TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
 
@@ -58,7 +59,7 @@ def _state(tab: Tab, view: str) -> str:
     if view == "add":
         count = sum(len(step.added.effects) for step in session.past if step.added is not None)
         return "nothing yet" if not count else "1 effect" if count == 1 else f"{count} effects"
-    if session.is_saved:
+    if file_of(session) is not None:
         return "saved"
     return "not saved" if session.can_undo else "nothing to save"
 
@@ -67,15 +68,15 @@ def _meter(tab: Tab) -> None:
     """The held-out error, and a bar for each step."""
     session = tab.session
     errors = [step.look.holdout_error for step in session.past]
-    now, first = errors[-1], errors[0]
+    now, first, unit = errors[-1], errors[0], session.now.look.unit
     with box("div", "meter", role="group", aria_label="Held-out error"):
         with box("div"):
-            text("div", "Held-out error", "label", title="rms position error of the legs of drives "
+            text("div", "Held-out error", "label", title="rms error of the legs of drives "
                  "that took no part in any fit")  # fmt: skip
-            text("strong", millimetres(now), "value", data_key="error")
+            text("strong", size_told(now, unit), "value", data_key="error")
             if session.can_undo and np.isfinite([now, first]).all():
                 share = 100.0 * (now / first - 1.0)
-                text("span", f" {percent(share)} (was {millimetres(first)})", "fall")
+                text("span", f" {percent(share)} (was {size_told(first, unit)})", "fall")
         _bars(tab, errors)
 
 
@@ -86,10 +87,11 @@ def _bars(tab: Tab, errors: list[float]) -> None:
     if len(every) < 2 or not top > 0.0:
         return
     pairs = list(zip([step.name for step in tab.session.steps], every, strict=True))
-    told = ", ".join(f"{name} {millimetres(error)}" for name, error in pairs)
+    unit = tab.session.now.look.unit
+    told = ", ".join(f"{name} {size_told(error, unit)}" for name, error in pairs)
     with box("div", "bars", role="img", aria_label=f"Bar by bar: {told}"):
         for index, (name, error) in enumerate(pairs):
             kind = "bar" if index < len(errors) else "bar undone"
             height = 100.0 * error / top if np.isfinite(error) else 0.0
-            bar = box("div", kind, title=f"{name}: {millimetres(error)}")
+            bar = box("div", kind, title=f"{name}: {size_told(error, unit)}")
             bar.style(f"height: {height:.0f}%")

@@ -9,6 +9,7 @@ from typing import Any
 
 from nicegui import ui
 
+from werrimbi_odom.report.number_format import counted
 from werrimbi_odom.workbench.drawings import measured_drawing
 from werrimbi_odom.workbench.html import box, button, text
 from werrimbi_odom.workbench.job import Job
@@ -30,7 +31,7 @@ def opening_view(opening: Opening) -> None:
     with box("header"), box("div", "title"):
         text("h1", "werrimbi workbench")
         runs = (*opening.given.runs, *opening.given.holdout)
-        text("p", f"{opening.given.source.path.name}: {len(runs)} drives.")
+        text("p", f"{opening.given.source.path.name}: {counted(len(runs), 'drive')}.")
     _progress(opening.job, "Comparing")
     drawn = measured_drawing(runs)
     if drawn is not None:

@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A live diagnosis that cannot begin: the comparison goes on, and says so."""
+
+from __future__ import annotations
+
+import tempfile
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import PoseStamped
+from rclpy.context import Context
+
+from test.robot_file import BARE
+from werrimbi_odom.model.motion import BodyMotion
+from werrimbi_odom.ros.compare_parameters import PARAMETERS
+from werrimbi_odom.ros.domain import free_domain
+from werrimbi_odom.ros.live_diagnosis import Watching
+from werrimbi_odom.ros.topics import subscribe
+
+
+def test_without_room_for_its_files_the_node_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text(BARE)
+    values: dict[str, Any] = {item.name: item.default for item in PARAMETERS}
+    values |= {"robot_file": str(file), "diagnose_every": 0.1}
+    domain, lock = free_domain()
+    context = Context()
+    rclpy.init(context=context, args=[], domain_id=domain)
+    node = rclpy.create_node("compare_node", context=context)
+    watching = Watching(node, values, PoseStamped, partial(subscribe, node))
+    for number in range(20):
+        watching.odometry(0.5 * number, BodyMotion(0.3, 0.0, 0.0))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "full"))
+    (status,) = watching.look()
+    assert status.level == DiagnosticStatus.WARN
+    assert "the diagnosis cannot begin" in status.message
+    assert str(tmp_path / "full") in status.message
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    lock.close()
