@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import asyncio
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 
+from test.loops import awaited
 from test.workbench.test_tab_session import look, step
 from werrimbi_odom.workbench import tab as tabs
 from werrimbi_odom.workbench.session import ModelVersion, begun
@@ -38,6 +38,6 @@ def test_an_objection_waits_while_another_effect_is_fitted(
     given.robot = None
     start = begun(given).fitted(step("doubtful", 3.1, objection="it does not help"))
     tab = Tab(shared, start, lambda focus: None)
-    asyncio.run(tab.add("second"))
+    awaited(tab.add("second"))
     assert [each.name for each in tab.session.past] == ["as given", "second"]
     assert "second added" in tab.news
