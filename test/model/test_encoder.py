@@ -77,6 +77,11 @@ def test_counts_become_metres_by_each_wheels_own_radius_and_resolution() -> None
     assert step.right == pytest.approx(-2.0 * math.pi * 0.098)
 
 
+def test_no_reading_makes_no_step() -> None:
+    none = np.zeros(0, dtype=np.int64)
+    assert wheel_steps(ROBOT, np.zeros(0), none, none).time.size == 0
+
+
 def test_positions_in_radians_are_counts_of_a_wheel_with_two_pi_to_the_turn() -> None:
     robot = Robot(0.35, 0.05, 2.0 * math.pi, 2.0 * math.pi)
     (step,) = steps_of(Encoder(robot), (0.0, 10.0, -3.0), (0.1, 10.25, -3.5))

@@ -233,7 +233,7 @@ def _quiet_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> 
 def _is_huge(counts: Counts) -> bool:
     """Whether differences of integer counts could exceed 64 bits."""
     return counts.dtype.kind == "i" and bool(
-        counts.max() >= _LARGEST_COUNT or counts.min() <= -_LARGEST_COUNT
+        np.any((counts >= _LARGEST_COUNT) | (counts <= -_LARGEST_COUNT))
     )
 
 

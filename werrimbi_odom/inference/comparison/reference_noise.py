@@ -199,6 +199,8 @@ def _variance(differences: Floats) -> float:
 
 def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
     """Intercept at zero of a weighted line through the variances."""
+    if variances.min() < 1e-18:  # (1 nm, 1 nrad): nothing scatters; the likelihood needs some noise
+        return 1e-18
     weight = counts / np.maximum(variances, 1e-300) ** 2
     weight = weight / weight.sum()
     middle, mean = float(weight @ at), float(weight @ variances)
