@@ -14,6 +14,7 @@ from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -31,7 +32,8 @@ def first_heading(robot: Robot, run: MatchedRun) -> float | None:
         pose += np.exp(1j * heading) * complex(x, y)
         heading += turn
         predicted.append(pose)
-    measured = run.measured.x + 1j * run.measured.y
+    mirror = -1.0 if view_of(robot.effects).mirrored else 1.0
+    measured = run.measured.x + 1j * mirror * run.measured.y
     usable = np.flatnonzero(run.measured.has_position)[:_FIRST_NODES]
     if usable.size < 2:
         return 0.0
