@@ -9,8 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.inference.driven import parts, run_of
 from test.inference.positions import FRAME, positions_of_a_point
 from test.model.drives import ROBOT
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.comparison.residuals import chained, fitted_heading
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
@@ -70,6 +72,32 @@ def test_a_spin_on_the_spot_takes_no_heading_away() -> None:
         assert found.reference[2:, 0, 0] == pytest.approx(2.0 * noise**2, rel=0.5)
     assert np.sqrt(np.mean(np.square(size))) < 2.0 * np.sqrt(2.0) * noise
     assert np.max(size) < 6.0 * np.sqrt(2.0) * noise
+
+
+@pytest.mark.parametrize("kind", ["jump", "to and fro", "spike"])
+@pytest.mark.parametrize("size", [0.3, 3.0])
+def test_a_tracker_that_jumps_turns_no_robot(kind: str, size: float) -> None:
+    """One jump of 30 cm, of positions alone, and all legs after it erred by 15 cm."""
+    sound = parts(run_of(ROBOT, 4), "positions")
+    assert sound.reference is not None
+    time = sound.reference.time
+    until = {"jump": np.inf, "to and fro": 70.0, "spike": 45.5}[kind]
+    off = size * ((time > 45.0) & (time < until))
+    seen = replace(sound.reference, x=sound.reference.x + off, y=sound.reference.y + 0.5 * off)
+    found, plain = (compare([run], ROBOT) for run in (replace(sound, reference=seen), sound))
+    legs = found.legs
+    jumped = [(legs.start_time < at) & (legs.end_time > at) for at in (45.1, until - 0.1)]
+    assert legs.outlier[jumped[0]].all() == (kind != "spike")
+    assert not legs.outlier[~np.logical_or(*jumped)].any()
+    within = ~legs.outlier
+    changed = (legs.errors.error - plain.legs.errors.error)[within, :2]
+    assert (
+        np.abs(changed).max() < 4e-3
+    )  # once or twice a heading of few poses and a position of one
+    assert np.abs(changed[legs.end_time[within] < 45.0]).max() < 2e-4
+    assert found.main.all.figures.nees < 1.1
+    (path,), (straight,) = found.paths, plain.paths
+    assert path.predicted_yaw[0] == pytest.approx(straight.predicted_yaw[0], abs=1e-3)
 
 
 SPINS, BENDS = [1.0, -1.0, 1.0, -1.0], [0.3, -0.3, 0.2]

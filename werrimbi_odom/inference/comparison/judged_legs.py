@@ -96,7 +96,7 @@ def judged_legs(prepared: PreparedRuns, model: Model, leg: float) -> Legs:
         own = _of_group(group, model)
         by_position = group.measure == "position"
         if by_position:
-            _, own = residuals_of(own, group.every, group.measure)
+            _, own = residuals_of(own, group.every, group.measure, group.pieces)
         elif group.measure == "heading":
             own = _with_drifts(own, usual)
         errors = errors_of(
@@ -136,7 +136,7 @@ def paths(prepared: PreparedRuns, model: Model) -> tuple[Residual, ...]:
         own = _of_group(group, model)
         if own.robot == prepared.robot and not any(own.own):
             return group.plain
-        return residuals_of(own, group.every, group.measure)[0]
+        return residuals_of(own, group.every, group.measure, group.pieces)[0]
 
     return prepared.in_order(of_group)
 
