@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predict
@@ -39,6 +40,12 @@ def first_heading(robot: Robot, run: MatchedRun) -> float | None:
         return 0.0
     shape = np.array(predicted)[usable] - predicted[usable[0]]
     return float(np.angle(np.sum(np.conj(shape) * (measured[usable] - measured[usable[0]]))))
+
+
+def only_first_heading(run: MatchedRun) -> bool:
+    """Whether a heading was measured at the first pose alone, and positions tell it as well."""
+    told = run.measured.has_position.sum() >= rules.FEW_POSES
+    return bool(told and run.measured.has_yaw[0] and not run.measured.has_yaw[1:].any())
 
 
 def turned_to_the_first_legs(runs: Concatenated, point: Point) -> tuple[Point, float]:
