@@ -22,6 +22,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare, judged
 from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.comparison.as_json import json_of
@@ -412,6 +413,21 @@ def test_a_floor_that_pulls_one_way_goes_with_the_heading(runs: tuple[Run, ...])
     assert not verdict_of(found).mean_is_right
     words = flat(found)
     assert re.search(r"(along the way|sideways error).* go(es)? with the heading", words)
+
+
+@pytest.mark.parametrize("headings", [0, 1])
+def test_positions_alone_have_no_increments(runs: tuple[Run, ...], headings: int) -> None:
+    """Fits had no data, and diagnose said that nothing is missing where the base was 8 % off."""
+    seen = runs[0].reference
+    assert seen is not None
+    yaw = np.where(np.arange(seen.yaw.size) < headings, seen.yaw, np.nan)
+    increments = EvaluationOptions(reference_kind="incremental")
+    refused = r"run_60: .* positions alone.*give --reference-kind absolute, or local_map"
+    positions = [with_reference(runs[0], yaw=yaw)]
+    with pytest.raises(InputError, match=refused):
+        compare(positions, RIGHT, increments)
+    with pytest.raises(InputError, match=refused):
+        diagnose(positions, RIGHT, (), increments)
 
 
 def test_a_run_without_a_reference_is_refused_by_name(runs: tuple[Run, ...]) -> None:

@@ -72,6 +72,26 @@ def test_a_pose_that_waited_for_the_end_of_a_silence_begins_no_leg(which: str) -
         assert ends == [pytest.approx(seen.time[row + more], abs=1e-9) for row in first]
 
 
+@pytest.mark.parametrize("name", ["left_wheel_reversed", "right_wheel_reversed", "wheels_swapped"])
+def test_how_far_a_robot_drives_does_not_depend_on_its_wiring(name: str) -> None:
+    """The file says how its counters are wired. By their columns 11 m were 3, in gaps too."""
+    finer = replace(ROBOT, left_ticks_per_revolution=2.0 * ROBOT.left_ticks_per_revolution)
+    seen = silent(run_of(ROBOT, 3, 60))
+    left, right = 2.0 * seen.ticks.left, seen.ticks.right
+    plain = replace(seen, ticks=replace(seen.ticks, left=left))
+    columns = {
+        "left_wheel_reversed": (-left, right),
+        "right_wheel_reversed": (left, -right),
+        "wheels_swapped": (right, left),
+    }[name]
+    wired = replace(seen, ticks=replace(seen.ticks, left=columns[0], right=columns[1]))
+    says_so = replace(finer, effects=(*finer.effects, find(name).using()))
+    (expected, found) = (compare([run], robot) for run, robot in ((plain, finer), (wired, says_so)))
+    assert found.runs[0].distance_m == pytest.approx(expected.runs[0].distance_m)
+    assert [part.words for part in found.left_out] == [part.words for part in expected.left_out]
+    assert "turned" in found.left_out[0].words
+
+
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
     return runs_of(ROBOT, range(40, 44))

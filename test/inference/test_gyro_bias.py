@@ -12,7 +12,7 @@ import pytest
 
 from test.inference.driven import of_headings
 from test.model.drives import ROBOT, read
-from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference import rules
@@ -129,6 +129,22 @@ def test_rests_at_the_ends_tell_which_wheel_is_larger() -> None:
     assert found.found[:1] == ("unequal_wheel_radii",)
     ratio = sizes_of(found.told.point.model.robot).as_effects["unequal_wheel_radii"]
     assert ratio == pytest.approx(1.03, abs=1e-3)
+
+
+@pytest.mark.parametrize(("bias", "right"), [(0.0, 1.0), (6e-4, 1.03)])
+def test_a_gyro_upside_down_drifts_as_it_does_upright(bias: float, right: float) -> None:
+    """The file says so. Its turns were counted the wrong way and taken for drift: NEES 3500."""
+    random = np.random.default_rng(2)
+    turning = np.concatenate([np.zeros(60), np.repeat(random.uniform(-1, 1, 40), 20), np.zeros(60)])
+    upright = by_gyro(0.3 * (turning != 0.0), turning, 1.0, bias, 1, right)
+    assert upright.reference is not None
+    reference = replace(upright.reference, yaw=-upright.reference.yaw)
+    mirrored = replace(ROBOT, effects=(*ROBOT.effects, find("reference_mirrored").using()))
+    legs, of_mirrored = (
+        compare([run], robot, INCREMENTAL).legs.errors
+        for run, robot in ((upright, ROBOT), (replace(upright, reference=reference), mirrored))
+    )
+    np.testing.assert_allclose(of_mirrored.error[:, 2], legs.error[:, 2], atol=1e-12)
 
 
 def test_legs_at_the_ends_stay_if_the_record_begins_and_ends_at_rest() -> None:

@@ -153,7 +153,7 @@ def errors_of_legs(
     """
     return np.concatenate(
         [
-            relative_errors(run, predict(robot, run, heading))
+            relative_errors(robot, run, predict(robot, run, heading))
             for run, heading in zip(runs, headings, strict=True)
         ]
     )

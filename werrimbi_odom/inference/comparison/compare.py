@@ -33,6 +33,7 @@ from werrimbi_odom.inference.comparison.systematic import (
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.gaps import LeftOut, touched
+from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
@@ -244,7 +245,8 @@ def _run_figures(
     known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0
     # The counters are unwrapped, and bridged where they leapt.
-    travel = 0.5 * np.diff(counters.left * robot.left_tick + counters.right * robot.right_tick)
+    left, right = wiring_of(robot.effects).wheels(counters.left, counters.right)
+    travel = 0.5 * np.diff(left * robot.left_tick + right * robot.right_tick)
     stretches = [(part.begin, part.end) for part in run.no_driving or ()]
     no_driving = touched(counters.time, stretches)
     return RunFigures(

@@ -24,9 +24,10 @@ from werrimbi_odom.inference.comparison.residuals import Residual, residuals_of
 from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
-from werrimbi_odom.inference.fitting.prediction import predicted_legs
+from werrimbi_odom.inference.fitting.prediction import predicted_legs, right_handed
 from werrimbi_odom.inference.fitting.run_phases import model_in_runs
 from werrimbi_odom.inference.legs.gyro_bias import AtRest
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -95,7 +96,7 @@ def judged_legs(prepared: PreparedRuns, model: Model, leg: float) -> Legs:
         own = _of_group(group, model)
         by_position = group.measure == "position"
         if by_position:
-            _, own = residuals_of(own, group.every, group.measure)
+            _, own = residuals_of(own, group.every, group.measure, group.pieces)
         elif group.measure == "heading":
             own = _with_drifts(own, usual)
         errors = errors_of(
@@ -135,7 +136,7 @@ def paths(prepared: PreparedRuns, model: Model) -> tuple[Residual, ...]:
         own = _of_group(group, model)
         if own.robot == prepared.robot and not any(own.own):
             return group.plain
-        return residuals_of(own, group.every, group.measure)[0]
+        return residuals_of(own, group.every, group.measure, group.pieces)[0]
 
     return prepared.in_order(of_group)
 
@@ -151,10 +152,13 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
     Fits leave this drift free too. To what the model has of it the rest is added: the slope of
     heading errors over time by least absolute deviations, a median of slopes weighted by the legs'
     durations. Of a run of fewer than `DRIFT_LEGS` nothing is, as it would absorb the whole error of
-    one leg. Rests limit it: a robot that veers at a steady speed is no gyro that drifts.
+    one leg. Rests limit it: a robot that veers at a steady speed is no gyro that drifts. All of it
+    is in a right-handed frame, as predictions are.
     """
+    view = view_of(model.robot.effects)
     seen = predicted_legs(model, runs)[:, 2]
-    error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
+    turned = right_handed(runs.finish, view)[:, 2] - right_handed(runs.start, view)[:, 2]
+    error = wrap_all(turned - seen)
     known = np.isfinite(error) & ~runs.gap & (runs.duration > 0.0)
     own = []
     for index, mine in enumerate(model.own):
@@ -166,7 +170,10 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
         drift = float(slopes[order][middle]) if rows.size >= rules.DRIFT_LEGS else 0.0
         drift += mine.get(YAW_DRIFT, 0.0)
         at_rest = runs.runs[index].record.at_rest
-        own.append({**mine, YAW_DRIFT: AtRest(*at_rest).limited(drift) if at_rest else drift})
+        if at_rest is not None:
+            rate, unsure = at_rest
+            drift = AtRest(-rate if view.mirrored else rate, unsure).limited(drift)
+        own.append({**mine, YAW_DRIFT: drift})
     return Model(model.robot, tuple(own))
 
 

@@ -114,7 +114,7 @@ def errors_of(
     of the reference. `by_position`: the reference gives positions only; headings are then estimated
     from those before the leg. `sigma_stamp`: noise of the stamps of a gyro, or of scans [s].
     `wandering`: noise of a reference on a local map, in place of the sigmas. `jumped` (m,): legs on
-    which the latter jumped.
+    which the reference jumped.
     """
     robot = model.robot
     prediction = predict_joined(model, runs)
@@ -138,6 +138,7 @@ def errors_of(
             runs.legs,
             _headings(model, runs, start),
             runs.gap,
+            jumped,
         )
         error, wheels, reference = found.error, found.wheels, found.reference
         heading = found.heading

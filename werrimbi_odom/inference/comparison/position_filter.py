@@ -51,6 +51,7 @@ def position_errors(
     first: NDArray[np.intp],
     headings: Floats,
     gap: NDArray[np.bool_],
+    jumped: NDArray[np.bool_] | None = None,
 ) -> PositionErrors:
     """Filter the legs of all runs.
 
@@ -60,17 +61,20 @@ def position_errors(
     the heading. `start`, `finish` (m, 2): measured positions [m]. `variance` (m,): variance of each
     measured coordinate [m²]. `first` (runs + 1,): first leg of each run, and the number of legs.
     `headings` (runs,): approximate heading at the first pose of each run [rad]. `gap` (m,): gaps:
-    the heading is propagated, the position restarts.
+    the heading is propagated, the position restarts. `jumped` (m,): legs on which the reference
+    jumped: after them it is the same, and what they err by tells nothing else.
     """
     variances = np.zeros(relative.shape[0]) + variance
-    uncertain = _heading_variances(relative, start, finish, variances, first, headings)
+    jumped = np.zeros_like(gap) if jumped is None else jumped
+    uncertain = _heading_variances(relative, start, finish, variances, first, headings, jumped)
+    anew, counted = (gap, jumped), ~(gap | jumped)
     doubt = 1.0
     for _ in range(_ROUNDS):
         doubted = wheels if doubt == 1.0 else doubt * alike
         found, deviation = _filtered(
-            relative, wheels, doubted, start, finish, variances, first, headings, uncertain, gap
+            relative, wheels, doubted, start, finish, variances, first, headings, uncertain, anew
         )
-        usual = float(np.median(deviation[~gap])) / _MEDIAN_CHI2_2
+        usual = float(np.median(deviation[counted])) / _MEDIAN_CHI2_2 if counted.any() else 0.0
         if usual <= rules.HONEST_WITHIN or doubt >= _MOST_DOUBT:
             break
         doubt = min(doubt * usual, _MOST_DOUBT)
@@ -87,9 +91,13 @@ def _filtered(
     first: NDArray[np.intp],
     headings: Floats,
     uncertain: Floats,
-    gap: NDArray[np.bool_],
+    anew: tuple[NDArray[np.bool_], NDArray[np.bool_]],
 ) -> tuple[PositionErrors, Floats]:
-    """Filter once with an inflated covariance; also return squared Mahalanobis distances."""
+    """Filter once with an inflated covariance; also return squared Mahalanobis distances.
+
+    `anew`: gaps and legs on which the reference jumped, after which the position restarts.
+    """
+    gap, jumped = anew
     count = relative.shape[0]
     found = PositionErrors(
         np.full((count, 3), np.nan),
@@ -120,19 +128,20 @@ def _filtered(
         parts[0] += turn @ doubted[leg] @ turn.T
         parts[1] += turn @ wheels[leg] @ turn.T
         noise = variances[leg] * np.eye(2)
-        if gap[leg]:
+        unexpected = finish[leg] - state[:2]
+        if not gap[leg]:
+            back = turn[:2, :2].T
+            found.error[leg, :2] = back @ unexpected
+            found.wheels[leg, :2, :2] = back @ parts[1, :2, :2] @ back.T
+            found.reference[leg, :2, :2] = back @ (parts[2, :2, :2] + noise) @ back.T
+        if gap[leg] or jumped[leg]:
             state[:2] = finish[leg]
             parts[:, :2, :], parts[:, :, :2] = 0.0, 0.0
             parts[[[0], [2]], [0, 1], [0, 1]] = variances[leg]
             continue
-        unexpected = finish[leg] - state[:2]
         total = parts[0, :2, :2] + noise
         inverse = np.linalg.inv(total)
         deviation[leg] = unexpected @ inverse @ unexpected
-        back = turn[:2, :2].T
-        found.error[leg, :2] = back @ unexpected
-        found.wheels[leg, :2, :2] = back @ parts[1, :2, :2] @ back.T
-        found.reference[leg, :2, :2] = back @ (parts[2, :2, :2] + noise) @ back.T
         gain = parts[0, :, :2] @ inverse
         state = state + gain @ unexpected
         less = identity.copy()
@@ -151,21 +160,27 @@ def _heading_variances(
     variances: Floats,
     first: NDArray[np.intp],
     headings: Floats,
+    jumped: NDArray[np.bool_],
 ) -> Floats:
     """Variance of the heading at the first pose of each run, shape (runs,) [rad²].
 
     Mean square of what the aligned path is off, and of the positions' noise, over that of its
     distance from the start: as if one position told it, since errors of a path are of a kind.
+    After a jump of the reference the path starts anew.
     """
     found = np.full(headings.size, rules.UNKNOWN_HEADING)
     for run, heading in enumerate(headings.tolist()):
         own = slice(first[run], first[run + 1])
         if own.start == own.stop:
             continue
-        path = np.exp(1j * heading) * chained(relative[own])[0][1:]
-        measured = (finish[own] - start[own.start]) @ np.array([1.0, 1j])
+        path = np.exp(1j * heading) * chained(relative[own])[0]
+        leg = np.arange(path.size - 1)
+        begun = np.maximum.accumulate(np.where(jumped[own], leg + 1, 0))
+        begun = np.minimum(begun, leg)
+        path = path[1:] - path[begun]
+        measured = (finish[own] - start[own][begun]) @ np.array([1.0, 1j])
         off = np.abs(measured - path) ** 2 + 2.0 * variances[own]
-        known = np.isfinite(off)
+        known = np.isfinite(off) & ~jumped[own]
         lever = float(np.sum(np.abs(path[known]) ** 2))
         if lever > 0.0:
             found[run] = min(float(np.sum(off[known])) / lever, rules.UNKNOWN_HEADING)

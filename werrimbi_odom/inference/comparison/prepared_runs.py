@@ -16,6 +16,7 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
@@ -111,8 +112,10 @@ def prepare(
 ) -> PreparedRuns:
     """Match runs, estimate the reference's noise, find its jumps, and cut legs of several lengths.
 
-    InputError if a run has no usable reference or no ticks.
+    InputError if a run has no usable reference or no ticks, or increments without headings.
     """
+    for run in runs:
+        _refuse_increments_of_positions(run, options)
     runs = [with_no_driving(run, robot, options.limits) for run in runs]
     members: dict[Measure, list[tuple[int, AlignedRun, bool]]] = {}
     for index, run in enumerate(runs):
@@ -125,6 +128,19 @@ def prepare(
     cuts = _cut_to_lengths(groups, robot, options.leg)
     parts = parts_for_fit(groups, robot, options)
     return PreparedRuns(robot, options, tuple(runs), groups, cuts, parts)
+
+
+def _refuse_increments_of_positions(run: Run, options: EvaluationOptions) -> None:
+    """Without the heading at its start, no leg of a reference that adds up can be predicted."""
+    if options.reference_kind != "incremental" or run.reference is None:
+        return
+    positions = np.count_nonzero(run.reference.has_position)
+    if positions > 1 and np.count_nonzero(run.reference.has_yaw) < 2:
+        raise InputError(
+            f"{run.path}: the reference has positions alone, and --reference-kind incremental (as "
+            "a gyro's headings have by themselves) needs headings too: nothing else says where a "
+            "leg leads; give --reference-kind absolute, or local_map if its error wanders"
+        )
 
 
 def _cut_to_lengths(

@@ -12,7 +12,11 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.reference_jumps import jumped_legs, jumps_of
+from werrimbi_odom.inference.comparison.reference_jumps import (
+    jumped_legs,
+    jumps_of,
+    pieces_between,
+)
 from werrimbi_odom.inference.comparison.reference_noise_source import OwnNoise, noise_of
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual, residuals_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -37,6 +41,11 @@ class ReferenceGroup:
     """Noise of the references."""
     plain: tuple[Residual, ...]
     """Paths by the robot whose travel cuts the legs."""
+
+    @property
+    def pieces(self) -> tuple[NDArray[np.intp], ...]:
+        """Piece between jumps that each pose of each run is of (`pieces_between`)."""
+        return tuple(map(pieces_between, self.jumps))
 
     def ways(self, robot: Robot, leg: float) -> list[Floats]:
         """Cumulative travel at each pose of each run, in legs."""
@@ -69,6 +78,9 @@ def group_of(
         jumps_of(residual, run.gap, robot)
         for residual, run in zip(residuals, every.runs, strict=True)
     )
+    if measure == "position" and any(jump.any() for jump in jumps):
+        pieces = tuple(map(pieces_between, jumps))
+        residuals, _ = residuals_of(plain, every, measure, pieces)
     return ReferenceGroup(
         tuple(index for index, _, _ in members),
         measure,

@@ -97,3 +97,18 @@ def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) ->
     if kind == "incremental":
         return np.asarray(count > 0.0)
     return np.asarray(np.any(lasting > np.maximum(least, 1e-12), axis=1))
+
+
+def pieces_between(jumps: Floats) -> NDArray[np.intp]:
+    """Number of the piece of a drive between lasting jumps that each pose is of, shape (n,).
+
+    It is -1 within a jump or a spike of several intervals. `jumps` (n - 1, 3): of the reference.
+    """
+    happened = np.concatenate([[False], np.any(jumps != 0.0, axis=1), [False]])
+    edges = np.flatnonzero(happened[1:] != happened[:-1])
+    lasting = jumped_legs(jumps, edges, "absolute")[::2] if edges.size else happened[:0]
+    found = np.zeros(jumps.shape[0] + 1, dtype=np.intp)
+    for (first, last), stays in zip(edges.reshape(-1, 2).tolist(), lasting, strict=True):
+        found[last:] += int(stays)
+        found[first + 1 : last] = -1
+    return found

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -64,19 +65,23 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
 
 
 def residuals_of(
-    model: Model, every: Concatenated, measure: Measure
+    model: Model,
+    every: Concatenated,
+    measure: Measure,
+    pieces: Sequence[NDArray[np.intp]] | None = None,
 ) -> tuple[tuple[Residual, ...], Model]:
     """Dead reckoning along every reference pose and its difference to the measurement, run by run.
 
     `model`: the model. `every`: runs from `legs.cutting.every_pose`. `measure`: quantity that the
     reference measures. Result: residuals of each run, and the model with the start heading of
     each run. Where only positions are measured and the model has none, it is the one that best
-    aligns the whole path with them.
+    aligns the whole path with them. `pieces`: of each run, what its poses are of
+    (`reference_jumps.pieces_between`): a jump of the reference turns no robot.
     """
     view = view_of(model.robot.effects)
     relative = predicted_legs(model, every)
     if measure == "position":
-        model = _with_headings(model, every, relative)
+        model = _with_headings(model, every, relative, pieces)
         relative = predicted_legs(model, every)
     found = []
     for index, run in enumerate(every.runs):
@@ -89,7 +94,12 @@ def residuals_of(
     return tuple(found), model
 
 
-def _with_headings(model: Model, every: Concatenated, relative: Floats) -> Model:
+def _with_headings(
+    model: Model,
+    every: Concatenated,
+    relative: Floats,
+    pieces: Sequence[NDArray[np.intp]] | None,
+) -> Model:
     mirror = -1.0 if view_of(model.robot.effects).mirrored else 1.0
     own: list[dict[str, float]] = []
     for index, run in enumerate(every.runs):
@@ -97,7 +107,8 @@ def _with_headings(model: Model, every: Concatenated, relative: Floats) -> Model
         legs = slice(every.legs[index], every.legs[index + 1])
         measured = run.measured.x + 1j * mirror * run.measured.y
         shape = chained(relative[legs])[0]
-        own.append({} if known else {START_YAW: fitted_heading(shape, measured)})
+        of = None if pieces is None else pieces[index]
+        own.append({} if known else {START_YAW: fitted_heading(shape, measured, of)})
     return model.turned({}, own)
 
 
@@ -132,11 +143,20 @@ def chained(relative: Floats) -> tuple[NDArray[np.complex128], Floats]:
     return np.concatenate([[0j], np.cumsum(steps)]), yaw
 
 
-def fitted_heading(predicted: NDArray[np.complex128], measured: NDArray[np.complex128]) -> float:
-    """Start heading that best aligns the predicted path with the measured one."""
+def fitted_heading(
+    predicted: NDArray[np.complex128],
+    measured: NDArray[np.complex128],
+    pieces: NDArray[np.intp] | None = None,
+) -> float:
+    """Start heading that best aligns the predicted path with the measured one, piece by piece."""
     known = np.isfinite(measured)
-    shape = predicted[known] - predicted[known][0]
-    return float(np.angle(np.sum(np.conj(shape) * (measured[known] - measured[known][0]))))
+    of = np.zeros(measured.size, dtype=np.intp) if pieces is None else pieces
+    total = 0j
+    for piece in np.unique(of[known & (of >= 0)]):
+        own = known & (of == piece)
+        shape = predicted[own] - predicted[own][0]
+        total += np.sum(np.conj(shape) * (measured[own] - measured[own][0]))
+    return float(np.angle(total))
 
 
 def _facing(

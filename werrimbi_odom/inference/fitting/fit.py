@@ -32,9 +32,14 @@ from werrimbi_odom.inference.fitting.gauss_newton import gauss_newton, is_small,
 from werrimbi_odom.inference.fitting.identifiable import Directions, determined, with_held_as_given
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, posterior_cost, with_known_noise
-from werrimbi_odom.inference.fitting.start_headings import first_heading, turned_to_all_sides
+from werrimbi_odom.inference.fitting.start_headings import (
+    first_heading,
+    only_first_heading,
+    turned_to_all_sides,
+)
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs, Point, stacked, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -92,7 +97,7 @@ def start_point(
     )
     if runs.headings_alone and options.sigma_yaw is None:
         guess = (*guess[:3], rules.TYPICAL_GYRO_WALK, *guess[4:])
-    own = tuple(_nuisances(robot, run) for run in runs.runs)
+    own = tuple(_nuisances(robot, run, options) for run in runs.runs)
     return Point(
         Model(robot, own),
         Variances(*(np.array([value**2]) for value in guess)),
@@ -245,9 +250,15 @@ def _scaled(variances: Variances, factor: float) -> Variances:
     return replace(variances, **scaled)
 
 
-def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
-    """Nuisance parameters of a run: what its reference does not measure."""
+def _nuisances(robot: Robot, run: MatchedRun, options: EvaluationOptions) -> dict[str, float]:
+    """Nuisance parameters of a run: what its reference does not measure, or nobody knows how well.
+
+    The noise of one heading cannot be estimated. Positions tell the heading better than a guess.
+    """
     heading = first_heading(robot, run)
+    if options.sigma_yaw is None and only_first_heading(run):
+        heading = float(run.measured.yaw[0])
+        heading = -heading if view_of(robot.effects).mirrored else heading
     own = {} if heading is None else {START_YAW: heading}
     if not run.measured.has_position.any():
         own[YAW_DRIFT] = 0.0  # a reference of headings only is a gyro, and gyros drift

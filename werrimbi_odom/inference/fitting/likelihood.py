@@ -227,12 +227,13 @@ def _alone(slopes: Floats) -> Floats:
     return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
 
 
-def relative_errors(run: MatchedRun, prediction: Prediction) -> Floats:
+def relative_errors(robot: Robot, run: MatchedRun, prediction: Prediction) -> Floats:
     """Measured minus predicted relative pose of each leg, shape (m, 3); NaN where not measured.
 
     In the frame of the robot at the leg's start, as measured by the reference.
     """
     measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
+    measured = right_handed(measured, view_of(robot.effects))
     return errors_between(measured[:-1], measured[1:], prediction)
 
 

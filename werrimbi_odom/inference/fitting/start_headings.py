@@ -9,11 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -31,12 +33,19 @@ def first_heading(robot: Robot, run: MatchedRun) -> float | None:
         pose += np.exp(1j * heading) * complex(x, y)
         heading += turn
         predicted.append(pose)
-    measured = run.measured.x + 1j * run.measured.y
+    mirror = -1.0 if view_of(robot.effects).mirrored else 1.0
+    measured = run.measured.x + 1j * mirror * run.measured.y
     usable = np.flatnonzero(run.measured.has_position)[:_FIRST_NODES]
     if usable.size < 2:
         return 0.0
     shape = np.array(predicted)[usable] - predicted[usable[0]]
     return float(np.angle(np.sum(np.conj(shape) * (measured[usable] - measured[usable[0]]))))
+
+
+def only_first_heading(run: MatchedRun) -> bool:
+    """Whether a heading was measured at the first pose alone, and positions tell it as well."""
+    told = run.measured.has_position.sum() >= rules.FEW_POSES
+    return bool(told and run.measured.has_yaw[0] and not run.measured.has_yaw[1:].any())
 
 
 def turned_to_the_first_legs(runs: Concatenated, point: Point) -> tuple[Point, float]:
