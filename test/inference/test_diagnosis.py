@@ -229,6 +229,25 @@ def test_few_poses_put_whole_drives_aside() -> None:
     assert first.ticks.time[-1] < last.ticks.time[0]
 
 
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+@pytest.mark.parametrize(
+    ("poses", "to_fit"),
+    [((2, 60), 60), ((2, 600), 452), ((40, 600), 490)],  # a quarter of the 600, or the two poses
+)
+def test_what_is_set_aside_does_not_hang_on_the_order_of_the_drives(
+    poses: tuple[int, int], to_fit: int, order: tuple[int, int]
+) -> None:
+    """A drive seen at its ends alone was all that was left to fit, where it came first."""
+    runs = []
+    for count in (poses[index] for index in order):
+        time = np.linspace(0.0, 60.0, count)
+        ticks = Ticks(np.linspace(0.0, 60.0, 601), np.arange(601), np.arange(601))
+        runs.append(Run(f"{count}", Path(f"{count}"), ticks, Reference(time, time, time, time)))
+    fitted, kept = set_aside(runs)
+    assert kept
+    assert sum(run.reference.time.size for run in fitted if run.reference) == to_fit
+
+
 def test_derivatives_worked_out_side_by_side_are_the_same_to_the_last_bit(
     laid: Concatenated, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,6 +10,9 @@ from dataclasses import dataclass, field
 
 from werrimbi_odom.model.pose import wrap
 
+A_TURN_AS_WRITTEN = 0.01
+"""How far bounds written in a few digits (3.14 or 3.1416) may miss a full turn [rad]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -67,6 +70,15 @@ class Parameter:
         """Largest distance from null that is physically possible."""
         return max(abs(bound - self.null) for bound in self.bounds)
 
+    @property
+    def is_direction(self) -> bool:
+        """Whether it is an angle that may take any direction: its bounds are a full turn apart.
+
+        Both bounds are then the same direction, and neither is a limit.
+        """
+        low, high = self.bounds
+        return self.unit == "rad" and abs(high - low - 2.0 * math.pi) < A_TURN_AS_WRITTEN
+
     def is_unrefined(self, value: float) -> bool:
         """Whether it would refine its law, and has the value of the law without it."""
         return self.refines and value == self.null
@@ -78,8 +90,7 @@ class Parameter:
         """
         if self.null == 1.0:
             return one * more
-        all_round = self.unit == "rad" and self.bounds[1] - self.bounds[0] > 2.0 * math.pi - 1e-6
-        return wrap(one + more) if all_round else one + more
+        return wrap(one + more) if self.is_direction else one + more
 
 
 @dataclass(frozen=True, slots=True)

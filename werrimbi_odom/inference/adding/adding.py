@@ -13,6 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
@@ -189,7 +191,9 @@ def _calibrations_wanted(effects: Sequence[Effect], set_up: SetUp) -> set[str]:
 
 def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
     for run in runs:
-        for channel in effect.lacks(run.ticks.channels):
+        columns = run.ticks.channels.items()
+        measured = [name for name, values in columns if np.isfinite(values).any()]
+        for channel in effect.lacks(measured):
             raise InputError(
                 f"{effect.name} looks at the measured channel {channel}, a column of "
                 f"ticks.csv, and {run.name} has none"

@@ -15,7 +15,6 @@ from werrimbi_odom.inference.adding.fitted_parameters import (
     parameters_of,
     undetermined,
     weakest,
-    without_phases_stuck,
 )
 from werrimbi_odom.inference.adding.start_values import (
     FitDrives,
@@ -155,12 +154,8 @@ def _without(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fi
 
 
 def _well(drives: FitDrives, start: Start, given: Robot) -> Fitted:
-    """A fit from a start, refined; phases stuck at half a turn are moved across it."""
+    """A fit from a start, refined."""
     fit = drives.fit(start.point, start.names, start.numbers, given)
-    turned = without_phases_stuck(fit.point.model, fit.numbers)
-    if turned is not None:
-        again = drives.fit(replace(fit.point, model=turned), start.names, start.numbers, given)
-        fit = min(fit, again, key=lambda each: each.cost)
     return refined(drives.laid, fit, given)
 
 

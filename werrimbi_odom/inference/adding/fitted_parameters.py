@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -107,12 +106,10 @@ def with_other_sign(
 
 def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> Remark:
     name = number.name.rpartition(".")[2]
-    # A per-run parameter may be an angle round a wheel, which has no bounds.
     item = effect.parameters[name]
-    is_place = item.per_run and item.unit == "rad"
     if not is_determined(item, value, std):
         return "undetermined"
-    free = is_place or item.refines
+    free = item.is_direction or item.refines
     return "bound" if not free and _at_bound(value, item) else "fitted"
 
 
@@ -235,20 +232,3 @@ def weakest(effect: Effect, found: Mapping[str, FittedParameter], limit: float) 
     }
     name = min(doubt, key=lambda key: doubt[key])
     return name if doubt[name] < limit else None
-
-
-def without_phases_stuck(model: Model, numbers: Sequence[FreeParameter]) -> Model | None:
-    """The model with phases stuck at half a turn moved across it; None if there are none."""
-    stuck = False
-    shared: dict[str, float] = {}
-    own: list[dict[str, float]] = [{} for _ in model.own]
-    for number in numbers:
-        if number.unit != "rad" or abs(number.bounds[1] - math.pi) > 1e-6:
-            continue
-        for index in range(len(own)) if number.per_run else [-1]:
-            value = model.value(number, max(index, 0))
-            if abs(value) > math.pi - 1e-4:
-                target = shared if index < 0 else own[index]
-                target[number.name] = -value
-                stuck = True
-    return model.turned(shared, own) if stuck else None

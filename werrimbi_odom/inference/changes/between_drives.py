@@ -238,7 +238,7 @@ def parameter_changes_of(
 
     `runs`: names of the drives, in order.
     """
-    units = {number.name: number.unit for number in numbers}
+    declared = {number.name: number for number in numbers}
     told: dict[tuple[str, int], ParameterChange] = {}
     for step in _as_steps(found.steps):
         first = step.shape.first
@@ -249,6 +249,9 @@ def parameter_changes_of(
         for name in step.group.numbers:
             index = names.index(name)
             spread = np.sqrt(np.maximum(found.spread[[before, after], index, index], 0.0))
+            number = declared.get(name)
+            levels = [float(found.levels[run, index]) for run in (before, after)]
+            here, there = levels if number is None else map(number.wrapped, levels)
             moved = ParameterChange(
                 name,
                 step.group.what,
@@ -256,11 +259,11 @@ def parameter_changes_of(
                 runs[max(step.span[0] - 1, 0)],
                 runs[first],
                 runs[step.span[1]],
-                float(found.levels[before, index]),
-                float(found.levels[after, index]),
+                here,
+                there,
                 float(spread[0]),
                 float(spread[1]),
-                units.get(name, ""),
+                "" if number is None else number.unit,
                 step.p_value,
             )
             told.setdefault((name, first), moved)

@@ -75,7 +75,7 @@ def homogeneity_of_effect(
             is_phase = parameter in (applied.effect.quadrature or ())[1:]
             own.append(column)
             of.append(parameter)
-            away.append(0.0 if is_phase and run >= 0 else model.value(number, max(run, 0)) - null)
+            away.append(0.0 if is_phase else model.value(number, max(run, 0)) - null)
     mine = [effect == name and parameter not in beyond for effect, _, parameter in whose]
     # Directions that the data do not determine were not fitted, and explain nothing of the effect.
     others = nuisance(flat @ fit.moves[:, ~fit.moves[mine].any(axis=0)])

@@ -21,26 +21,48 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
 
     Two stretches of each drive's reference are held out, at other places in every drive, so that
     all kinds of motion are on both sides. The counters run on through them, so that the memory of
-    an effect (a wheel's angle, the travel since a reversal, the distance) is the same on both. If a
-    drive has too few poses for that, whole drives are held out; of a single such drive, the last
-    quarter of its poses.
+    an effect (a wheel's angle, the travel since a reversal, the distance) is the same on both. Of
+    the drives that have too few poses for that, a quarter is held out whole; of a single such
+    drive, the last quarter of its poses.
     """
-    if all(_rows(run) >= rules.SET_ASIDE_ROWS for run in runs):
-        parts = [_parted(run, number) for number, run in enumerate(runs)]
-        return tuple(kept for kept, _ in parts), tuple(held for _, held in parts)
-    if len(runs) > 1:
-        count = max(1, round(len(runs) * len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS))
-        every = len(runs) / count
-        chosen = {int((number + 0.5) * every) for number in range(count)}
-        return (
-            tuple(run for index, run in enumerate(runs) if index not in chosen),
-            tuple(run for index, run in enumerate(runs) if index in chosen),
-        )
+    poses = [_rows(run) for run in runs]
+    few = [number for number, count in enumerate(poses) if count < rules.SET_ASIDE_ROWS]
+    if len(runs) > 1 or not few:
+        whole = _held_whole(few, poses)
+        fitted: list[Run] = []
+        held: list[Run] = []
+        for number, run in enumerate(runs):
+            if number in few:
+                (held if number in whole else fitted).append(run)
+                continue
+            kept, other = _parted(run, number)
+            fitted.append(kept)
+            held.append(other)
+        return tuple(fitted), tuple(held)
     (run,) = runs
     time = run.ticks.time if run.reference is None else run.reference.time[_measured(run.reference)]
     share = 1.0 - len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS
     at = float(np.quantile(time, share)) if time.size else np.inf
     return tuple(_between(runs, -np.inf, at)), tuple(_between(runs, at, np.inf))
+
+
+def _held_whole(few: Sequence[int], poses: Sequence[int]) -> set[int]:
+    """Indices of the drives that are held out whole, of the `few` that have few poses.
+
+    They are evenly spaced among them as given. Where these would have most of the poses, so that
+    next to nothing were left to fit, they are so in the order of their numbers of poses.
+    """
+    count = round(len(few) * len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS)
+    if len(few) == len(poses):
+        count = max(1, count)
+    if count == 0:
+        return set()
+    every = len(few) / count
+    chosen = {few[int((number + 0.5) * every)] for number in range(count)}
+    if 2 * sum(poses[number] for number in chosen) > sum(poses[number] for number in few):
+        rising = sorted(few, key=lambda number: poses[number])
+        chosen = {rising[int((number + 0.5) * every - 0.5)] for number in range(count)}
+    return chosen
 
 
 def _rows(run: Run) -> int:

@@ -85,8 +85,8 @@ class Concatenated:
 
     @property
     def channels(self) -> set[str]:
-        """Extra channels that all runs have."""
-        return set.intersection(*(set(run.counters.channels) for run in self.runs))
+        """Extra channels that all runs have, with values and not as an empty column."""
+        return set.intersection(*(set(run.channels) for run in self.runs))
 
     @property
     def headings_alone(self) -> bool:

@@ -176,6 +176,8 @@ def _with_fitted_noise(runs: Concatenated, point: Point) -> Point:
 
 
 def _at_bound(value: float, number: FreeParameter) -> bool:
+    if number.is_direction:
+        return False
     low, high = number.bounds_about(value)
     margin = 1e-6 * (high - low)
     return value <= low + margin or value >= high - margin

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.model.effect import Effect, Parameter
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
 
 MULTIPLIERS = (
@@ -54,11 +54,28 @@ class FreeParameter:
     """Whether each run has its own value."""
     refines: bool = False
     """Whether it is free only where it pays its penalty (`Parameter.refines`)."""
+    is_direction: bool = False
+    """Whether its bounds are one and the same direction (`Parameter.is_direction`)."""
 
     def bounds_about(self, value: float) -> tuple[float, float]:
-        """Bounds, widened to include a robot file's value beyond them."""
+        """Bounds, widened to include a robot file's value beyond them; a direction has none."""
+        if self.is_direction:
+            return -math.inf, math.inf
         (low, high), reach = self.bounds, 0.5 * abs(value)
         return (low if value >= low else value - reach, high if value <= high else value + reach)
+
+    def wrapped(self, value: float) -> float:
+        """The value as it is told and written: a direction within its bounds, others as they are.
+
+        A fit goes on across half a turn. What is no farther than that from the middle stays.
+        """
+        if not self.is_direction:
+            return value
+        low, high = self.bounds
+        middle = 0.5 * (low + high)
+        if abs(value - middle) > math.pi:
+            value = middle + wrap(value - middle)
+        return min(max(value, low), high)
 
 
 CALIBRATION = tuple(
@@ -87,6 +104,7 @@ def parameters_to_fit(effect: Effect, shared: Sequence[str] = ()) -> tuple[FreeP
             0.5 * (item.bounds[1] - item.bounds[0]),
             item.per_run and name not in shared,
             item.refines,
+            item.is_direction,
         )
         for name, item in effect.parameters.items()
         if not item.as_base

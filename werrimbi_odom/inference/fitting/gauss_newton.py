@@ -83,5 +83,6 @@ def moved(model: Model, design: Design, step: Floats) -> Model:
     for (number, index), move in zip(design.columns, step.tolist(), strict=True):
         target = shared if index < 0 else own[index]
         now = model.value(number, max(index, 0))
-        target[number.name] = float(np.clip(now + move, *number.bounds_about(now)))
+        there = float(np.clip(now + move, *number.bounds_about(now)))
+        target[number.name] = number.wrapped(there)
     return model.turned(shared, own)

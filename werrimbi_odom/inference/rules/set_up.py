@@ -24,6 +24,11 @@ ASKEW_BY = 0.15
 decides between explanations with the same number of mistakes: a mount that looks astern has a third
 of the prior of one that looks ahead, 10^(-0.15 pi)."""
 
+ONE_SIZE_OFF = 2.3
+"""Weight of one wheel that is beyond `ORDINARY` of the other by the file: a mistake, 1, and one of
+some twenty factors, 1.3. Exchanged counters ask for it where each counts otherwise and they are
+not exchanged."""
+
 TWIN_WITHIN = 0.7
 """Difference of weights up to which another explanation is reported as a twin: it is the right one
 on one robot in six (odds of 10^0.7 = 5)."""

@@ -14,9 +14,10 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,14 @@ class SetUpEstimate:
     identifiable."""
     arm: complex = 0j
     """Lever arm, ahead + i left of the measured point, rotated by -yaw [m]."""
+    ticks: float = 1.0
+    """Travel of a count of the file's right wheel over that of its left: what exchanged counters
+    were multiplied by is the other wheel's."""
+
+    def sizes(self, swapped: bool, base: float) -> tuple[float, float]:
+        """Ratios of each wheel's true travel to that by the robot file."""
+        left, right = abs(self.left) * base, abs(self.right) * base
+        return (right * self.ticks, left / self.ticks) if swapped else (left, right)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +55,8 @@ class Wired:
     right_reversed: bool
     yaw: float
     """Remaining mounting angle [rad]; 0 where not identifiable."""
+    unequal: bool = False
+    """Whether it needs, besides, one wheel far larger than the other by the robot file."""
 
     @property
     def of_wheels(self) -> bool:
@@ -58,7 +69,8 @@ class Wired:
         both = self.left_reversed and self.right_reversed
         reversals = rules.BOTH_REVERSED if both else float(self.left_reversed + self.right_reversed)
         askew = float(abs(self.yaw) > rules.ASKEW) + rules.ASKEW_BY * abs(self.yaw)
-        return float(self.swapped + self.mirrored) + reversals + askew
+        unequal = rules.ONE_SIZE_OFF * self.unequal
+        return float(self.swapped + self.mirrored) + reversals + askew + unequal
 
     def names(self) -> tuple[str, ...]:
         """Names of the mistakes, including a mounting angle."""
@@ -89,6 +101,8 @@ class Setting:
     """Ratio of the base to that of the robot file."""
     arm: complex = 0j
     """Lever arm, ahead + i left of the measured point [m]."""
+    ticks: float = 1.0
+    """As `SetUpEstimate.ticks`."""
 
     def numbers(self, track: float) -> tuple[float, float, complex, complex]:
         """Regression coefficients that this set-up predicts: left, right, half base, arm."""
@@ -98,7 +112,7 @@ class Setting:
         axis = cmath.exp(-1j * wired.yaw)
         half_base = 0.5 * base * axis
         if wired.swapped:
-            left, right, half_base = -right, -left, -half_base
+            left, right, half_base = -right * self.ticks, -left / self.ticks, -half_base
         return left, right, half_base, self.arm * axis
 
 
@@ -106,7 +120,11 @@ AS_ENTERED = Setting(Wired(False, False, False, False, 0.0), 1.0, 1.0, 1.0)
 
 
 def wirings(estimate: SetUpEstimate) -> list[Wired]:
-    """All combinations that explain the measured signs, simplest first."""
+    """All combinations that explain the measured signs, simplest first.
+
+    Only exchanged counters are told as a finding, not a mirrored reference, which looks the same
+    where both wheels count alike.
+    """
     left_back, right_back = estimate.left < 0.0, estimate.right < 0.0
     yaw = estimate.yaw
     straight = Wired(False, False, left_back, right_back, _angle(yaw))
@@ -114,16 +132,22 @@ def wirings(estimate: SetUpEstimate) -> list[Wired]:
     crossed = Wired(True, False, not right_back, not left_back, _angle(yaw, math.pi))
     seen = Wired(False, True, not left_back, not right_back, _angle(yaw, math.pi, -1.0))
     both = Wired(True, True, right_back, left_back, _angle(yaw, 0.0, -1.0))
-    return sorted([straight, crossed, seen, both], key=lambda each: each.mistakes)
+    ways = [
+        replace(way, unequal=not is_ordinary(right / left))
+        for way in (straight, crossed, seen, both)
+        for left, right in [estimate.sizes(way.swapped, 1.0)]
+    ]
+    ways.sort(key=lambda each: each.mistakes)
+    first = next(each for each in ways if not each.mirrored)
+    return [first, *(each for each in ways if each is not first)]
 
 
 def setting_of(estimate: SetUpEstimate, wired: Wired, track: float) -> Setting:
     """Set-up with this wiring; where only yaw is measured, the base is assumed right."""
     base = track if estimate.base is None else estimate.base
-    left, right = abs(estimate.left) * base, abs(estimate.right) * base
-    if wired.swapped:
-        left, right = right, left
-    return Setting(wired, left, right, base / track, estimate.arm * cmath.exp(1j * wired.yaw))
+    arm = estimate.arm * cmath.exp(1j * wired.yaw)
+    sizes = estimate.sizes(wired.swapped, base)
+    return Setting(wired, *sizes, base / track, arm, estimate.ticks)
 
 
 def twins_of(name: str, ways: list[Wired]) -> tuple[str, ...]:

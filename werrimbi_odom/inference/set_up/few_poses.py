@@ -26,7 +26,13 @@ from werrimbi_odom.inference.set_up.explanation import (
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.misentered_values import FACTORS
-from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, effective_track
+from werrimbi_odom.inference.set_up.records import (
+    Cuts,
+    SetUpRecord,
+    cut,
+    effective_track,
+    ratio_of_ticks,
+)
 from werrimbi_odom.inference.set_up.regression import errors, path_swept
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -53,18 +59,19 @@ def search_sparse(
     if cuts.count == 0:
         return [], None
     drives = _Drives(cuts, track, measured == "pose")
+    ticks = ratio_of_ticks(robot)
     tried = sorted(
-        ((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True
+        ((drives.fits(each), i, each) for i, each in enumerate(_settings(ticks))), reverse=True
     )
     (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
     if best < given + rules.SPARSE_MARGIN:
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
-    ways = wirings(SetUpEstimate(left, right, 2.0 * abs(half_base), yaw))
+    estimate = SetUpEstimate(left, right, 2.0 * abs(half_base), yaw, ticks=ticks)
+    ways = wirings(estimate)
     # With a mirrored reference the same signs predict something else.
     upright = [way for way in ways if not way.mirrored]
-    estimate = SetUpEstimate(left, right, 2.0 * abs(half_base), yaw)
     same = [setting_of(estimate, way, track) for way in upright]
     for value, _, other in tried[1:]:
         if value < best - rules.SPARSE_APART:
@@ -91,7 +98,7 @@ def _thinned(cuts: Cuts) -> Cuts:
     return replace(cuts, left=left, right=right, begin=begin, end=end)
 
 
-def _settings() -> Iterator[Setting]:
+def _settings(ticks: float = 1.0) -> Iterator[Setting]:
     """All wirings, correct ones first, each with at most one factor."""
     for half_turn in (0.0, math.pi):
         for swapped in (False, True):
@@ -105,7 +112,7 @@ def _settings() -> Iterator[Setting]:
                 )
                 if half_turn and swapped:
                     continue  # equals neither, by algebra
-                plain = replace(AS_ENTERED, wired=wired)
+                plain = replace(AS_ENTERED, wired=wired, ticks=ticks)
                 yield plain
                 for factor in FACTORS.values():
                     yield replace(plain, left=factor, right=factor)

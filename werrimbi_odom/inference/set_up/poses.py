@@ -23,7 +23,13 @@ from werrimbi_odom.inference.set_up.explanation import (
     wirings,
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, arm_finding, findings_of
-from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, effective_track
+from werrimbi_odom.inference.set_up.records import (
+    Cuts,
+    SetUpRecord,
+    cut,
+    effective_track,
+    ratio_of_ticks,
+)
 from werrimbi_odom.inference.set_up.regression import (
     HeadingRegression,
     Moving,
@@ -131,6 +137,7 @@ def search_poses(
         2.0 * abs(half_base),
         -cmath.phase(half_base),
         fit.moving.arm,
+        ratio_of_ticks(robot),
     )
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)

@@ -26,6 +26,7 @@ from werrimbi_odom.inference.set_up.records import (
     SetUpRecord,
     cut,
     effective_track,
+    ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import swept
 from werrimbi_odom.model.pose import Floats
@@ -181,7 +182,7 @@ def search_positions(
         half_base, arm = windows.half_base(left, right), 0j
     if half_base <= 0.0:
         return [], None
-    estimate = SetUpEstimate(left, right, 2.0 * half_base, None, arm)
+    estimate = SetUpEstimate(left, right, 2.0 * half_base, None, arm, ratio_of_ticks(robot))
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)
 

@@ -172,6 +172,13 @@ def effective_track(robot: Robot) -> float:
     return robot.wheel_separation * sizes_of(robot).base
 
 
+def ratio_of_ticks(robot: Robot) -> float:
+    """Travel of a count of the right wheel by the robot file over that of the left."""
+    sizes = sizes_of(robot)
+    left, right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+    return (sizes.right / right) / (sizes.left / left)
+
+
 def cut(
     records: Sequence[SetUpRecord], robot: Robot, measured: Measure, *, fewest: int = rules.CUTS
 ) -> Cuts:

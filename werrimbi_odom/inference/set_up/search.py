@@ -46,6 +46,7 @@ from werrimbi_odom.inference.set_up.records import (
     cut,
     effective_track,
     measured_by,
+    ratio_of_ticks,
     record_of,
 )
 from werrimbi_odom.inference.set_up.regression import HeadingRegression, swept, turning
@@ -212,7 +213,7 @@ def _search_headings(
     if fit is None or not _is_sure(fit):
         return [], None
     track = effective_track(robot)
-    estimate = SetUpEstimate(fit.left, fit.right, None, None)
+    estimate = SetUpEstimate(fit.left, fit.right, None, None, ticks=ratio_of_ticks(robot))
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)
 
