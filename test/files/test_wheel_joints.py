@@ -55,6 +55,22 @@ def test_castors_and_steering_are_not_driven(name: str) -> None:
     assert told(turned) == (("left_wheel",), ("right_wheel",))
 
 
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        (("wheel_f_l_joint", "wheel_r_l_joint"), ("wheel_f_r_joint", "wheel_r_r_joint")),
+        (("wheel_l_f", "wheel_l_r"), ("wheel_r_f", "wheel_r_r")),
+        (("left_wheel_f", "left_wheel_r"), ("right_wheel_f", "right_wheel_r")),
+        (("fl_wheel", "rl_wheel"), ("fr_wheel", "rr_wheel")),
+        (("l_wheel",), ("r_wheel",)),
+        (("wheel_r_l",), ("wheel_r_r",)),
+    ],
+)
+def test_r_may_be_rear_or_right(left: tuple[str, ...], right: tuple[str, ...]) -> None:
+    """A rear left wheel is on one side alone."""
+    assert told(dict.fromkeys((*left, *right), 40.0)) == (left, right)
+
+
 def test_wheels_that_a_urdf_names_are_believed() -> None:
     turned = {"axis_1": 30.0, "axis_2": 30.0, "axis_3": 0.1}
     found = joints_told_apart(tuple(turned), turned, (("axis_2",), ("axis_1",)))

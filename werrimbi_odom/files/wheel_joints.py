@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -37,6 +37,8 @@ UNDRIVEN = ("cast", "steer", "swivel", "suspension", "rocker", "bogie")
 """Parts of the names of joints near a wheel that are not driven or do not roll."""
 
 SIDES = ("left", "right")
+ALONG = ("f", "b", "m", "c")
+"""Letters for front, back, middle and centre in the names of joints."""
 TURN = 2.0 * math.pi
 _ROUNDING = 1e-3  # [rad], for angles that restart at each turn and so stay within one
 
@@ -90,7 +92,7 @@ def _by_names(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     able = [name for name in joints if not is_no_wheel(name)]
     for named in ([name for name in able if "wheel" in name.lower()], able):
-        left, right = (tuple(name for name in named if is_of(name, side)) for side in SIDES)
+        left, right = (tuple(name for name in named if is_of(name, side, named)) for side in SIDES)
         if left and right:
             rolled = [
                 tuple(name for name in side if turned.get(name, 0.0) > TURN)
@@ -102,16 +104,46 @@ def _by_names(
     return (), ()
 
 
-def is_of(name: str, side: str) -> bool:
-    """Whether a joint's name contains this side."""
-    parts = name.lower().replace("-", "_").split("_")
-    return (
-        side in name.lower()
-        or side[0] in parts
-        or any(
-            part in (f"f{side[0]}", f"r{side[0]}", f"{side[0]}f", f"{side[0]}r") for part in parts
-        )
+def is_of(name: str, side: str, among: Collection[str] = ()) -> bool:
+    """Whether a joint's name contains this side.
+
+    The letter r may mean rear. A name of both sides goes by its word, else by two letters as in fl,
+    else by its last letter that is not along the robot: `among`, all joints, tells, as where
+    another has f (wheel_f_l beside wheel_r_l, or wheel_l_f beside wheel_l_r).
+    """
+    told = {each: _told_by(name, each) for each in SIDES}
+    if not all(told.values()):
+        return bool(told[side])
+    first = min(map(min, told.values()))
+    ranked = [each for each in SIDES if first in told[each]]
+    if len(ranked) == 1:
+        return side in ranked
+    if first < 2:
+        return True
+    parts, others = _parts(name), [_parts(each) for each in among]
+    alike = [each for each in others if len(each) == len(parts)]
+    letters = [
+        part
+        for place, part in enumerate(parts)
+        if part in ("l", "r") and not any(each[place] in ALONG for each in alike)
+    ]
+    return not letters or letters[-1] == side[0]
+
+
+def _told_by(name: str, side: str) -> set[int]:
+    """What tells a side in a name: 0 its word, 1 two letters, 2 its letter."""
+    parts = set(_parts(name))
+    letter = side[0]
+    told = (
+        side in name.lower(),
+        bool(parts & {f"f{letter}", f"r{letter}", f"{letter}f", f"{letter}r"}),
+        letter in parts,
     )
+    return {kind for kind, found in enumerate(told) if found}
+
+
+def _parts(name: str) -> list[str]:
+    return name.lower().replace("-", "_").split("_")
 
 
 def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
