@@ -15,7 +15,7 @@ import pytest
 
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.bag import BagMessage, opened_bag
 from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
 
@@ -122,7 +122,7 @@ def test_a_message_that_cannot_be_read_ends_the_look_and_raises_nothing() -> Non
             header = SimpleNamespace(stamp=stamp)
             for angle in (0.0, 9.0):
                 content = SimpleNamespace(header=header, name=["a"], position=[angle], velocity=[])
-                yield SimpleNamespace(content=content, received=1)
+                yield BagMessage("/joint_states", 1, content)
             raise InputError(f"a message of {topics[0]} cannot be read")
 
     assert turned_joints(Spoilt(), "/joint_states") == {"a": 9.0}  # type: ignore[arg-type]

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import re
 from array import array
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -23,6 +24,7 @@ from werrimbi_odom.files.bag_contents import JOINT_STATE, Contents, Wheels
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_ticks import wished_ticks
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.unstamped import with_stamps
 from werrimbi_odom.model.pose import Floats
 
 _NO_WHEELS = """
@@ -156,7 +158,7 @@ def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
     angles: dict[str, _Values] = {}
     speeds: dict[str, _Values] = {}
     with suppress(InputError):
-        for message in bag.messages([topic]):
+        for message in with_stamps(bag.messages([topic]), Counter()):
             content = message.content
             time = stamp_of(message)
             for found, values in ((angles, content.position), (speeds, content.velocity)):
