@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.own_headings import words_about_own_headings
+from werrimbi_odom.files.row_order import in_order
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
 from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable, replacing
@@ -162,12 +163,14 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         _measured(table, name, minimum=0.0) if name in table.names else None
         for name in SIGMA_COLUMNS
     ]
-    reference = Reference(_times(table), x, y, yaw, *sigmas)
+    reference, was_sorted = in_order(Reference(_times(table), x, y, yaw, *sigmas))
     reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
     keep, late = _on_time(reference)
     remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
+    if was_sorted:
+        remarks += (f"{path.name}: its rows are not in the order of time; they are sorted by t_s",)
     remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
     remarks += _whole_seconds(table, reference.time)
     return (reference if keep.all() else reference.chosen(keep)), remarks
