@@ -238,6 +238,14 @@ def test_a_counter_that_wraps(seed: int, signed: bool, period: int, words: str) 
         refuse_wrong_columns(wrong, bits)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_one_wrap_at_32_bits_is_no_longitude(seed: int) -> None:
+    """The leap of 4 294 967 296 counts is as far as the globe is from degrees."""
+    wrong = counted(driven(seed), lambda total: (total - total[0] - 200) % (1 << 32))
+    with pytest.raises(InputError, match="wraps at 32 bits: write encoder_bits: 32 into"):
+        refuse_wrong_columns(wrong)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_counters_without_a_sign(seed: int) -> None:
     """Of an encoder with one channel."""

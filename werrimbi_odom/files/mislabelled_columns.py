@@ -25,6 +25,7 @@ from werrimbi_odom.files.counter_columns import (
     TAKES,
     turns_by_wheels,
     what_counters_hold,
+    wraps_words,
 )
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -78,7 +79,8 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
         _other_unit_of_time(ticks, reference)
         or _rounded_times(ticks, reference)
         or words_about_metres(ticks, reference, robot)
-        or words_about_globe(ticks, reference, robot)
+        # The leap of a 32-bit counter is as many counts as degrees would make.
+        or ("" if wraps_words(ticks) else words_about_globe(ticks, reference, robot))
         or what_counters_hold(ticks, reference)
         or _degrees(ticks, reference)
         or _no_heading(ticks, reference)
