@@ -24,6 +24,7 @@ FILTERS = (
     *("combined", "fused", "robot_localization"),
 )
 """Words in the names of filter outputs, which fuse the wheels."""
+FUSED = "a filter's output, which fuses the wheels"
 
 UNFILTERED = ("unfiltered", "raw", "wheel")
 """Words in the names of odometry beside a filter's output under a plain name, as linorobot's."""
@@ -45,7 +46,7 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     if _words(topic, parent, child) & SENSORS:
         return ""
     if is_filtered(topic):
-        return "a filter's output, which fuses the wheels"
+        return FUSED
     frames = f"{parent} -> {child}" if parent and child else (parent or child)
     if is_odometry_frame(parent) and (is_base(child) or not child):
         return f"{frames} is the robot's own odometry, made from its wheels"
