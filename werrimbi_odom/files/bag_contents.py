@@ -29,6 +29,7 @@ from werrimbi_odom.files.own_odometry import (
     is_asked_for,
     is_base,
     is_filtered,
+    is_map,
     is_odometry_frame,
     is_unfiltered,
     why_from_wheels,
@@ -215,7 +216,7 @@ def _frame_of(message: Any) -> str:
 
 def _is_of_room(name: str) -> bool:
     """Whether it is a frame that does not move with the robot, by its name."""
-    return is_odometry_frame(name) or name in ("map", "world")
+    return is_odometry_frame(name) or is_map(name) or name == "world"
 
 
 def _measured(topic: Topic, first: Any) -> Measured:

@@ -93,6 +93,11 @@ def is_odometry_frame(frame: str) -> bool:
     return "odom" in frame.rpartition("/")[2].lower()
 
 
+def is_map(frame: str) -> bool:
+    """Whether a frame is a localiser's map, perhaps of one of several robots, by its name."""
+    return frame.rpartition("/")[2] == "map"
+
+
 def _words(*names: str) -> set[str]:
     found = {word for name in names for word in re.findall(r"[a-z0-9]+", name.lower())}
     return found | {word.rstrip("0123456789") for word in found}
