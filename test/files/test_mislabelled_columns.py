@@ -208,6 +208,18 @@ def test_longitude_and_latitude_are_no_metres(seed: int) -> None:
     refuse_wrong_columns(still)
 
 
+def test_a_gyro_that_is_dead_measured_no_turn() -> None:
+    """Of an IMU that gives its orientation alone: the robot "turned 99.99 % less"."""
+    run = driven(2)
+    assert run.reference is not None
+    nowhere, zeros = np.full(run.reference.x.shape, np.nan), np.zeros(run.reference.x.shape)
+    dead = seen(run, x=nowhere, y=nowhere, yaw=zeros)
+    with pytest.raises(InputError, match="is 0 in all rows, while the wheels turn the robot"):
+        refuse_wrong_columns(dead)
+    ahead = Ticks(run.ticks.time, run.ticks.left, run.ticks.left)
+    refuse_wrong_columns(replace(dead, ticks=ahead))  # a simulated gyro, straight on
+
+
 def test_a_yaw_that_was_never_measured() -> None:
     wrong = seen(driven(2), yaw=lambda it: np.zeros(it.yaw.shape))
     with pytest.raises(InputError, match=r"is 0 in all rows, while the path turns.* leave that"):
