@@ -28,6 +28,8 @@ REFERENCE_COLUMNS = ("t_s", "x_m", "y_m", "yaw_rad")
 FEWEST_WHOLE, SELDOM = 20, 10.0
 """Rows whose times are all whole seconds and are taken for rounded, and the interval [s] from which
 that matters little."""
+UNSIGNED = (2.0**63, 2.0**64)
+"""Range in which only counters of 64 bits without a sign come; there floats are 2048 apart."""
 LATEST = 1e12
 """Upper limit of a time in seconds [s]; Unix time in milliseconds or nanoseconds exceeds it."""
 SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
@@ -141,11 +143,22 @@ def _counts(table: CsvTable, name: str) -> Counts:
     if np.isfinite(values).all() and np.abs(values).max() >= EXACT:
         exact = table.integers(name)
         return counts if exact is None else exact
+    if ((values >= UNSIGNED[0]) & (values <= UNSIGNED[1])).any():
+        table.refuse_where(name, _not_a_whole_count)
     return counts
 
 
 def _not_a_count(text: str) -> str:
     return "" if text else "it is empty; write nan where a reading is missing, or leave the row out"
+
+
+def _not_a_whole_count(text: str) -> str:
+    if math.isfinite(float(text)):
+        return ""
+    return (
+        f"{text!r} is no count; leave the row out: counters of 64 bits without a sign are exact "
+        "where all rows are whole numbers"
+    )
 
 
 def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
