@@ -16,6 +16,7 @@ import pytest
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, opened_bag
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
 
@@ -144,6 +145,25 @@ def test_a_topic_of_landmarks_is_not_taken_for_wheels(tmp_path: Path, ros: Any) 
         entries.append(("/joints", n, ros.joints(n * MS, ["left_wheel", "right_wheel"], [n, n])))
     said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
     assert "Wheels: /joints, angles of the wheels" in said
+
+
+@pytest.mark.parametrize(("speed", "told"), [(0.01, "/odom, the robot's own"), (0.0, "/joint_sta")])
+def test_joints_that_never_turn_are_not_the_wheels_of_odometry_that_moves(
+    tmp_path: Path, ros: Any, robot: Any, speed: float, told: str
+) -> None:
+    """A joint_state_publisher beside Gazebo's driver: all was "carried or turned by hand"."""
+    names = ["left_wheel_joint", "right_wheel_joint"]
+    entries = []
+    for n in range(1, 100):
+        entries.append(("/joint_states", 10 * n * MS, ros.joints(10 * n * MS, names, [0.0, 0.0])))
+        entries.append(("/odom", 10 * n * MS, ros.odometry(10 * n * MS, speed * n, 0.0, 0.0)))
+    bag = ros.write(tmp_path / "bag", entries)
+    assert f"Wheels: {told}" in " ".join(wo.info(bag).summary().split())
+    said = "the wheels never turn in it, as where a joint_state_publisher alone sends them"
+    assert any(
+        said in words and "--ticks-topic /odom" in words for words in read_run(bag, robot()).damage
+    )
+    assert not read_run(bag, robot(), ticks_topic="/odom").damage
 
 
 ARM_JOINT = """<joint name="{name}" type="revolute">

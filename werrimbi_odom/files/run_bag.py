@@ -13,14 +13,14 @@ from typing import NamedTuple, Protocol
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, BagMessage, opened_bag, topic_in_words
 from werrimbi_odom.files.bag_chain import ChainCollector, mounting_chain
-from werrimbi_odom.files.bag_contents import SCAN, Contents, Wheels, contents_of
+from werrimbi_odom.files.bag_contents import JOINT_STATE, SCAN, Contents, Wheels, contents_of
 from werrimbi_odom.files.bag_laser_scans import LidarCollector
 from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Collected, Reference, Run
+from werrimbi_odom.files.run import Collected, Reference, Run, Ticks
 from werrimbi_odom.files.stamps import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.text_files import readable
 from werrimbi_odom.files.unstamped import unstamped_words, with_stamps
@@ -79,11 +79,23 @@ def read_run_bag(
         ticks,
         found.reference,
         (f"ticks from {source.name} ({source.kind})", *notes, *found.notes),
-        damage=(*bag.damage, *unstamped, *found.damage, *clocks),
+        damage=(*bag.damage, *unstamped, *found.damage, *clocks, *_stand(held, source, ticks)),
         no_reference=lacking,
         circle=found.circle,
         wheels_from=source.gives,
         taken_out=found.taken_out,
+    )
+
+
+def _stand(held: Contents, source: Wheels, ticks: Ticks) -> tuple[str, ...]:
+    """Remark on wheels that never turn, where odometry may hold the drive."""
+    others = [each.name for each in held.wheels if each.gives == "odometry"]
+    turned = any((counts != counts[0]).any() for counts in (ticks.left, ticks.right))
+    if source.kind != JOINT_STATE or turned or not others:
+        return ()
+    return (
+        f"{source.name}: the wheels never turn in it, as where a joint_state_publisher alone sends "
+        f"them; if the robot drove, --ticks-topic {others[0]} holds how",
     )
 
 

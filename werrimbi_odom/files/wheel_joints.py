@@ -23,6 +23,7 @@ from werrimbi_odom.files.bag import Bag, stamp_of
 from werrimbi_odom.files.bag_contents import JOINT_STATE, Contents, Wheels
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_ticks import wished_ticks
+from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.unstamped import with_stamps
 from werrimbi_odom.model.pose import Floats
@@ -232,20 +233,38 @@ def chosen_wheels(
             turned = turned_joints(bag, each.name)
             joints = joints_told_apart(tuple(turned), turned, (known[0], known[1]))
             each = replace(each, joints=tuple(turned))
+        if each.kind == ODOMETRY and any(map(_stands, found)) and not _moves(bag, each.name):
+            continue
         found.append((each, joints))
-        if each.kind != JOINT_STATE or joints.left:
+        if each.kind != JOINT_STATE or (joints.left and not _stands(found[-1])):
             break
     return min(found, key=_rank, default=(None, WheelJoints()))
 
 
 def _rank(found: tuple[Wheels, WheelJoints]) -> int:
-    """Rank: wheels by name or message, then joints that roll, then odometry, then others."""
+    """Rank: wheels by name or message, joints that roll, odometry, then others and what stands."""
     wheels, joints = found
     if wheels.gives == "odometry":
         return 2
     if wheels.joints and not joints.left:
         return 1 if joints.rolled else 3
-    return 0
+    return 3 if _stands(found) else 0
+
+
+def _stands(found: tuple[Wheels, WheelJoints]) -> bool:
+    """Whether wheels that are known by name never turn, as where nothing measures them."""
+    _, joints = found
+    turned = joints.turned or {}
+    return bool(joints.left) and not any(turned[name] for name in (*joints.left, *joints.right))
+
+
+def _moves(bag: Bag, topic: str) -> bool:
+    """Whether odometry moves."""
+    with suppress(InputError):
+        poses = (message.content.pose.pose for message in bag.sampled(topic, 1000))
+        held = {(each.position.x, each.position.y, each.orientation.z) for each in poses}
+        return len(held) > 1
+    return False
 
 
 def of_another_robot(contents: Contents, wheels: Wheels | None) -> set[str]:
