@@ -16,6 +16,7 @@ import werrimbi_odom as wo
 from test.command_line import Werrimbi
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.model.trajectory import trajectory
 
 RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"
@@ -96,6 +97,61 @@ def test_a_clock_that_is_set_back_is_told_with_row_and_time(
     err = said(2, run)
     assert "go back in time first in row 101 of" in err
     assert f"to {float(again[0].split(',')[0]):.10g}: the clock was set back; cut the run" in err
+
+
+def _reordered(run: Path, order: Callable[[list[str]], list[str]]) -> str:
+    """The reference with its rows in another order; its text as it was."""
+    text = (run / "reference.csv").read_text()
+    header, *rows = text.splitlines()
+    (run / "reference.csv").write_text("\n".join([header, *order(rows)]) + "\n")
+    return text
+
+
+def _positions_then_headings(rows: list[str]) -> list[str]:
+    cells = [row.split(",") for row in rows]
+    positions = [",".join([t, x, y, ""]) for t, x, y, _ in cells]
+    return positions + [",".join([t, "", "", yaw]) for t, _, _, yaw in cells]
+
+
+@pytest.mark.parametrize(
+    "order",
+    [
+        lambda rows: rows[len(rows) // 2 :] + rows[: len(rows) // 2],
+        lambda rows: [rows[(n * 7919) % len(rows)] for n in range(len(rows))],
+        _positions_then_headings,
+    ],
+    ids=["halves", "shuffled", "positions and headings"],
+)
+def test_rows_of_a_reference_in_another_order_are_sorted(
+    run: Path, order: Callable[[list[str]], list[str]]
+) -> None:
+    """Those that go back in time were dropped without a word, and the rest was judged."""
+    first = read_run_folder(run).reference
+    _reordered(run, order)
+    read = read_run_folder(run)
+    assert first is not None
+    assert read.reference is not None
+    for name in ("x", "y", "yaw"):
+        known = np.isfinite(values := getattr(read.reference, name))
+        assert np.array_equal(read.reference.time[known], first.time)
+        assert np.array_equal(values[known], getattr(first, name))
+    assert any("not in the order of time; they are sorted by t_s" in each for each in read.damage)
+
+
+@pytest.mark.parametrize(
+    ("by", "told"),
+    [(-5.0, "the clock was set back; cut the run"), (-65.536, "a clock of 16 bits began anew")],
+)
+def test_a_reference_whose_clock_is_set_back_is_told(
+    run: Path, said: Callable[..., str], by: float, told: str
+) -> None:
+    def order(rows: list[str]) -> list[str]:
+        return rows[:100] + later("\n".join(["t_s", *rows[100:]]), by).splitlines()[1:]
+
+    _reordered(run, order)
+    err = said(2, run)
+    assert "the reference goes back in time first in row 101 of" in err
+    assert told in err
 
 
 def test_a_bag_without_a_reference_lists_what_it_has_and_what_can_be_one(

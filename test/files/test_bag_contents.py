@@ -286,6 +286,14 @@ def test_of_several_poses_one_may_have_no_stamps(tmp_path: Path, ros: Any) -> No
     assert {each.name for each in held.independent} == {"/vicon/pose", "/pose2D"}
 
 
+def test_fixes_that_a_filter_fused_are_no_satellites(tmp_path: Path, ros: Any) -> None:
+    """navsat_transform gives the filter's positions back as a NavSatFix: the wheels are in them."""
+    entries = [(name, 2, ros.fix(2 * MS, (60.0, 25.0))) for name in ("/gps/filtered", "/gps/fix")]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.independent] == ["/gps/fix"]
+    assert held.references[-1].why == "a filter's output, which fuses the wheels"
+
+
 def test_points_in_no_frame_come_after_satellites(tmp_path: Path, ros: Any) -> None:
     """A car's speed and steering, sent as a point."""
     kind = "geometry_msgs/msg/PointStamped"

@@ -60,6 +60,28 @@ def test_files_of_a_recording_that_was_killed(tmp_path: Path, ros: Any, robot: A
     assert run.damage
 
 
+@pytest.mark.parametrize("plugin", ["mcap", "sqlite3", "ros1"])
+@pytest.mark.parametrize(("later", "apart"), [(600.0, "600 s apart"), (-0.9, "overlap")])
+def test_several_recordings_in_a_folder_are_not_one(
+    tmp_path: Path, ros: Any, robot: Any, plugin: str, later: float, apart: str
+) -> None:
+    """Two finished drives were "cut off or never finished", and one of 660 s."""
+    folder = tmp_path / "drives"
+    folder.mkdir()
+    for number, name in enumerate(("a", "b")):
+        shift = round(number * (1.0 + later) * 1e9)
+        entries = [(topic, at + shift, each) for topic, at, each in drive(ros, 1000)]
+        if plugin == "ros1":
+            ros.write_ros1(folder / f"{name}.bag", entries)
+        else:
+            part = ros.write(tmp_path / name, entries, plugin)
+            file = next(each for each in part.iterdir() if each.suffix != ".yaml")
+            file.rename(folder / f"{name}{file.suffix}")
+    with pytest.raises(InputError, match=rf"recordings of their own .*{apart}.* give each") as said:
+        read_run(folder, robot())
+    assert f"{folder / 'a'}." in str(said.value)
+
+
 @pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
 def test_a_file_that_was_renamed_is_read_beside_its_old_metadata(
     tmp_path: Path, ros: Any, robot: Any, plugin: str

@@ -60,6 +60,22 @@ def test_a_covariance_of_each_pose_is_kept(tmp_path: Path, ros: Any, robot: Any)
     assert reference.kind == "local_map", "on a map: AMCL, SLAM"
 
 
+@pytest.mark.parametrize(("frame", "kind"), [("robot1/map", "local_map"), ("mocap", None)])
+def test_a_huge_variance_is_unknown_and_a_map_may_have_a_namespace(
+    tmp_path: Path, ros: Any, robot: Any, frame: str, kind: str | None
+) -> None:
+    """Publishers write 1e6 for unknown: the reference's own noise was 1e+06 mm."""
+    entries = []
+    for n, pose in enumerate(POSES[:2], start=1):
+        of, message = ros.pose_with_covariance(n * MS, *pose, (1e6, 1e6, 99999.0))
+        message.header.frame_id = frame
+        entries.append(("/amcl", n + 1, (of, message)))
+    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    assert reference is not None
+    assert (reference.sigma_xy, reference.sigma_yaw) == (None, None)
+    assert reference.kind == kind
+
+
 def test_poses_without_a_stamp_are_of_when_they_came(tmp_path: Path, ros: Any, robot: Any) -> None:
     """Motion capture gives Pose2D; how far a controller is from its goal is no pose."""
     entries = []

@@ -287,6 +287,35 @@ def test_wheels_of_a_side_that_do_not_turn_alike(
     )
 
 
+@pytest.mark.parametrize("every", [1, 3, 10])
+def test_two_nodes_that_publish_the_wheels(
+    tmp_path: Path, ros: Any, robot: Any, every: int
+) -> None:
+    """A joint_state_publisher's zeros beside the driver's angles: 6034 m in a minute."""
+    entries = []
+    for n in range(300):
+        at = (1 + 20 * n) * MS
+        entries.append(("/joint_states", at, ros.joints(at, WHEELS, [0.1 * n, 0.12 * n])))
+        if n % every == 0:
+            entries.append(("/joint_states", at + MS, ros.joints(at + MS, WHEELS, [0.0, 0.0])))
+    with pytest.raises(InputError, match=r"left_wheel_joint jumps to and fro .* two nodes publish"):
+        read_run(ros.write(tmp_path / "bag", entries), robot())
+
+
+@pytest.mark.parametrize("faults", [0, 5])
+def test_a_robot_that_rocks_or_whose_counter_errs_has_one_node(
+    tmp_path: Path, ros: Any, robot: Any, faults: int
+) -> None:
+    """Read seldom, a wheel that is rocked is elsewhere in each message."""
+    angles = 6.0 * np.sin(2.0 * np.arange(400))
+    angles[50 : 50 + 50 * faults : 50] += 1000.0
+    entries = [
+        ("/joint_states", n * 100 * MS, ros.joints(n * 100 * MS, WHEELS, [each, each]))
+        for n, each in enumerate(angles, start=1)
+    ]
+    assert read_run(ros.write(tmp_path / "bag", entries), robot()).ticks.rows == 400
+
+
 def test_angles_are_not_read_as_counts(tmp_path: Path, ros: Any, robot: Any) -> None:
     entries = [
         ("/joint_states", n * MS, ros.joints(n * MS, WHEELS, [0.31 * n, 0.3 * n]))

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,6 +51,66 @@ def test_a_negative_multiplier_of_a_controller_is_a_reversed_wheel(tmp_path: Pat
     assert [each.name for each in robot.effects] == ["right_wheel_reversed"]
     assert robot.left_wheel_radius_multiplier == 1.01
     assert robot.right_wheel_radius_multiplier == 1.0
+
+
+OF_ROS_1 = """jackal_velocity_controller:
+  type: "diff_drive_controller/DiffDriveController"
+  left_wheel: [motor_1, motor_3]
+  right_wheel: motor_2
+  wheel_separation: 0.4
+  wheel_radius: 0.098
+  wheel_separation_multiplier: 1.5
+  wheel_radius_multiplier: 0.98
+"""
+
+
+def test_a_controllers_file_of_ros_1_is_read_by_its_names(tmp_path: Path) -> None:
+    """Its multiplier was dropped without a word, and its joints were not looked at."""
+    path = tmp_path / "jackal.yaml"
+    path.write_text(OF_ROS_1)
+    found = of_controller(path)
+    assert (found.left, found.right) == (("motor_1", "motor_3"), ("motor_2",))
+    assert found.more == {
+        "wheel_separation_multiplier": 1.5,
+        "left_wheel_radius_multiplier": 0.98,
+        "right_wheel_radius_multiplier": 0.98,
+    }
+
+
+@pytest.mark.parametrize("value", ["true", ".inf", ".nan", "-0.1", "1 cm"])
+def test_a_size_of_a_controller_is_a_number(tmp_path: Path, value: str) -> None:
+    path = tmp_path / "jackal.yaml"
+    path.write_text(OF_ROS_1.replace("0.098", value))
+    with pytest.raises(wo.InputError, match=r"jackal\.yaml: wheel_radius must be a number greater"):
+        of_controller(path)
+    path.write_text(OF_ROS_1.replace("0.98", value))
+    if value == "-0.1":
+        assert of_controller(path).reversed == ("left", "right")
+        return
+    with pytest.raises(wo.InputError, match=r"jackal\.yaml: wheel_radius_multiplier must be a num"):
+        of_controller(path)
+
+
+def test_names_that_the_bag_told_are_not_said_to_be_of_the_file(tmp_path: Path, ros: Any) -> None:
+    path, joints = tmp_path / "sizes.yaml", ["left_wheel", "right_wheel"]
+    entries = [
+        ("/joint_states", n * 10**8, ros.joints(n * 10**8, joints, [0.1 * n, 0.2 * n]))
+        for n in range(1, 100)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    for names, told in (
+        ("[a, b]", "the bag's joints, by their names"),
+        (str(joints[:1]), "of sizes"),
+    ):
+        path.write_text(
+            f"c:\n  wheel_separation: 0.4\n  wheel_radius: 0.1\n  left_wheel_names: {names}\n"
+            "  right_wheel_names: [right_wheel]\n"
+        )
+        out = tmp_path / "robot.yaml"
+        wo.info(bag, robot=path, out=out, force=True)
+        line = next(each for each in out.read_text().splitlines() if "left_wheel_names" in each)
+        assert line.split("#")[0].split() == ["left_wheel_names:", '["left_wheel"]']
+        assert told in line
 
 
 def test_a_file_without_wheels_is_refused(tmp_path: Path) -> None:

@@ -208,6 +208,18 @@ def test_longitude_and_latitude_are_no_metres(seed: int) -> None:
     refuse_wrong_columns(still)
 
 
+def test_a_gyro_that_is_dead_measured_no_turn() -> None:
+    """Of an IMU that gives its orientation alone: the robot "turned 99.99 % less"."""
+    run = driven(2)
+    assert run.reference is not None
+    nowhere, zeros = np.full(run.reference.x.shape, np.nan), np.zeros(run.reference.x.shape)
+    dead = seen(run, x=nowhere, y=nowhere, yaw=zeros)
+    with pytest.raises(InputError, match="is 0 in all rows, while the wheels turn the robot"):
+        refuse_wrong_columns(dead)
+    ahead = Ticks(run.ticks.time, run.ticks.left, run.ticks.left)
+    refuse_wrong_columns(replace(dead, ticks=ahead))  # a simulated gyro, straight on
+
+
 def test_a_yaw_that_was_never_measured() -> None:
     wrong = seen(driven(2), yaw=lambda it: np.zeros(it.yaw.shape))
     with pytest.raises(InputError, match=r"is 0 in all rows, while the path turns.* leave that"):
@@ -236,6 +248,14 @@ def test_a_counter_that_wraps(seed: int, signed: bool, period: int, words: str) 
     if period != 2000:
         bits = replace(ROBOT, encoder_bits=period.bit_length() - 1)
         refuse_wrong_columns(wrong, bits)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_one_wrap_at_32_bits_is_no_longitude(seed: int) -> None:
+    """The leap of 4 294 967 296 counts is as far as the globe is from degrees."""
+    wrong = counted(driven(seed), lambda total: (total - total[0] - 200) % (1 << 32))
+    with pytest.raises(InputError, match="wraps at 32 bits: write encoder_bits: 32 into"):
+        refuse_wrong_columns(wrong)
 
 
 @pytest.mark.parametrize("seed", range(6))

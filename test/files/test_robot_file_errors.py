@@ -97,6 +97,14 @@ def complaint(path: Path, text: str | bytes) -> str:
         (_with("odom_frame_id: 7"), ", line 7: odom_frame_id must be a text, not 7"),
         (_with("left_wheel_names: a"), ", line 7: left_wheel_names must be a list of names"),
         (_with("left_wheel_names: []"), ", line 7: left_wheel_names must be a list of names"),
+        (
+            _with("left_wheel_names: [a, b]\n    right_wheel_names: [c, b]"),
+            ", line 8: b is in left_wheel_names and in right_wheel_names; name the joint of each",
+        ),
+        (
+            _with("left_wheel_names: [right_wheel_joint]"),
+            ", line 7: right_wheel_joint is in left_wheel_names and in right_wheel_names",
+        ),
         (_with("left_wheel_names: [a, 1]"), ", line 7: left_wheel_names must be a list of names"),
         (
             _with("effects: [lateral_slop]"),

@@ -93,6 +93,20 @@ def test_readings_that_failed_are_kept_for_the_model_to_count(tmp_path: Path) ->
     assert ticks.time.tolist() == [0.0, 1.0, 0.5], "order is the model's business too"
 
 
+def test_counters_of_64_bits_without_a_sign_are_exact(tmp_path: Path) -> None:
+    """Below zero they are 1.8e19, where floats are 2048 counts apart."""
+    text = TICKS.strip()
+    for n, count in enumerate((3, 1, -1, -4, -2, 5)):
+        text += f"\n{n},{count % 2**64},{(count - 100) % 2**64}"
+    ticks = read_run_folder(folder(tmp_path, text + "\n")).ticks
+    assert np.diff(ticks.left).tolist() == [-2, -2, -3, 2, 7]
+    assert np.diff(ticks.right).tolist() == [-2, -2, -3, 2, 7]
+    said = complaint(folder(tmp_path, text + "\n6,nan,5\n"))
+    assert said.startswith(
+        "ticks.csv, line 8, column left_ticks: 'nan' is no count; leave the row out"
+    )
+
+
 def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
     text = "t_s,x_m,y_m,yaw_rad,sigma_xy_m,sigma_yaw_rad,z_m\n0,1,2,,0.01,,9\n1,,,3,,0.1,9\n"
     reference = read_run_folder(folder(tmp_path, FINE, text)).reference

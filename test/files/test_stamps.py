@@ -121,3 +121,47 @@ def test_receipt_tells_whether_two_clocks_run_at_one_rate(
     run = read_run(ros.write(tmp_path / "bag", entries), robot())
     assert run.reference is not None
     assert run.reference.one_rate is one_rate
+
+
+def _drive_of_a_simulation(ros: Any, unstamped: str) -> list[Any]:
+    """Stamped from ten seconds on, received in 2025; the first message of a topic has no stamp."""
+    entries = []
+    for n in range(40):
+        stamp, received = 10 * 1000 * MS + 50 * n * MS, 1_750_000_000 * 10**9 + 50 * n * MS
+        for topic, make in (
+            ("/joint_states", lambda t, n=n: ros.joints(t, WHEELS, [0.1 * n, 0.2 * n])),
+            ("/mocap", lambda t, n=n: ros.pose(t, 0.01 * n, 0.0, 0.0)),
+        ):
+            without = topic == unstamped and n == 0
+            entries.append((topic, received, make(0 if without else stamp)))
+    return entries
+
+
+@pytest.mark.parametrize("topic", ["/joint_states", "/mocap"])
+def test_one_message_without_a_stamp_is_left_out(
+    tmp_path: Path, ros: Any, robot: Any, topic: str
+) -> None:
+    """When it was received is by another clock: the ticks "went back in time" by 55 years."""
+    path = ros.write(tmp_path / "bag", _drive_of_a_simulation(ros, topic))
+    run = read_run(path, robot())
+    assert run.reference is not None
+    for time in (run.ticks.time, run.reference.time):
+        assert (np.diff(time) > 0.0).all()
+    assert min(run.ticks.rows, run.reference.time.size) == 39
+    assert run.ticks.time.max() == run.reference.time.max()
+    assert any(words.startswith(f"{topic}: 1 of its messages has no stamp") for words in run.damage)
+    with opened_bag(path) as bag:
+        assert "no stamps" not in _clock(topic, stamps_of(bag, [topic])[topic])
+
+
+def test_a_sender_that_never_stamps_is_told_by_receipt(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Beside an arm's node, which sends to the same topic and stamps."""
+    entries = []
+    for n in range(1, 40):
+        entries.append(("/joint_states", 50 * n * MS, ros.joints(50 * n * MS, ["arm"], [0.0])))
+        entries.append(("/joint_states", 50 * n * MS, ros.joints(0, WHEELS, [0.1 * n, 0.2 * n])))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    np.testing.assert_allclose(run.ticks.time, 0.05 * np.arange(1, 40))
+    assert not run.damage

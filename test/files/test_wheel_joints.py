@@ -15,7 +15,8 @@ import pytest
 
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.bag import BagMessage, opened_bag
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
 
@@ -53,6 +54,22 @@ def test_names_are_all_there_is_where_the_robot_hardly_moved() -> None:
 def test_castors_and_steering_are_not_driven(name: str) -> None:
     turned = {name: 20.0, "left_wheel": 30.0, "right_wheel": 30.0}
     assert told(turned) == (("left_wheel",), ("right_wheel",))
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        (("wheel_f_l_joint", "wheel_r_l_joint"), ("wheel_f_r_joint", "wheel_r_r_joint")),
+        (("wheel_l_f", "wheel_l_r"), ("wheel_r_f", "wheel_r_r")),
+        (("left_wheel_f", "left_wheel_r"), ("right_wheel_f", "right_wheel_r")),
+        (("fl_wheel", "rl_wheel"), ("fr_wheel", "rr_wheel")),
+        (("l_wheel",), ("r_wheel",)),
+        (("wheel_r_l",), ("wheel_r_r",)),
+    ],
+)
+def test_r_may_be_rear_or_right(left: tuple[str, ...], right: tuple[str, ...]) -> None:
+    """A rear left wheel is on one side alone."""
+    assert told(dict.fromkeys((*left, *right), 40.0)) == (left, right)
 
 
 def test_wheels_that_a_urdf_names_are_believed() -> None:
@@ -106,7 +123,7 @@ def test_a_message_that_cannot_be_read_ends_the_look_and_raises_nothing() -> Non
             header = SimpleNamespace(stamp=stamp)
             for angle in (0.0, 9.0):
                 content = SimpleNamespace(header=header, name=["a"], position=[angle], velocity=[])
-                yield SimpleNamespace(content=content, received=1)
+                yield BagMessage("/joint_states", 1, content)
             raise InputError(f"a message of {topics[0]} cannot be read")
 
     assert turned_joints(Spoilt(), "/joint_states") == {"a": 9.0}  # type: ignore[arg-type]
@@ -128,6 +145,25 @@ def test_a_topic_of_landmarks_is_not_taken_for_wheels(tmp_path: Path, ros: Any) 
         entries.append(("/joints", n, ros.joints(n * MS, ["left_wheel", "right_wheel"], [n, n])))
     said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
     assert "Wheels: /joints, angles of the wheels" in said
+
+
+@pytest.mark.parametrize(("speed", "told"), [(0.01, "/odom, the robot's own"), (0.0, "/joint_sta")])
+def test_joints_that_never_turn_are_not_the_wheels_of_odometry_that_moves(
+    tmp_path: Path, ros: Any, robot: Any, speed: float, told: str
+) -> None:
+    """A joint_state_publisher beside Gazebo's driver: all was "carried or turned by hand"."""
+    names = ["left_wheel_joint", "right_wheel_joint"]
+    entries = []
+    for n in range(1, 100):
+        entries.append(("/joint_states", 10 * n * MS, ros.joints(10 * n * MS, names, [0.0, 0.0])))
+        entries.append(("/odom", 10 * n * MS, ros.odometry(10 * n * MS, speed * n, 0.0, 0.0)))
+    bag = ros.write(tmp_path / "bag", entries)
+    assert f"Wheels: {told}" in " ".join(wo.info(bag).summary().split())
+    said = "the wheels never turn in it, as where a joint_state_publisher alone sends them"
+    assert any(
+        said in words and "--ticks-topic /odom" in words for words in read_run(bag, robot()).damage
+    )
+    assert not read_run(bag, robot(), ticks_topic="/odom").damage
 
 
 ARM_JOINT = """<joint name="{name}" type="revolute">

@@ -238,7 +238,10 @@ def _of_bag(
         if source is None and joints.turned:
             known = (first.left, first.right)
             joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
-            first = replace(first, left=joints.left, right=joints.right)
+            told = dict(first.told or {})
+            if (joints.left, joints.right) != known and "joints" in told:
+                told["joints"] = "the bag's joints, by their names"
+            first = replace(first, left=joints.left, right=joints.right, told=told)
         others = of_another_robot(contents, wheels)
         ours = [each for each in contents.references if each.name not in others]
         reference = _best(ours, reference_topic)

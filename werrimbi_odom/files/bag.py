@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.driver_messages import Types
 from werrimbi_odom.files.echoed_topics import Parsed, echoed_files, echoed_messages, echoed_topic
+from werrimbi_odom.files.several_bags import refuse_several
 from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
 
 ROS1 = ".bag"
@@ -139,6 +140,7 @@ def opened_bag(path: Path) -> Iterator[Bag]:
     except Exception as error:  # as above
         scanned = None
         if not isinstance(error, InputError) and _is_cut_off(path):
+            refuse_several(path, _files(path))
             scanned = _scanned(path, ros1)
         if scanned is None:
             raise _unreadable(path, error) from error

@@ -24,10 +24,12 @@ from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Edge, EdgeCollector, chains_to_base, frame
 from werrimbi_odom.files.measured_topic import Measured, Measures, preference
 from werrimbi_odom.files.own_odometry import (
+    FUSED,
     ODOMETRY,
     is_asked_for,
     is_base,
     is_filtered,
+    is_map,
     is_odometry_frame,
     is_unfiltered,
     why_from_wheels,
@@ -214,7 +216,7 @@ def _frame_of(message: Any) -> str:
 
 def _is_of_room(name: str) -> bool:
     """Whether it is a frame that does not move with the robot, by its name."""
-    return is_odometry_frame(name) or name in ("map", "world")
+    return is_odometry_frame(name) or is_map(name) or name == "world"
 
 
 def _measured(topic: Topic, first: Any) -> Measured:
@@ -230,8 +232,9 @@ def _measured(topic: Topic, first: Any) -> Measured:
         reason = moved_words(child) if _is_of_room(child) else ""
         why = reason or "walls and furniture; its scans are matched with those of the last metres"
     elif kind == FIX:
-        parent, child, reason = "", parent, ""
-        why = "satellites"
+        parent, child = "", parent
+        reason = FUSED if "filtered" in topic.name.lower().replace("unfiltered", "") else ""
+        why = reason or "satellites"
     else:
         reason = why_from_wheels(topic.name, kind, parent, child)
         why = reason or f"poses in {parent or 'a frame of their own'}, of a sensor or a localiser"

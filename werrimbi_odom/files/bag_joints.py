@@ -18,6 +18,7 @@ from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of
 from werrimbi_odom.files.parameters import WHOLE_COUNTS
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import WORKED_OUT, Ticks, counts_of, integrated
+from werrimbi_odom.files.two_publishers import leaps_to_and_fro
 from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
@@ -95,6 +96,7 @@ class JointsCollector:
         in_radians = values["position_unit"] == "radians"
         counts = positions * (per_turn / (2.0 * math.pi)) if in_radians else positions
         bits = int(values["encoder_bits"])  # type: ignore[arg-type]
+        self._refuse_two_nodes(side, counts, per_turn, bits)
         self._refuse_unlike(side, time, counts, per_turn, bits)
         self._refuse_other_unit(in_radians, positions)
         return counts_of(side_counts(counts, per_turn, bits))
@@ -113,6 +115,20 @@ class JointsCollector:
                 f"{self._place}: its positions are whole numbers, and so counts, no angles; they "
                 "are read with position_unit: ticks and left_ticks_per_revolution in the robot file"
             )
+
+    def _refuse_two_nodes(self, side: str, counts: Floats, per_turn: float, bits: int) -> None:
+        """Raise if a second node publishes a wheel: what both say is no way of it."""
+        for name, column in zip(self._sides[side == "right"], counts.T, strict=True):
+            rolled = np.cumsum(differences(column, bits)[0]) if bits else column
+            if count := leaps_to_and_fro(rolled / per_turn):
+                raise InputError(
+                    f"{self._place}: the position of {name} jumps to and fro between two sequences "
+                    f"in {count} of {column.size} messages: two nodes publish it (the driver, and "
+                    "a joint_state_publisher perhaps, which sends zeros). `ros2 topic info -v` "
+                    "lists them; stop the one that does not measure, and record again. The "
+                    "driver's own odometry, where it was recorded, still holds the drive: "
+                    "--ticks-topic names it"
+                )
 
     def _refuse_unlike(
         self, side: str, time: Floats, counts: Floats, per_turn: float, bits: int

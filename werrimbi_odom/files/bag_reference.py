@@ -18,6 +18,7 @@ from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.measured_topic import Measured
+from werrimbi_odom.files.own_odometry import is_map
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind, integrated
 from werrimbi_odom.files.stamps import newest_of_bursts
@@ -28,6 +29,9 @@ NAN = math.nan
 
 LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
 """Message type of localisers."""
+UNKNOWN_PLACE, UNKNOWN_TURN = 1e3, math.pi**2
+"""Variances [m^2, rad^2] from which they stand for "unknown" (1e6, 99999, 1000): 32 m, or half a
+turn, is the noise of no reference by which legs can be judged."""
 
 
 class _Row(NamedTuple):
@@ -91,7 +95,7 @@ class ReferenceCollector:
         told = f"{told}, {mounted}" if mounted else told
         told = f"{told}; {left_out}" if left_out else told
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
-        if self._source.kind == LOCALISED and parent == "map":
+        if self._source.kind == LOCALISED and is_map(parent):
             kind = "local_map"  # AMCL, SLAM: their errors drift
         if self._source.kind == FIX:
             kind = "local_map"  # atmosphere and multipath: errors persist for a minute
@@ -154,14 +158,14 @@ def _of_pose_with_covariance(message: BagMessage) -> Iterator[_Row]:
     stamped = message.content.pose
     measured = planar(stamped.pose.position, stamped.pose.orientation)
     xx, yy, yawyaw = (float(stamped.covariance[place]) for place in (0, 7, 35))
-    sigmas = _deviation(0.5 * (xx + yy)), _deviation(yawyaw)
+    sigmas = _deviation(0.5 * (xx + yy)), _deviation(yawyaw, UNKNOWN_TURN)
     name = frame(message.content.header.frame_id)
     yield _Row((name, ""), (stamp_of(message), *measured, *sigmas))
 
 
-def _deviation(variance: float) -> float:
-    """Standard deviation of a variance; publishers write zero for unknown."""
-    return math.sqrt(variance) if 0.0 < variance < math.inf else NAN
+def _deviation(variance: float, unknown: float = UNKNOWN_PLACE) -> float:
+    """Standard deviation of a variance; publishers write zero, or a huge one, for unknown."""
+    return math.sqrt(variance) if 0.0 < variance < unknown else NAN
 
 
 def _of_transform(message: BagMessage) -> Iterator[_Row]:

@@ -9,6 +9,7 @@ import itertools
 import re
 import warnings
 from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -54,13 +55,16 @@ class CsvTable:
         return np.ascontiguousarray(self.values[:, self.names.index(name)])
 
     def integers(self, name: str) -> NDArray[np.int64] | None:
-        """A column as exact integers beyond the range of floats; None if it has other values."""
-        kinds = [(str(i), "i8" if item == name else "f8") for i, item in enumerate(self.names)]
-        try:
-            rows = _loaded(_lines(self.path, self.cut), np.dtype(kinds))
-        except ValueError:
-            return None
-        return np.ascontiguousarray(rows[str(self.names.index(name))])
+        """A column as exact integers beyond the range of floats; None if it has other values.
+
+        Of integers without a sign, the upper half stands for those below zero.
+        """
+        for whole in ("i8", "u8"):
+            kinds = [(str(i), whole if item == name else "f8") for i, item in enumerate(self.names)]
+            with suppress(ValueError):
+                rows = _loaded(_lines(self.path, self.cut), np.dtype(kinds))
+                return np.ascontiguousarray(rows[str(self.names.index(name))]).view(np.int64)
+        return None
 
     def refuse_where(self, name: str, wrong: Callable[[str], str]) -> None:
         """Raise on the first invalid cell of a column.

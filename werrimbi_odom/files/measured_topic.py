@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from werrimbi_odom.files.frames import Chain
+from werrimbi_odom.files.own_odometry import is_map
 
 Measures = Literal["poses", "positions", "yaw"]
 
@@ -59,5 +60,5 @@ def preference(each: Measured) -> tuple[bool, int, bool, bool, bool]:
     errors are new in each pose, where those on a map wander.
     """
     measures = ("poses", "positions", "yaw").index(each.measures)
-    tracked = each.kind in TRACKED and each.parent not in ("", "map")
+    tracked = each.kind in TRACKED and each.parent != "" and not is_map(each.parent)
     return each.aboard, measures, each.is_scan, each.through_wheels, not tracked

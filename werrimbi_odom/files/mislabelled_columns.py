@@ -25,6 +25,7 @@ from werrimbi_odom.files.counter_columns import (
     TAKES,
     turns_by_wheels,
     what_counters_hold,
+    wraps_words,
 )
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -62,6 +63,9 @@ YAW_IN_DEGREES = (
     "pi/180; of a gyro, its rates)"
 )
 
+LEAST_TURNED = 0.5
+"""Turn by the wheels that any heading must show [rad]; straight on, they differ by some degrees."""
+
 FAR, FAR_STEPS = 0.05, 20.0
 """Distance [m], and in typical steps of the reference, beyond which a pose of zeros is none."""
 
@@ -78,10 +82,12 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
         _other_unit_of_time(ticks, reference)
         or _rounded_times(ticks, reference)
         or words_about_metres(ticks, reference, robot)
-        or words_about_globe(ticks, reference, robot)
+        # The leap of a 32-bit counter is as many counts as degrees would make.
+        or ("" if wraps_words(ticks) else words_about_globe(ticks, reference, robot))
         or what_counters_hold(ticks, reference)
         or _degrees(ticks, reference)
         or _no_heading(ticks, reference)
+        or _no_turn(ticks, reference, robot)
     )
     if words:
         raise InputError(f"{run.path}: {words}")
@@ -218,6 +224,22 @@ def _no_heading(ticks: Ticks, reference: Reference) -> str:
         "clockwise, and must count anticlockwise from the x axis (minus that column; of a compass, "
         "pi/2 minus it), or x_m and y_m are not of one right-handed frame (exchanged: east is x, "
         "north is y; or one with the wrong sign: y points down)"
+    )
+
+
+def _no_turn(ticks: Ticks, reference: Reference, robot: Robot) -> str:
+    """Headings alone that never change: no gyro that measures is without noise."""
+    known = reference.yaw[reference.has_yaw]
+    if reference.has_position.any() or known.size < FEWEST or np.ptp(known) > 0.0:
+        return ""
+    turn = (ticks.right * robot.right_tick - ticks.left * robot.left_tick) / robot.track
+    turned = float(np.nanmax(turn) - np.nanmin(turn)) if np.isfinite(turn).any() else 0.0
+    if turned < LEAST_TURNED:
+        return ""
+    return (
+        f"the reference's heading is {known[0]:g} in all rows, while the wheels turn the robot by "
+        f"{np.degrees(turned):.0f}°: no turn was measured (an IMU that gives its orientation alone "
+        "has yaw rates of 0, and is no gyro); take another reference"
     )
 
 

@@ -24,6 +24,7 @@ FILTERS = (
     *("combined", "fused", "robot_localization"),
 )
 """Words in the names of filter outputs, which fuse the wheels."""
+FUSED = "a filter's output, which fuses the wheels"
 
 UNFILTERED = ("unfiltered", "raw", "wheel")
 """Words in the names of odometry beside a filter's output under a plain name, as linorobot's."""
@@ -45,7 +46,7 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     if _words(topic, parent, child) & SENSORS:
         return ""
     if is_filtered(topic):
-        return "a filter's output, which fuses the wheels"
+        return FUSED
     frames = f"{parent} -> {child}" if parent and child else (parent or child)
     if is_odometry_frame(parent) and (is_base(child) or not child):
         return f"{frames} is the robot's own odometry, made from its wheels"
@@ -90,6 +91,11 @@ def is_base(frame: str) -> bool:
 def is_odometry_frame(frame: str) -> bool:
     """Whether a frame is the origin of odometry, by its name."""
     return "odom" in frame.rpartition("/")[2].lower()
+
+
+def is_map(frame: str) -> bool:
+    """Whether a frame is a localiser's map, perhaps of one of several robots, by its name."""
+    return frame.rpartition("/")[2] == "map"
 
 
 def _words(*names: str) -> set[str]:

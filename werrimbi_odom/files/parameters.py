@@ -253,3 +253,17 @@ def virtual_ticks(values: Mapping[str, Value], given: Container[str]) -> dict[st
     if values["encoder_bits"]:
         raise InputError(f"encoder_bits needs {' and '.join(TICKS)}")
     return dict.fromkeys(TICKS, VIRTUAL_TICKS_PER_REVOLUTION)
+
+
+def on_both_sides(values: Mapping[str, Value]) -> list[str]:
+    """Joints that are named left and right, in words: such a robot would never turn."""
+    left, right = (values[f"{side}_wheel_names"] for side in ("left", "right"))
+    assert isinstance(left, tuple)
+    assert isinstance(right, tuple)
+    if values["input_type"] != "joint_state":
+        return []
+    return [
+        f"{name} is in left_wheel_names and in right_wheel_names; name the joint of each side"
+        for name in left
+        if name in right
+    ]

@@ -38,6 +38,7 @@ from werrimbi_odom.files.parameters import (
     doubtful_sizes,
     find,
     limits_of,
+    on_both_sides,
     robot_of,
     tolerance_of,
     virtual_ticks,
@@ -168,6 +169,8 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
         values.update(ticks)
     except InputError as error:
         wrong.append((line_of(block, "encoder_bits"), str(error)))
+    named = "right_wheel_names" if "right_wheel_names" in block else "left_wheel_names"
+    wrong += [(line_of(block, named), each) for each in on_both_sides(values)]
     told = [f"line {line}: {words}" for line, words in sorted(wrong)]
     remarks = [*in_parts, *remark_on(unused), *remark_on(of_turtlebot, "TurtleBot3's driver")]
     if taken:
@@ -191,9 +194,9 @@ def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -
     try:
         robot_of(values)
     except ValueError as error:  # a product of values is invalid, though each value is valid
-        named = [name for name in re.findall(r"\w+", str(error)) if name in given]
+        names_of = [name for name in re.findall(r"\w+", str(error)) if name in given]
         # The value farthest from 1 is the probable typo.
-        worst = max(named, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
+        worst = max(names_of, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
         raise InputError(f"{path}, line {line_of(block, worst)}: {error}") from None
     found = effects.applied()
     remarks += doubtful_sizes(values)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,16 +13,17 @@ from typing import NamedTuple, Protocol
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, BagMessage, opened_bag, topic_in_words
 from werrimbi_odom.files.bag_chain import ChainCollector, mounting_chain
-from werrimbi_odom.files.bag_contents import SCAN, Contents, Wheels, contents_of
+from werrimbi_odom.files.bag_contents import JOINT_STATE, SCAN, Contents, Wheels, contents_of
 from werrimbi_odom.files.bag_laser_scans import LidarCollector
 from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Collected, Reference, Run
+from werrimbi_odom.files.run import Collected, Reference, Run, Ticks
 from werrimbi_odom.files.stamps import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.text_files import readable
+from werrimbi_odom.files.unstamped import unstamped_words, with_stamps
 
 Progress = Callable[[float], None]
 """Callback for the share of the work done."""
@@ -59,7 +61,7 @@ def read_run_bag(
         collectors = [_collector(path, held, each, robot_file) for each in chosen]
         late = [Lateness(each) for each in (ticks_of, *collectors)]
         topics = [each.topics for each in (source, *collectors)]
-        _collect(bag, list(zip(topics, late, strict=True)), progress)
+        unstamped = _collect(bag, list(zip(topics, late, strict=True)), progress)
     ticks, notes = ticks_of.ticks()
     collected = [each.reference() for each in collectors]
     ticks, collected, clocks = on_one_clock(ticks, collected, [each.usual for each in late])
@@ -77,11 +79,23 @@ def read_run_bag(
         ticks,
         found.reference,
         (f"ticks from {source.name} ({source.kind})", *notes, *found.notes),
-        damage=(*bag.damage, *found.damage, *clocks),
+        damage=(*bag.damage, *unstamped, *found.damage, *clocks, *_stand(held, source, ticks)),
         no_reference=lacking,
         circle=found.circle,
         wheels_from=source.gives,
         taken_out=found.taken_out,
+    )
+
+
+def _stand(held: Contents, source: Wheels, ticks: Ticks) -> tuple[str, ...]:
+    """Remark on wheels that never turn, where odometry may hold the drive."""
+    others = [each.name for each in held.wheels if each.gives == "odometry"]
+    turned = any((counts != counts[0]).any() for counts in (ticks.left, ticks.right))
+    if source.kind != JOINT_STATE or turned or not others:
+        return ()
+    return (
+        f"{source.name}: the wheels never turn in it, as where a joint_state_publisher alone sends "
+        f"them; if the robot drove, --ticks-topic {others[0]} holds how",
     )
 
 
@@ -107,7 +121,7 @@ def read_reference_bag(
         held = _contents_of(bag, robot_file, reference_topic)
         chosen = _chosen(held, nothing, reference_topic, force)
         collectors = [_collector(path, held, each, robot_file) for each in chosen]
-        _collect(bag, [(each.topics, each) for each in collectors], None)
+        unstamped = _collect(bag, [(each.topics, each) for each in collectors], None)
     collected = [each.reference() for each in collectors]
     found = _put_together(held, nothing, chosen, collectors, collected)
     if found.reference is None:
@@ -115,7 +129,7 @@ def read_reference_bag(
         raise InputError(
             f"{path}: there is no reference in it ({kinds_in_words()}); the bag has {told}"
         )
-    damage = (*bag.damage, *found.damage)
+    damage = (*bag.damage, *unstamped, *found.damage)
     return found._replace(damage=tuple(f"{path}: {words}" for words in damage))
 
 
@@ -137,16 +151,18 @@ def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[C
 
 def _collect(
     bag: Bag, takers: Sequence[tuple[Sequence[str], _Taker]], progress: Progress | None
-) -> None:
-    """Pass each message of a bag to the collectors of its topic."""
+) -> tuple[str, ...]:
+    """Pass each message of a bag to the collectors of its topic; what was left out, in words."""
     wanted = {name for names, _ in takers for name in names}
     total = sum(topic.messages for topic in bag.topics if topic.name in wanted)
-    for number, message in enumerate(bag.messages(sorted(wanted))):
+    left_out: Counter[str] = Counter()
+    for number, message in enumerate(with_stamps(bag.messages(sorted(wanted)), left_out)):
         for names, taker in takers:
             if message.topic in names:
                 taker.take(message)
         if progress is not None and number % 1000 == 0:
             progress(min(number / total, 1.0))
+    return unstamped_words(left_out)
 
 
 class _Taker(Protocol):

@@ -13,23 +13,14 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns, words_about_one_clock_unit
+from werrimbi_odom.files.row_order import FEW_STEPS_BACK, began_anew, clock_was_set_back
 from werrimbi_odom.files.run import WORKED_OUT, Reference, Run, Ticks
 from werrimbi_odom.model.encoder_online import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-FEW_STEPS_BACK = 3
-"""More steps back in time than this are unsorted rows and not a clock set back."""
 REVERSED = 0.9
 """Share of steps back in time from which rows are taken for reversed; shuffled ones have half."""
-CLOCKS = tuple((bits, unit) for bits in (32, 16) for unit in (1.0, 1e-3, 1e-6))
-"""Bits of a board's clock, and what t_s has for each of its ticks: as it is, or milliseconds or
-microseconds as seconds."""
-WRAPS_WITHIN = 5.0
-"""Usual intervals of rows by which the step back may be off: a message may be late or lost."""
-WRAPS_SHARE = 0.1
-"""Share of the period that these may be: rows in no order step back by anything."""
-
 APART = 5.0
 """Largest time between reference and ticks that a search for the delay covers [s]
 (docs/set_up.md)."""
@@ -48,7 +39,9 @@ def refuse_unjudgeable(run: Run, robot: Robot) -> None:
         )
     _refuse_reversed(run, "the ticks go", run.ticks.time)
     _refuse_reversed(run, "the reference goes", run.reference.time)
-    _refuse_back(run)
+    _refuse_back(run, "the ticks go", run.ticks.time)
+    if clock_was_set_back(run.reference):
+        _refuse_back(run, "the reference goes", run.reference.time)
     if words := words_about_one_clock_unit(run.ticks, run.reference):
         raise InputError(f"{run.path}: {words}")
     _refuse_apart(run, run.reference)
@@ -83,37 +76,26 @@ def _refuse_reversed(run: Run, what: str, time: Floats) -> None:
         )
 
 
-def _refuse_back(run: Run) -> None:
-    time = run.ticks.time
+def _refuse_back(run: Run, what: str, time: Floats) -> None:
     latest = np.maximum.accumulate(time)
     back = np.flatnonzero(np.diff(time) < -CLOCK_JUMP)
     if back.size == 0:
         return
     row = int(back[0]) + 1
     where = (
-        f"{run.path}: the ticks go back in time {_times(int(back.size))}first in row {row + 1} of "
-        f"{run.ticks.rows}, from t_s {latest[row - 1]:.10g} to {time[row]:.10g}"
+        f"{run.path}: {what} back in time {_times(int(back.size))}first in row {row + 1} of "
+        f"{time.size}, from t_s {latest[row - 1]:.10g} to {time[row]:.10g}"
     )
-    for bits, unit in CLOCKS:
-        if _begins_anew(np.diff(time), back, period := unit * 2.0**bits):
-            again = ", and as much again at each further one" if back.size > 1 else ""
-            raise InputError(
-                f"{where}: a clock of {bits} bits began anew there: add {period:.10g} to t_s from "
-                f"that row on{again}"
-            )
+    bits, period = began_anew(time, back)
+    if bits:
+        again = ", and as much again at each further one" if back.size > 1 else ""
+        raise InputError(
+            f"{where}: a clock of {bits} bits began anew there: add {period:.10g} to t_s from "
+            f"that row on{again}"
+        )
     if back.size > FEW_STEPS_BACK:
         raise InputError(f"{where}: the rows are not in the order of time; sort them by t_s")
     raise InputError(f"{where}: the clock was set back; cut the run there into two")
-
-
-def _begins_anew(steps: Floats, back: NDArray[np.intp], period: float) -> bool:
-    """Whether steps back are those of a clock that begins anew after a period."""
-    if not (steps > 0.0).any():
-        return False
-    usual = float(np.median(steps[steps > 0.0]))
-    within = WRAPS_WITHIN * usual
-    off = np.abs(period + steps[back] - usual)
-    return bool(within < WRAPS_SHARE * period and (off <= within).all())
 
 
 def _times(count: int) -> str:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.own_headings import words_about_own_headings
+from werrimbi_odom.files.row_order import in_order
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
 from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable, replacing
@@ -27,6 +28,8 @@ REFERENCE_COLUMNS = ("t_s", "x_m", "y_m", "yaw_rad")
 FEWEST_WHOLE, SELDOM = 20, 10.0
 """Rows whose times are all whole seconds and are taken for rounded, and the interval [s] from which
 that matters little."""
+UNSIGNED = (2.0**63, 2.0**64)
+"""Range in which only counters of 64 bits without a sign come; there floats are 2048 apart."""
 LATEST = 1e12
 """Upper limit of a time in seconds [s]; Unix time in milliseconds or nanoseconds exceeds it."""
 SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
@@ -140,11 +143,22 @@ def _counts(table: CsvTable, name: str) -> Counts:
     if np.isfinite(values).all() and np.abs(values).max() >= EXACT:
         exact = table.integers(name)
         return counts if exact is None else exact
+    if ((values >= UNSIGNED[0]) & (values <= UNSIGNED[1])).any():
+        table.refuse_where(name, _not_a_whole_count)
     return counts
 
 
 def _not_a_count(text: str) -> str:
     return "" if text else "it is empty; write nan where a reading is missing, or leave the row out"
+
+
+def _not_a_whole_count(text: str) -> str:
+    if math.isfinite(float(text)):
+        return ""
+    return (
+        f"{text!r} is no count; leave the row out: counters of 64 bits without a sign are exact "
+        "where all rows are whole numbers"
+    )
 
 
 def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
@@ -162,12 +176,14 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         _measured(table, name, minimum=0.0) if name in table.names else None
         for name in SIGMA_COLUMNS
     ]
-    reference = Reference(_times(table), x, y, yaw, *sigmas)
+    reference, was_sorted = in_order(Reference(_times(table), x, y, yaw, *sigmas))
     reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
     keep, late = _on_time(reference)
     remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
+    if was_sorted:
+        remarks += (f"{path.name}: its rows are not in the order of time; they are sorted by t_s",)
     remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
     remarks += _whole_seconds(table, reference.time)
     return (reference if keep.all() else reference.chosen(keep)), remarks

@@ -137,8 +137,11 @@ def header_stamp(content: Any) -> float:
 
 
 def _judged(header: Floats, received: Floats) -> Stamps:
+    stamped = np.isfinite(header)
+    has_header = int(stamped.sum()) >= _FEWEST
+    if has_header:  # a message without a stamp among others is not used
+        header, received = header[stamped], received[stamped]
     gaps = np.diff(received)
-    has_header = bool(np.isfinite(header).all())
     told = np.diff(np.sort(header)) if has_header else gaps  # messages may overtake one another
     after = received - header
     usual = _mean_interval(told)

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 import re
 from array import array
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -22,7 +23,9 @@ from werrimbi_odom.files.bag import Bag, stamp_of
 from werrimbi_odom.files.bag_contents import JOINT_STATE, Contents, Wheels
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_ticks import wished_ticks
+from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.unstamped import with_stamps
 from werrimbi_odom.model.pose import Floats
 
 _NO_WHEELS = """
@@ -37,6 +40,8 @@ UNDRIVEN = ("cast", "steer", "swivel", "suspension", "rocker", "bogie")
 """Parts of the names of joints near a wheel that are not driven or do not roll."""
 
 SIDES = ("left", "right")
+ALONG = ("f", "b", "m", "c")
+"""Letters for front, back, middle and centre in the names of joints."""
 TURN = 2.0 * math.pi
 _ROUNDING = 1e-3  # [rad], for angles that restart at each turn and so stay within one
 
@@ -90,7 +95,7 @@ def _by_names(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     able = [name for name in joints if not is_no_wheel(name)]
     for named in ([name for name in able if "wheel" in name.lower()], able):
-        left, right = (tuple(name for name in named if is_of(name, side)) for side in SIDES)
+        left, right = (tuple(name for name in named if is_of(name, side, named)) for side in SIDES)
         if left and right:
             rolled = [
                 tuple(name for name in side if turned.get(name, 0.0) > TURN)
@@ -102,16 +107,46 @@ def _by_names(
     return (), ()
 
 
-def is_of(name: str, side: str) -> bool:
-    """Whether a joint's name contains this side."""
-    parts = name.lower().replace("-", "_").split("_")
-    return (
-        side in name.lower()
-        or side[0] in parts
-        or any(
-            part in (f"f{side[0]}", f"r{side[0]}", f"{side[0]}f", f"{side[0]}r") for part in parts
-        )
+def is_of(name: str, side: str, among: Collection[str] = ()) -> bool:
+    """Whether a joint's name contains this side.
+
+    The letter r may mean rear. A name of both sides goes by its word, else by two letters as in fl,
+    else by its last letter that is not along the robot: `among`, all joints, tells, as where
+    another has f (wheel_f_l beside wheel_r_l, or wheel_l_f beside wheel_l_r).
+    """
+    told = {each: _told_by(name, each) for each in SIDES}
+    if not all(told.values()):
+        return bool(told[side])
+    first = min(map(min, told.values()))
+    ranked = [each for each in SIDES if first in told[each]]
+    if len(ranked) == 1:
+        return side in ranked
+    if first < 2:
+        return True
+    parts, others = _parts(name), [_parts(each) for each in among]
+    alike = [each for each in others if len(each) == len(parts)]
+    letters = [
+        part
+        for place, part in enumerate(parts)
+        if part in ("l", "r") and not any(each[place] in ALONG for each in alike)
+    ]
+    return not letters or letters[-1] == side[0]
+
+
+def _told_by(name: str, side: str) -> set[int]:
+    """What tells a side in a name: 0 its word, 1 two letters, 2 its letter."""
+    parts = set(_parts(name))
+    letter = side[0]
+    told = (
+        side in name.lower(),
+        bool(parts & {f"f{letter}", f"r{letter}", f"{letter}f", f"{letter}r"}),
+        letter in parts,
     )
+    return {kind for kind, found in enumerate(told) if found}
+
+
+def _parts(name: str) -> list[str]:
+    return name.lower().replace("-", "_").split("_")
 
 
 def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
@@ -124,7 +159,7 @@ def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
     angles: dict[str, _Values] = {}
     speeds: dict[str, _Values] = {}
     with suppress(InputError):
-        for message in bag.messages([topic]):
+        for message in with_stamps(bag.messages([topic]), Counter()):
             content = message.content
             time = stamp_of(message)
             for found, values in ((angles, content.position), (speeds, content.velocity)):
@@ -198,20 +233,38 @@ def chosen_wheels(
             turned = turned_joints(bag, each.name)
             joints = joints_told_apart(tuple(turned), turned, (known[0], known[1]))
             each = replace(each, joints=tuple(turned))
+        if each.kind == ODOMETRY and any(map(_stands, found)) and not _moves(bag, each.name):
+            continue
         found.append((each, joints))
-        if each.kind != JOINT_STATE or joints.left:
+        if each.kind != JOINT_STATE or (joints.left and not _stands(found[-1])):
             break
     return min(found, key=_rank, default=(None, WheelJoints()))
 
 
 def _rank(found: tuple[Wheels, WheelJoints]) -> int:
-    """Rank: wheels by name or message, then joints that roll, then odometry, then others."""
+    """Rank: wheels by name or message, joints that roll, odometry, then others and what stands."""
     wheels, joints = found
     if wheels.gives == "odometry":
         return 2
     if wheels.joints and not joints.left:
         return 1 if joints.rolled else 3
-    return 0
+    return 3 if _stands(found) else 0
+
+
+def _stands(found: tuple[Wheels, WheelJoints]) -> bool:
+    """Whether wheels that are known by name never turn, as where nothing measures them."""
+    _, joints = found
+    turned = joints.turned or {}
+    return bool(joints.left) and not any(turned[name] for name in (*joints.left, *joints.right))
+
+
+def _moves(bag: Bag, topic: str) -> bool:
+    """Whether odometry moves."""
+    with suppress(InputError):
+        poses = (message.content.pose.pose for message in bag.sampled(topic, 1000))
+        held = {(each.position.x, each.position.y, each.orientation.z) for each in poses}
+        return len(held) > 1
+    return False
 
 
 def of_another_robot(contents: Contents, wheels: Wheels | None) -> set[str]:

@@ -154,7 +154,7 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
         values.update(table.virtual_ticks(values, given))
     except InputError as error:
         wrong.append(str(error))
-    wrong += _of_both_sides(values)
+    wrong += table.on_both_sides(values)
     missing = [
         f"{item.name} ({item.unit})"
         for item in table.PARAMETERS
@@ -253,20 +253,6 @@ def _without_channels(effects: Named) -> list[str]:
         "the node does not have; it works on recorded runs alone. Take it out of effects"
         for effect in effects.effects
         if effect.lacks(())
-    ]
-
-
-def _of_both_sides(values: Mapping[str, Value]) -> list[str]:
-    """Joints that are named left and right: such a robot would never turn."""
-    left, right = (values[f"{side}_wheel_names"] for side in ("left", "right"))
-    assert isinstance(left, tuple)
-    assert isinstance(right, tuple)
-    if values["input_type"] != "joint_state":
-        return []
-    return [
-        f"{name} is in left_wheel_names and in right_wheel_names; name the joint of each side"
-        for name in left
-        if name in right
     ]
 
 
