@@ -176,3 +176,30 @@ def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, 
     assert "By name /wheel_mode (std_msgs/msg/Bool) may, but is of no type that is read." in said
     assert "Record how the wheels turned as well" in said
     assert result.to_dict()["next"] is None
+
+
+@pytest.mark.parametrize(
+    ("wheels", "further", "taken"),
+    [
+        ("/joint_states", "/base/odom", "/base/imu"),
+        ("/joint_states", "/other/joint_states", None),
+        ("/robot/joint_states", "/base/odom", None),
+    ],
+)
+def test_a_driver_in_a_namespace_is_of_the_robot_whose_wheels_have_none(
+    tmp_path: Path, ros: Any, wheels: str, further: str, taken: str | None
+) -> None:
+    """The driver's odometry and gyro were another robot's; asked for, any reference is taken."""
+    space, entries = further.rpartition("/")[0], []
+    for n in range(1, 500):
+        stamp, angles = 20 * n * MS, (0.1 * n, 0.1 * n + 0.3 * math.sin(0.02 * n))
+        moving = ros.joints(stamp, WHEELS[1:3], angles)
+        other = ros.odometry(stamp, 0.1 * n, 0.0, 0.0) if "odom" in further else moving
+        gyro = ros.imu(stamp, math.cos(0.02 * n))
+        entries += [(wheels, stamp, moving), (further, stamp, other)]
+        entries.append((f"{space}/imu", stamp, gyro))
+    bag = ros.write(tmp_path / "bag", entries)
+    for wish in (None, f"{space}/imu"):
+        (run,) = wo.info(bag, reference_topic=wish, ticks_topic=wheels).to_dict()["runs"]
+        found = [each["topic"] for each in run["references"] if each["taken"]]
+        assert found == ([] if taken is None and wish is None else [f"{space}/imu"])

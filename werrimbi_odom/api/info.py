@@ -239,7 +239,7 @@ def _of_bag(
             known = (first.left, first.right)
             joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
             first = replace(first, left=joints.left, right=joints.right)
-        others = of_another_robot(contents, wheels)
+        others = of_another_robot(contents, wheels) if reference_topic is None else set()
         ours = [each for each in contents.references if each.name not in others]
         reference = _best(ours, reference_topic)
         beside = None if reference_topic else _gyro(ours, reference)
