@@ -14,7 +14,8 @@ import pytest
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Contents, contents_of
 from werrimbi_odom.files.measured_topic import preference
-from werrimbi_odom.files.own_odometry import why_from_wheels
+from werrimbi_odom.files.own_odometry import is_asked_for, why_from_wheels
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.simulation.lidar import Lidar
 
@@ -297,3 +298,29 @@ def test_points_in_no_frame_come_after_satellites(tmp_path: Path, ros: Any) -> N
     held = contents(ros.write(tmp_path / "bag", entries))
     assert [each.name for each in held.references][-1] == "/a_speed"
     assert "may be no positions" in held.references[-1].why
+
+
+@pytest.mark.parametrize(
+    ("topic", "asked_for"),
+    [
+        *((name, False) for name in ("/planar_pose", "/floorplan_pose", "/goalie/pose")),
+        *((name, True) for name in ("/goal_pose", "/move_base_simple/goal", "/targetPose")),
+        *((name, True) for name in ("/initialpose", "/clicked_point", "/goalpose", "/plan1")),
+        *((name, True) for name in ("/pose_error", "/cmd_pose", "/mavros/setpoint_position/local")),
+    ],
+)
+def test_goals_and_commands_are_told_by_whole_words(topic: str, asked_for: bool) -> None:
+    assert is_asked_for(topic) is asked_for
+
+
+def test_a_body_that_is_called_target_is_a_reference_if_it_is_asked_for(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    topic = "/vrpn_client_node/target/pose"
+    entries = [("/joint_states", 1, ros.joints(1 * MS, WHEELS, [0.0, 0.0]))]
+    entries += [(topic, n, ros.pose(n * MS, 0.1 * n, 0.0, 0.0)) for n in range(1, 9)]
+    bag = ros.write(tmp_path / "bag", entries)
+    assert contents(bag).references == ()
+    run = read_run(bag, robot(), reference_topic=topic)
+    assert run.reference is not None
+    assert not run.circle

@@ -225,7 +225,7 @@ def _of_bag(
     """Contents of a bag, and what it says about the robot."""
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
-        contents = contents_of(opened, base)
+        contents = contents_of(opened, base, wished=[reference_topic or ""])
         wheels, joints = chosen_wheels(opened, contents, ticks_topic, source)
         if source is None and not first.has_sizes:
             text = opened.firsts([DESCRIPTION]).get(DESCRIPTION)
@@ -257,7 +257,7 @@ def _separate(other: Path, source: RobotFile | None, wish: str | None) -> Measur
         return None
     base = "" if source is None else str(source.values["base_frame_id"])
     with opened_bag(bag) as opened:
-        return _best(contents_of(opened, base).references, wish)
+        return _best(contents_of(opened, base, wished=[wish or ""]).references, wish)
 
 
 def _topics(each: Wheels | Measured) -> list[str]:

@@ -140,13 +140,17 @@ class Contents:
         return tuple(sorted(self.independent, key=preference))
 
 
-def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
+def contents_of(
+    bag: Bag, base: str = "", *, choosing: bool = True, wished: Sequence[str] = ()
+) -> Contents:
     """Analyse an open bag.
 
     `base`: the robot's frame, as `base_frame_id` of its file; "" to detect it by name. `choosing`:
     whether a reference still has to be chosen. References that contain odometry are then placed
-    last; detecting them takes another pass over their messages.
+    last; detecting them takes another pass over their messages. `wished`: references that are asked
+    for, and so are listed even if their names are of goals or commands.
     """
+    named = {"/" + wish.partition(":")[0].strip().strip("/") for wish in wished}
     edges = EdgeCollector()
     names = [each.name for each in bag.topics if each.kind in TRANSFORMS]
     for message in bag.messages(names) if names else ():
@@ -159,7 +163,7 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         *_chains(found, base),
         *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
     ]
-    references = [each for each in references if not is_asked_for(each.name)]
+    references = [each for each in references if each.name in named or not is_asked_for(each.name)]
     on_robot = _frames_on_the_robot(found, references)
     references = [_aboard(each) if each.parent in on_robot else each for each in references]
     whys = {each.name: each.why for each in references}

@@ -28,8 +28,11 @@ FILTERS = (
 UNFILTERED = ("unfiltered", "raw", "wheel")
 """Words in the names of odometry beside a filter's output under a plain name, as linorobot's."""
 
-_COMMANDED = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
-NO_MEASUREMENT = (*_COMMANDED, "error")
+_NO_MEASUREMENT = """
+goal goals subgoal subgoals target targets setpoint setpoints initialpose clicked plan plans planned
+planner planning cmd command commands commanded error errors
+"""
+NO_MEASUREMENT = frozenset(_NO_MEASUREMENT.split())
 """Words in topics of commanded or requested poses, from RViz or a program, and of how far the
 robot is from them."""
 
@@ -76,7 +79,9 @@ def names_a_measurement(topic: str) -> bool:
 
 def is_asked_for(topic: str) -> bool:
     """Whether poses of a topic are requested, or relative to such, and not measured."""
-    return any(word in topic.lower() for word in NO_MEASUREMENT)
+    words = _words(re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", topic))
+    words |= {word.removesuffix("pose").removesuffix("point") for word in words}  # goalpose
+    return bool(words & NO_MEASUREMENT)
 
 
 def is_base(frame: str) -> bool:

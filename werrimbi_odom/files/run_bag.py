@@ -120,7 +120,9 @@ def read_reference_bag(
 
 
 def _contents_of(bag: Bag, robot_file: RobotFile, wish: Topics) -> Contents:
-    return contents_of(bag, str(robot_file.values["base_frame_id"]), choosing=not wish)
+    wished = [wish] if isinstance(wish, str) else wish or ()
+    base = str(robot_file.values["base_frame_id"])
+    return contents_of(bag, base, choosing=not wish, wished=wished)
 
 
 def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:
