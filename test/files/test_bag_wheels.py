@@ -117,6 +117,15 @@ def test_angles_that_never_change_are_none(tmp_path: Path, ros: Any, robot: Any)
     assert not any("speeds" in note for note in run.notes), "a robot that stands has angles"
 
 
+def test_angles_that_are_no_numbers_are_none(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """A joint_state_broadcaster writes NaN for an interface that the hardware does not have."""
+    for name, angle in (("none", math.nan), ("later", 0.0)):
+        entries = [joints(ros, n, [angle if n else math.nan] * 2, [1.0, 1.0]) for n in range(11)]
+        run = read_run(ros.write(tmp_path / name, entries), robot())
+        assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi))
+        assert any("only speeds: they are integrated" in note for note in run.notes)
+
+
 def test_angles_that_begin_anew_at_each_turn(tmp_path: Path, ros: Any, robot: Any) -> None:
     true = 0.5 * np.arange(40)
     for name, wrapped in (

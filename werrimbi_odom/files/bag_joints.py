@@ -86,8 +86,10 @@ class JointsCollector:
         speeds = self._speeds.arrays(len(self._wheels))[1]
         if speeds.size == 0 or positions.shape[0] > speeds.shape[0]:
             return False
-        still = positions.shape[0] == 0 or not np.ptp(positions, axis=0).any()
-        return bool(still and (positions.shape[0] == 0 or np.any(speeds != 0.0)))
+        known = positions[np.isfinite(positions).all(axis=1)]  # a broadcaster writes NaN for none
+        still = known.shape[0] == 0 or not np.ptp(known, axis=0).any()
+        moves = np.isfinite(speeds) & (speeds != 0.0)
+        return bool(still and (positions.shape[0] == 0 or moves.any()))
 
     def _side(self, time: Floats, positions: Floats, side: str) -> Counts:
         values = self._file.values
