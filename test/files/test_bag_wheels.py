@@ -109,6 +109,7 @@ def test_angles_that_never_change_are_none(tmp_path: Path, ros: Any, robot: Any)
     entries = [joints(ros, n, [0.0, 0.0], [1.0, 1.0]) for n in range(11)]
     run = read_run(ros.write(tmp_path / "bag", entries), robot())
     assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi))
+    assert run.wheels_from == "velocities", "compare and info say that they are integrated"
     entries = [joints(ros, n, [0.1 * n, 0.1 * n], [9.0, 9.0]) for n in range(11)]
     run = read_run(ros.write(tmp_path / "other", entries), robot())
     assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi)), "angles are what was counted"

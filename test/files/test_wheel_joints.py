@@ -97,6 +97,18 @@ def test_speeds_alone_are_integrated(tmp_path: Path, ros: Any) -> None:
         )
 
 
+def test_info_says_that_speeds_are_integrated_where_angles_stay_at_zero(
+    tmp_path: Path, ros: Any
+) -> None:
+    entries = []
+    for n in range(400):
+        kind, message = ros.joints((1000 + 50 * n) * MS, WHEELS[1:3], [0.0, 0.0])
+        message.velocity = np.array([3.0, 4.0])
+        entries.append(("/joint_states", n + 1, (kind, message)))
+    said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
+    assert "Wheels: /joint_states, speeds of the wheels, which are integrated" in said
+
+
 def test_a_message_that_cannot_be_read_ends_the_look_and_raises_nothing() -> None:
     """Who reads the wheels afterwards tells of it, with topic and type."""
 

@@ -293,6 +293,8 @@ def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
         ticks_topic=wheels.name,
         reference_topic="none",
     )
+    if run.wheels_from != "positions":  # they stay at zero beside speeds
+        return first
     angles = (run.ticks.left, run.ticks.right)
     return with_steps(first, [np.asarray(each, dtype=np.float64) for each in angles])
 

@@ -19,7 +19,7 @@ from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Collected, Reference, Run
+from werrimbi_odom.files.run import WORKED_OUT, Collected, Reference, Run
 from werrimbi_odom.files.stamps import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.text_files import readable
 
@@ -80,7 +80,7 @@ def read_run_bag(
         damage=(*bag.damage, *found.damage, *clocks),
         no_reference=lacking,
         circle=found.circle,
-        wheels_from=source.gives,
+        wheels_from="velocities" if WORKED_OUT["velocities"] in notes else source.gives,
         taken_out=found.taken_out,
     )
 

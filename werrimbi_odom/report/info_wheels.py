@@ -48,7 +48,8 @@ def wheels_words(held: Held) -> str:
             f"right one's, {_which_is_left(held)}; "
             f"--ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
         )
-    gives = _OF_FILTER if is_filtered(wheels.name) else _GIVES[wheels.gives]
+    found = wheels.gives if held.run is None else held.run.wheels_from  # angles may stay at zero
+    gives = _OF_FILTER if is_filtered(wheels.name) else _GIVES[found]
     return f"Wheels: {wheels.name}, {gives}{rate_words(held, wheels.name)}{told}."
 
 
