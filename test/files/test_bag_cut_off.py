@@ -60,6 +60,21 @@ def test_files_of_a_recording_that_was_killed(tmp_path: Path, ros: Any, robot: A
     assert run.damage
 
 
+@pytest.mark.parametrize("share", [1.0, 0.5])
+def test_a_folder_of_ros1_bags(tmp_path: Path, ros: Any, robot: Any, share: float) -> None:
+    """As `rosbag record --split` leaves it: whole, or the last one cut off."""
+    folder = tmp_path / "bags"
+    folder.mkdir()
+    for number in range(2):
+        part = drive(ros, 2000)[1000 * number :][:1000]
+        last = ros.write_ros1(folder / f"run_{number}.bag", part)
+    whole = last.read_bytes()
+    last.write_bytes(whole[: int(share * len(whole))])
+    run = read_run(folder, robot())
+    np.testing.assert_allclose(run.ticks.left, 100.0 / (2 * np.pi) * 1000.0 * run.ticks.time)
+    assert (run.ticks.rows == 2000) == (run.damage == ()) == (share == 1.0)
+
+
 @pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
 def test_a_file_that_was_renamed_is_read_beside_its_old_metadata(
     tmp_path: Path, ros: Any, robot: Any, plugin: str

@@ -186,8 +186,12 @@ def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
 
 
 def _scanned(path: Path, ros1: bool) -> Bag | None:
-    """Read a truncated bag up to the cut; None if nothing is readable."""
+    """Read a truncated bag up to the cut; None if nothing is readable.
+
+    The files of `rosbag record --split`, which have no metadata, are read so as well.
+    """
     files = _files(path)
+    split = path.is_dir() and all(each.suffix == ROS1 for each in files)
     counts: Counter[tuple[str, str]] = Counter()
     definitions: dict[str, str] = {}
     last = 0
@@ -201,9 +205,13 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
     def raw(names: Sequence[str]) -> Iterator[Raw]:
         return (each for each in raw_messages(files) if each.topic in names)
 
-    told = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}"
+    told: tuple[str, ...] = (
+        f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}",
+    )
+    if split and all(map(_is_whole, files)):
+        told = ()
     topics = _topics((name, kind, number) for (name, kind), number in counts.items())
-    return Bag(path, topics, (told,), raw, Types(ros1, definitions))
+    return Bag(path, topics, told, raw, Types(ros1 or split, definitions))
 
 
 def _is_cut_off(path: Path) -> bool:
@@ -219,6 +227,17 @@ def _is_cut_off(path: Path) -> bool:
         except Exception:  # as above
             return True
     return False
+
+
+def _is_whole(file: Path) -> bool:
+    """Whether a ROS 1 bag has its index."""
+    from rosbags.rosbag1 import Reader
+
+    try:
+        with Reader(file):
+            return True
+    except Exception:  # as above
+        return False
 
 
 def _files(path: Path) -> list[Path]:
