@@ -174,6 +174,12 @@ def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
         ("/odometry/filtered", ODOMETRY, "map", "base_link", True),
         ("/robot_pose_ekf/odom_combined", "", "odom_combined", "", True),
         ("/wheel_odom", ODOMETRY, "", "", True),
+        ("/slam_bot/odom", ODOMETRY, "odom", "base_link", True),
+        ("/odom", ODOMETRY, "ground_robot/odom", "ground_robot/base_link", True),
+        ("/robot/dlio/odom_node/odom", ODOMETRY, "odom", "base_link", False),
+        ("/stereo_odometry/odom", ODOMETRY, "odom", "base_link", False),
+        ("/rgbd_odometry/odom", ODOMETRY, "odom", "base_link", False),
+        ("/fastlio2/odom", ODOMETRY, "odom", "base_link", False),
         ("/rtabmap/odom", ODOMETRY, "odom", "base_link", False),
         ("/zed2/zed_node/odom", ODOMETRY, "odom", "base_link", False),
         ("/Odometry", ODOMETRY, "camera_init", "body", False),
@@ -185,6 +191,17 @@ def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
 )
 def test_names(topic: str, kind: str, parent: str, child: str, from_wheels: bool) -> None:
     assert bool(why_from_wheels(topic, kind, parent, child)) is from_wheels
+
+
+def test_a_namespace_that_holds_wheels_is_the_robots_name(tmp_path: Path, ros: Any) -> None:
+    """/vision/odom may be a camera's; beside /vision/joint_states it is that robot's own."""
+    for joints, independent in ((WHEELS, []), (["pan", "tilt"], ["/vision/odom"])):
+        entries = [
+            ("/vision/joint_states", 1, ros.joints(1 * MS, joints, [0.0, 0.0])),
+            ("/vision/odom", 2, ros.odometry(2 * MS, 0.0, 0.0, 0.0)),
+        ]
+        held = contents(ros.write(tmp_path / joints[0], entries))
+        assert [each.name for each in held.independent] == independent
 
 
 def turning(ros: Any, other: str, apart: float, drift: float) -> list[Any]:

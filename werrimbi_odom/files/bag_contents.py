@@ -159,9 +159,14 @@ def contents_of(
     kinds = (JOINT_STATE, *ARRAYS, *FLOATS, *POSES, *CLOUDS)
     looked_at = [each.name for each in bag.topics if each.kind in kinds]
     firsts = bag.firsts(looked_at)
+    robots = _robots(bag, firsts)
     references = [
         *_chains(found, base),
-        *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
+        *(
+            _measured(each, firsts.get(each.name), robots)
+            for each in bag.topics
+            if each.kind in POSES
+        ),
     ]
     references = [each for each in references if each.name in named or not is_asked_for(each.name)]
     on_robot = _frames_on_the_robot(found, references)
@@ -193,7 +198,7 @@ def contents_of(
         for each in bag.topics
         if each.kind in CLOUDS and _is_of_room(where := _frame_of(firsts.get(each.name)))
     }
-    wheels = tuple(_wheels(bag, firsts, found))
+    wheels = tuple(_wheels(bag, firsts, found, robots))
     return Contents(bag.path, bag.topics, wheels, tuple(references), found, moved)
 
 
@@ -221,7 +226,18 @@ def _is_of_room(name: str) -> bool:
     return is_odometry_frame(name) or name in ("map", "world")
 
 
-def _measured(topic: Topic, first: Any) -> Measured:
+def _robots(bag: Bag, firsts: Mapping[str, Any]) -> set[str]:
+    """First parts of the names of topics of wheels: the name of a robot, and of no sensor."""
+
+    def of_wheels(topic: Topic) -> bool:
+        joints = getattr(firsts.get(topic.name), "name", ()) if topic.kind == JOINT_STATE else ()
+        return topic.kind in DRIVERS or any("wheel" in name for name in joints)
+
+    found = {each.name.strip("/").partition("/")[0] for each in bag.topics if of_wheels(each)}
+    return found - {"gazebo"}
+
+
+def _measured(topic: Topic, first: Any, robots: set[str]) -> Measured:
     kind = topic.kind
     parent = _frame_of(first)
     child = frame(getattr(first, "child_frame_id", ""))
@@ -237,7 +253,7 @@ def _measured(topic: Topic, first: Any) -> Measured:
         parent, child, reason = "", parent, ""
         why = "satellites"
     else:
-        reason = why_from_wheels(topic.name, kind, parent, child)
+        reason = why_from_wheels(topic.name, kind, parent, child, robots)
         why = reason or f"poses in {parent or 'a frame of their own'}, of a sensor or a localiser"
         if kind == POINT and not parent:
             why = "points in no frame, which may be no positions at all"
@@ -289,7 +305,9 @@ def _chains(edges: tuple[Edge, ...], base: str) -> list[Measured]:
     return found
 
 
-def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Wheels]:
+def _wheels(
+    bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge], robots: set[str]
+) -> list[Wheels]:
     found: list[Wheels] = []
     for topic in bag.topics:
         if topic.kind == JOINT_STATE:
@@ -322,6 +340,7 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
                 topic.kind,
                 _frame_of(firsts.get(topic.name)),
                 frame(getattr(firsts.get(topic.name), "child_frame_id", "")),
+                robots,
             )
             if reason and not is_filtered(topic.name):
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "odometry"))
