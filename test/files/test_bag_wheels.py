@@ -127,6 +127,16 @@ def test_angles_that_are_no_numbers_are_none(tmp_path: Path, ros: Any, robot: An
         assert any("only speeds: they are integrated" in note for note in run.notes)
 
 
+def test_wheels_in_messages_of_their_own(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Each motor has a node: both joints are there, and the nearest name was the other wheel."""
+    entries = [
+        ("/joint_states", n * MS, ros.joints(n * MS, [WHEELS[n % 2]], [0.1 * n])) for n in range(8)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    with pytest.raises(InputError, match="joint_states: no message holds left_wheel_joint, right"):
+        read_run(bag, robot())
+
+
 def test_angles_that_begin_anew_at_each_turn(tmp_path: Path, ros: Any, robot: Any) -> None:
     true = 0.5 * np.arange(40)
     for name, wrapped in (
