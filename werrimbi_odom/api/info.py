@@ -15,7 +15,7 @@ import numpy as np
 
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.bag import Bag, opened_bag
 from werrimbi_odom.files.bag_contents import Wheels, contents_of
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
@@ -228,8 +228,7 @@ def _of_bag(
         contents = contents_of(opened, base, wished=[reference_topic or ""])
         wheels, joints = chosen_wheels(opened, contents, ticks_topic, source)
         if source is None and not first.has_sizes:
-            text = opened.firsts([DESCRIPTION]).get(DESCRIPTION)
-            first = of_urdf(getattr(text, "data", ""), tuple(joints.turned or ()))
+            first = of_urdf(_description(opened, wheels), tuple(joints.turned or ()))
         if source is None and wheels:
             first = with_driver(replace(first, counted=wheels.gives == "counts"), wheels.kind)
             if first.counted and not wheels.places:
@@ -248,6 +247,20 @@ def _of_bag(
         stamps = stamps_of(opened, sorted(topics))
     held = Held(path, contents, wheels, reference, stamps, None, "", joints, beside=beside)
     return held, first
+
+
+def _description(bag: Bag, wheels: Wheels | None) -> str:
+    """The URDF of the namespace of the wheels, or else the first one; "" without one."""
+    spaces = [
+        each.name.removesuffix(DESCRIPTION)
+        for each in bag.topics
+        if each.name.endswith(DESCRIPTION)
+    ]
+    ours = "" if wheels is None else wheels.name
+    spaces.sort(key=lambda space: (not ours.startswith(f"{space}/"), -len(space)))
+    named = [f"{space}{DESCRIPTION}" for space in spaces]
+    found = bag.firsts(named[:1])
+    return next((getattr(each, "data", "") for each in found.values()), "")
 
 
 def _separate(other: Path, source: RobotFile | None, wish: str | None) -> Measured | None:
