@@ -44,11 +44,24 @@ PAIRS = {
     INT64: 0,
     "std_msgs/msg/Int16": 16,
     "duckietown_msgs/msg/WheelEncoderStamped": 32,
+    "std_msgs/msg/UInt16": 16,
+    "std_msgs/msg/UInt32": 32,
+    "std_msgs/msg/Float32": 0,
+    "std_msgs/msg/Float64": 0,
 }
 """Message types with the counter of one wheel, and its wrap width; 0: it never wraps."""
 MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
-ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int16MultiArray": 16}
+ARRAYS = {
+    MULTI_ARRAY: 0,
+    "std_msgs/msg/Int32MultiArray": 32,
+    "std_msgs/msg/Int16MultiArray": 16,
+    "std_msgs/msg/UInt32MultiArray": 32,
+    "std_msgs/msg/UInt16MultiArray": 16,
+}
 """The same for both wheels, as values without names."""
+_UNSIGNED = ("/UInt16", "/UInt32")
+"""They may hold a power or a distance: read unasked if name or values are a counter's."""
+_COUNTS = ("tick", "encoder", "count")
 FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
 """They may hold counters but usually hold commands; read on request only."""
 CLOUDS = {
@@ -305,6 +318,13 @@ def _chains(edges: tuple[Edge, ...], base: str) -> list[Measured]:
     return found
 
 
+def _may_count(topic: Topic) -> bool:
+    """Whether a message of one value is read as a counter without being asked for."""
+    if topic.kind.endswith(_UNSIGNED):
+        return any(word in topic.name.lower() for word in _COUNTS)
+    return "/Float" not in topic.kind
+
+
 def _wheels(
     bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge], robots: set[str]
 ) -> list[Wheels]:
@@ -320,13 +340,14 @@ def _wheels(
             found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
         elif topic.kind in (*ARRAYS, *FLOATS):
             values = len(getattr(firsts.get(topic.name), "data", ()))
-            if values == 2 and topic.kind in ARRAYS:
+            signed = topic.kind in ARRAYS and not any(each in topic.kind for each in _UNSIGNED)
+            if values == 2 and signed:
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
             elif values > 1 and (sides := counting_sides(bag, topic.name, values)) is not None:
                 name = f"{topic.name}:{sides[0][0]}:{sides[1][0]}"
                 like = (sides[0][1:], sides[1][1:])
                 found.append(Wheels(name, topic.kind, topic.messages, "counts", like=like))
-        elif topic.kind in PAIRS:
+        elif topic.kind in PAIRS and _may_count(topic):
             mirrored = topic.name.replace("left", "right")
             for each in bag.topics if mirrored != topic.name else ():
                 if each.name == mirrored and each.kind == topic.kind:
