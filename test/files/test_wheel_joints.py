@@ -173,6 +173,19 @@ def test_an_array_of_more_than_two_values_is_not_called_an_unread_type(
     assert "no type that is read" not in said
 
 
+def test_two_counters_of_other_names_are_offered_as_the_wheels(tmp_path: Path, ros: Any) -> None:
+    """As differential_drive calls them; they were told to be read where each wheel has a topic."""
+    entries = [("/imu", n, ros.imu(10 * n * MS, 0.1)) for n in range(1, 60)]
+    for n in range(1, 60):
+        entries += [(f"/{side}wheel", n * MS, ros.count(n, 16)) for side in "lr"]
+    bag = ros.write(tmp_path / "bag", entries)
+    result = wo.info(bag)
+    said = " ".join(result.summary().split())
+    assert "--ticks-topic /lwheel,/rwheel reads them" in said
+    assert "Record how the wheels turned" not in said
+    assert result.to_dict()["next"] == f"werrimbi info {bag} --ticks-topic /lwheel,/rwheel"
+
+
 def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, ros: Any) -> None:
     """Another reference would not help: no command is printed."""
     mode = ("std_msgs/msg/Bool", ros.make("std_msgs/msg/Bool", True))

@@ -16,7 +16,7 @@ from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
-from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS
+from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, pair_of_counters
 from werrimbi_odom.report.info_words import words_of
 from werrimbi_odom.report.number_format import counted, picked
 from werrimbi_odom.report.phrases import left_out_json
@@ -162,6 +162,8 @@ def _before_command(found: Info) -> str:
 def _otherwise(found: Info) -> tuple[str, str]:
     """Next step if the chosen topics are not usable: what is missing, or another topic to try."""
     if all(held.contents is not None and held.wheels is None for held in found.held):
+        if topic := pair_of_counters(found.held[0]):
+            return "Next, if these are its wheels:", _once_more(found, "--ticks-topic", topic)
         return WITHOUT_WHEELS, ""
     for held in found.held:
         if held.at_fault == "names":
@@ -178,12 +180,17 @@ def _otherwise(found: Info) -> tuple[str, str]:
         scans = held.reference.kind == SCAN
         others = sorted(known[first:], key=lambda each: scans and each.kind == SCAN)
         if others:
-            words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
-            file = found.given or found.written or found.parameters
-            robot = [] if file is None else ["--robot", str(file)]
-            command = shlex.join([*words, *robot, "--reference-topic", others[0].name])
+            command = _once_more(found, "--reference-topic", others[0].name)
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged as it is.", ""
+
+
+def _once_more(found: Info, *words: str) -> str:
+    """The command itself with more words."""
+    file = found.given or found.written or found.parameters
+    robot = [] if file is None else ["--robot", str(file)]
+    paths = [str(each.path) for each in found.held]
+    return shlex.join(["werrimbi", "info", *paths, *robot, *_others(found.held), *words])
 
 
 def _names_to_write(held: Held, found: Info) -> str:
