@@ -186,6 +186,24 @@ def test_two_counters_of_other_names_are_offered_as_the_wheels(tmp_path: Path, r
     assert result.to_dict()["next"] == f"werrimbi info {bag} --ticks-topic /lwheel,/rwheel"
 
 
+def test_odometry_in_another_frame_is_offered_as_the_wheels(tmp_path: Path, ros: Any) -> None:
+    """In the frame world it may be a sensor's; it was told to record at least the /odom."""
+    entries = []
+    for n in range(1, 800):
+        kind, sent = ros.odometry(20 * n * MS, math.sin(0.01 * n), 1 - math.cos(0.01 * n), 0.01 * n)
+        sent.header.frame_id = "world"
+        entries.append(("/odom", 20 * n * MS, (kind, sent)))
+        entries.append(("/imu", 20 * n * MS + 1, ros.imu(20 * n * MS, 0.5)))
+    bag = ros.write(tmp_path / "bag", entries)
+    result = wo.info(bag)
+    assert result.to_dict()["next"] == f"werrimbi info {bag} --ticks-topic /odom"
+    assert "Record how the wheels turned" not in result.summary()
+    found = wo.info(bag, ticks_topic="/odom")
+    said = " ".join(found.summary().split())
+    assert "its yaw rate is integrated). It is taken." in said
+    assert "Reference /odom" not in said
+
+
 def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, ros: Any) -> None:
     """Another reference would not help: no command is printed."""
     mode = ("std_msgs/msg/Bool", ros.make("std_msgs/msg/Bool", True))

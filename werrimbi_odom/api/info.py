@@ -239,6 +239,8 @@ def _of_bag(
             joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
             first = replace(first, left=joints.left, right=joints.right)
         others = of_another_robot(contents, wheels) if reference_topic is None else set()
+        if wheels is not None:  # odometry that is asked for as the wheels measures nothing more
+            others = {*others, wheels.name}
         ours = [each for each in contents.references if each.name not in others]
         reference = _best(ours, reference_topic)
         beside = None if reference_topic else _gyro(ours, reference)

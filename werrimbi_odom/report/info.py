@@ -16,7 +16,7 @@ from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
-from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, pair_of_counters
+from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, wheels_to_try
 from werrimbi_odom.report.info_words import words_of
 from werrimbi_odom.report.number_format import counted, picked
 from werrimbi_odom.report.phrases import left_out_json
@@ -162,8 +162,8 @@ def _before_command(found: Info) -> str:
 def _otherwise(found: Info) -> tuple[str, str]:
     """Next step if the chosen topics are not usable: what is missing, or another topic to try."""
     if all(held.contents is not None and held.wheels is None for held in found.held):
-        if topic := pair_of_counters(found.held[0]):
-            return "Next, if these are its wheels:", _once_more(found, "--ticks-topic", topic)
+        if topic := wheels_to_try(found.held[0]):
+            return f"Next, if {topic} is of its wheels:", _once_more(found, "--ticks-topic", topic)
         return WITHOUT_WHEELS, ""
     for held in found.held:
         if held.at_fault == "names":

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from werrimbi_odom.files.bag import Topic, topic_in_words
 from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS
-from werrimbi_odom.files.own_odometry import ODOMETRY, is_filtered
+from werrimbi_odom.files.own_odometry import ODOMETRY, is_filtered, names_a_sensor
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.report.number_format import listed
@@ -59,6 +59,17 @@ def _which_is_left(held: Held) -> str:
     if held.confirmed:
         return "which the reference's turns confirm"
     return "in their order, as nothing shows which is left"
+
+
+def wheels_to_try(held: Held) -> str:
+    """What may tell of wheels, though nothing says so; "" for nothing."""
+    assert held.contents is not None
+    odometry = (
+        each.name
+        for each in held.contents.topics
+        if each.kind == ODOMETRY and not (is_filtered(each.name) or names_a_sensor(each.name))
+    )
+    return pair_of_counters(held) or next(odometry, "")
 
 
 def pair_of_counters(held: Held) -> str:
