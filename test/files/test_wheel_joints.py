@@ -162,6 +162,15 @@ def test_an_arm_in_a_urdf_moves_neither_base_nor_radius() -> None:
     assert (robot.separation, robot.radius) == (0.4, 0.1)
 
 
+@pytest.mark.parametrize("off", [0.0, 0.001, -0.02])
+def test_a_wheel_in_the_middle_of_a_urdf_drives_neither_side(off: float) -> None:
+    """A passive wheel that a drawing puts 1 mm off made a base of 0.3005 m of 0.4 m."""
+    sides = (("left", 0.2), ("right", -0.2), ("rear_wheel", off))
+    parts = [WHEEL.format(name=name, y=y) for name, y in sides]
+    robot = of_urdf(f'<robot name="r"><link name="base_link"/>{"".join(parts)}</robot>')
+    assert (robot.left, robot.right, robot.separation) == (("left",), ("right",), 0.4)
+
+
 def test_an_array_of_more_than_two_values_is_not_called_an_unread_type(
     tmp_path: Path, ros: Any
 ) -> None:
