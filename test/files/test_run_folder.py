@@ -65,6 +65,7 @@ def test_the_name_of_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         FINE.replace("0.1,3", "\n0.1,3"),
         FINE.replace("0.1,3,4", " 0.1 , 3 ,\t4 "),
         '"t_s","left_ticks","right_ticks"\n"0.0","1","2"\n"0.1","3","4"\n',
+        '"t_s", "left_ticks",\t"right_ticks"\n"0.0", "1", "2"\n"0.1", "3", "4"',
         FINE.replace("0.1,3,4", "1e-1,3.0,+4"),
         "right_ticks,t_s,left_ticks\n2,0.0,1\n4,0.1,3\n",
         "right_ticks, note,t_s,left_ticks\n2,,0.0,1\n4,,0.1,3\n",

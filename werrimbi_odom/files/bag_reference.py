@@ -107,8 +107,8 @@ class ReferenceCollector:
             return pairs[0]
         if not self._found and self._source.kind == IMU:
             raise InputError(
-                f"{self._place}: no message holds a yaw rate: angular_velocity_covariance[0] is -1, "
-                "which states that there is none, or angular_velocity.z is no number; choose "
+                f"{self._place}: no message holds a yaw rate: angular_velocity_covariance[0] is "
+                "-1, which states that there is none, or angular_velocity.z is no number; choose "
                 f"another with --reference-topic ({NONE} for no reference)"
             )
         listed = ", ".join(f"{parent} -> {child}" for parent, child in self._found) or "none"

@@ -34,6 +34,8 @@ _BLANK = re.compile(r'[\s,"]*\Z')
 """A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
 """Empty cells of a line."""
+_BEFORE_QUOTE = re.compile(r'(?<=,)[ \t]+(?=")')
+"""Blanks in front of a cell in quotes."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,7 @@ def _header(
     if not line:
         raise InputError(f"{path} is empty; its first line must be {wanted}")
     # numpy.savetxt writes the names as a remark.
-    names = tuple(name.strip() for name in next(csv.reader([line.lstrip("#% ")]), []))
+    names = tuple(name.strip() for name in next(_cells(line.lstrip("#% ")), []))
     place = f"{path}, line 1"
     missing = [name for name in required if name not in names]
     if missing and set(names) not in map(set, enough):
@@ -185,7 +187,7 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
         return 0
     cells = last.split(",")
     whole = len(cells) == len(names) and all(
-        _NUMBER.match(cell.strip('"')) or not cell.strip() for cell in cells
+        _NUMBER.match(cell.strip().strip('"')) or not cell.strip() for cell in cells
     )
     if whole and all(cells[place].strip() for place in filled):
         return 0
@@ -235,7 +237,11 @@ def _lines(path: Path, cut: int) -> Iterator[str]:
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in itertools.islice(file, cut - 1 if cut else None):
             if not _BLANK.match(line):
-                yield _EMPTY.sub("nan", line)
+                yield _EMPTY.sub("nan", _BEFORE_QUOTE.sub("", line))
+
+
+def _cells(line: str) -> Iterator[list[str]]:
+    return csv.reader([_BEFORE_QUOTE.sub("", line)])
 
 
 def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
@@ -243,7 +249,7 @@ def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
             if not _BLANK.match(line):
-                yield number, next(csv.reader([line.rstrip("\n")]))
+                yield number, next(_cells(line.rstrip("\n")))
 
 
 def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
