@@ -94,7 +94,7 @@ def read_table(
         _refuse_too_large(path)
         names = _header(path, required, filled, enough)
         cut = _cut_line(path, names, [names.index(name) for name in filled])
-        values = _values(path, names, cut)
+        values = _values(path, names, cut, required)
     except IsADirectoryError:
         raise InputError(f"{path} is a folder; it must be a CSV file") from None
     except FileNotFoundError:
@@ -196,7 +196,7 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
     return lines if lines > 2 else 0  # only a header and no complete row: there is nothing to read
 
 
-def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
+def _values(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> Floats:
     number = np.dtype(np.float64)
     try:
         try:
@@ -209,9 +209,9 @@ def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
     except UnicodeDecodeError:
         raise
     except ValueError as error:
-        _refuse_bad_row(path, names, cut)
+        _refuse_bad_row(path, names, cut, required)
         raise InputError(f"{path} cannot be read: {error}") from error
-    _refuse_bad_row(path, names, cut)
+    _refuse_bad_row(path, names, cut, required)
     raise InputError(f"{path} has a header and no rows")
 
 
@@ -252,15 +252,16 @@ def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
                 yield number, next(_cells(line.rstrip("\n")))
 
 
-def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
+def _refuse_bad_row(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> None:
     try:
         for number, cells in _rows(path, cut):
             place = f"{path}, line {number}"
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):
+                    further = "" if name in required else "; leave a column of text out"
                     raise InputError(
                         f"{place}, column {name}: {_shown(cell)} is not a number; "
-                        "leave the cell empty where there is none"
+                        f"leave the cell empty where there is none{further}"
                     )
             if len(cells) != len(names):
                 raise InputError(
