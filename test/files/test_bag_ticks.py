@@ -381,6 +381,21 @@ def test_bags_without_ticks(tmp_path: Path, ros: Any, robot: Any) -> None:
         read_run(lonely, robot())
 
 
+def test_the_window_that_takes_counts_apart_is_told(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [
+        (f"/{side}_ticks", (200 * n + late) * MS, ros.count(n))
+        for n in range(1, 9)
+        for late, side in ((0, "left"), (50, "right"))
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    told = (
+        r"pairing_window of the robot file, 0\.02 s; .* 0\.05 s apart .*: pairing_window: 0\.06 t"
+    )
+    with pytest.raises(InputError, match=told):
+        read_run(bag, robot("pairing_window: 0.02"))
+    assert read_run(bag, robot("pairing_window: 0.06")).ticks.rows == 8
+
+
 @pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
 def test_damaged_bags(tmp_path: Path, ros: Any, robot: Any, plugin: str) -> None:
     entries = joint_drive(ros) * 50

@@ -241,11 +241,27 @@ class Pairs(_TwoCounts):
             pair = pairing.take(side, self._count[row], round(1e9 * read_at))
             if pair is not None:
                 self._add(read_at, *pair)
-        ticks = self._ticks("no two counts within the pairing_window of the robot file")
+        ticks = self._ticks(
+            f"no two counts within the pairing_window of the robot file{self._apart()}"
+        )
         left_out = Counter(
             {"without a partner in time": pairing.unpaired, _NO_NUMBER: self._no_numbers}
         )
         return ticks, left_out_words(left_out)
+
+    def _apart(self) -> str:
+        """How far apart the counts of both wheels are as a rule, and the window that takes them."""
+        time, right = np.array(self._read_at), np.array(self._side, dtype=bool)
+        left = np.sort(time[~right])
+        if left.size < 2 or not right.any():
+            return ""
+        after = np.searchsorted(left, time[right])
+        beside = left[np.stack([np.maximum(after - 1, 0), np.minimum(after, left.size - 1)])]
+        gap = float(np.median(np.abs(beside - time[right]).min(axis=0)))
+        return (
+            f", {self._window:g} s; a count of the one wheel and the nearest of the other are "
+            f"{gap:.2g} s apart as a rule: pairing_window: {1.2 * gap:.2g} takes them"
+        )
 
 
 _NO_NUMBER = "with a value that is no number"

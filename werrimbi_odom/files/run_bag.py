@@ -82,6 +82,7 @@ def read_run_bag(
         circle=found.circle,
         wheels_from="velocities" if WORKED_OUT["velocities"] in notes else source.gives,
         taken_out=found.taken_out,
+        of_bag=True,
     )
 
 
