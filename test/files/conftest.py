@@ -200,12 +200,16 @@ class Messages:
         folder: Path,
         entries: Sequence[tuple[str, int, tuple[str, Any]]],
         plugin: str = "mcap",
+        compressed: str = "",
     ) -> Path:
-        """A bag of (topic, received [ns], (type, message))."""
-        from rosbags.rosbag2 import StoragePlugin, Writer
+        """A bag of (topic, received [ns], (type, message)); `compressed`: FILE or MESSAGE."""
+        from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
         storage = {"mcap": StoragePlugin.MCAP, "sqlite3": StoragePlugin.SQLITE3}[plugin]
-        with Writer(folder, version=9, storage_plugin=storage) as writer:
+        opened = Writer(folder, version=9, storage_plugin=storage)
+        if compressed:
+            opened.set_compression(CompressionMode[compressed], CompressionFormat.ZSTD)
+        with opened as writer:
             connections: dict[tuple[str, str], Any] = {}
             for topic, received, (kind, message) in entries:
                 of = (topic, kind)

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.driver_messages import Types
 from werrimbi_odom.files.echoed_topics import Parsed, echoed_files, echoed_messages, echoed_topic
-from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
+from werrimbi_odom.files.unfinished_bag import Raw, absolute, ending, of_message, raw_messages
 
 ROS1 = ".bag"
 SUFFIXES = (".mcap", ".db3", ROS1)
@@ -87,7 +87,7 @@ class Bag:
 
     def _read(self, raw: Raw) -> Any:
         try:
-            return self._types.read(raw.data, raw.kind)
+            return self._types.read(of_message(raw.data), raw.kind)
         except Exception as error:  # as above
             problem = _in_a_line(error)
             raise InputError(
@@ -126,7 +126,7 @@ def opened_bag(path: Path) -> Iterator[Bag]:
             'pip install "werrimbi_odom[tools]"'
         ) from missing
     reader: Any = None
-    ros1 = path.suffix == ROS1 and not path.is_dir()  # `ros2 bag record -o drive.bag`: a folder
+    ros1 = ending(path) == ROS1 and not path.is_dir()  # `ros2 bag record -o drive.bag`: a folder
     try:
         if path.is_dir():
             _refuse_repeated(path)
@@ -191,7 +191,7 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
     The files of `rosbag record --split`, which have no metadata, are read so as well.
     """
     files = _files(path)
-    split = path.is_dir() and all(each.suffix == ROS1 for each in files)
+    split = path.is_dir() and all(ending(each) == ROS1 for each in files)
     counts: Counter[tuple[str, str]] = Counter()
     definitions: dict[str, str] = {}
     last = 0
@@ -244,7 +244,7 @@ def _files(path: Path) -> list[Path]:
     """Files of a bag, in order of recording."""
     if not path.is_dir():
         return [path]
-    found = [each for each in path.iterdir() if each.suffix in SUFFIXES]
+    found = [each for each in path.iterdir() if ending(each) in SUFFIXES]
     return sorted(found, key=lambda each: (len(each.name), each.name))  # bag_9 before bag_10
 
 
@@ -279,7 +279,10 @@ def _refuse_repeated(folder: Path) -> None:
 def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    hint = "a recording cut off in mid-file: `mcap recover`, or `ros2 bag reindex`"
+    tools = "`mcap recover`, or `ros2 bag reindex`"
+    if ending(path) == ROS1:
+        tools = "`rosbag reindex`"
+    hint = f"a recording cut off in mid-file: {tools}"
     with suppress(OSError), path.open("rb") as file:  # a folder cannot be opened
         if not file.read(16).startswith(_BEGIN):
             hint = "it does not begin as an MCAP, SQLite or ROS 1 bag does"
