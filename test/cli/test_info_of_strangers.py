@@ -196,6 +196,26 @@ def test_what_is_seen_from_the_robot_is_not_taken_for_where_it_is(
     werrimbi(*shlex.split(told.rpartition("Next: ")[2])[1:])
 
 
+def test_drives_whose_topics_have_other_names_have_commands_of_their_own(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """The first one's topics were printed for all, and are not there in the others."""
+    ros, run = Messages(), run_of(ROBOT, 1, 40)
+    bags = []
+    for name, before in (("a", ""), ("b", "/base"), ("c", "")):
+        sent = [
+            (f"{before}{topic}", *rest) for topic, *rest in (*joints(ros, run), *gyro(ros, run))
+        ]
+        bags.append(ros.write(tmp_path / name, sorted(sent, key=lambda entry: entry[1])))
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(SIZES + NAMES)
+    told = werrimbi("info", *bags, "--robot", robot).words
+    assert f"The topics of {bags[1]} have other names: info of it alone prints its" in told
+    command = shlex.split(told.rpartition("Next: ")[2])
+    assert command[-2:] == [str(bags[0]), str(bags[2])]
+    werrimbi(*command[1:])
+
+
 def test_the_description_of_a_robot_in_a_namespace_is_found(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

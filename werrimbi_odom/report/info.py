@@ -18,7 +18,7 @@ from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, 
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, wheels_to_try
 from werrimbi_odom.report.info_words import words_of
-from werrimbi_odom.report.number_format import counted, picked
+from werrimbi_odom.report.number_format import counted, listed, picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -120,7 +120,26 @@ def next_step(found: Info) -> tuple[str, str]:
                 "the parameter file of the diff_drive_controller with --robot."
             ), ""
         return "Next: a first robot file.", command_of(found)
-    return _before_command(found), command_of(found)
+    apart = [str(each.path) for each in usable if each not in _of_one_command(usable)]
+    told = ""
+    if apart:
+        alone = "it" if len(apart) == 1 else "each"
+        told = (
+            f"The topics of {listed(apart)} have other names: info of {alone} alone prints its "
+            "command. "
+        )
+    return told + _before_command(found), command_of(found)
+
+
+def _of_one_command(usable: Sequence[Held]) -> list[Held]:
+    """Those whose topics have the names that the first one's have; folders have none."""
+    named = {
+        index: (each.wheels.name, each.reference and each.reference.name)
+        for index, each in enumerate(usable)
+        if each.wheels is not None
+    }
+    first = next(iter(named.values()), None)
+    return [each for index, each in enumerate(usable) if named.get(index, first) == first]
 
 
 def _before_command(found: Info) -> str:
@@ -235,7 +254,9 @@ def command_of(found: Info) -> str:
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]
-    held = usable[0]
+    usable = _of_one_command(usable)
+    paths = [str(each.path) for each in usable]
+    held = next((each for each in usable if each.wheels is not None), usable[0])
     if held.wheels is not None:
         words += ["--ticks-topic", held.wheels.name]
     if held.reference is not None:
