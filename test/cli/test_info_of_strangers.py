@@ -17,7 +17,7 @@ import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE, write_run
 from test.command_line import Werrimbi
 from test.files.conftest import Messages
-from test.files.unseen import JOINTS, gyro, joints, poses, stamp_of
+from test.files.unseen import JOINTS, gyro, joints, poses, stamp_of, urdf
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Reference
@@ -194,6 +194,42 @@ def test_what_is_seen_from_the_robot_is_not_taken_for_where_it_is(
     robot.write_text(SIZES + NAMES)
     told = werrimbi("info", bag, "--robot", robot).words
     werrimbi(*shlex.split(told.rpartition("Next: ")[2])[1:])
+
+
+def test_drives_whose_topics_have_other_names_have_commands_of_their_own(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """The first one's topics were printed for all, and are not there in the others."""
+    ros, run = Messages(), run_of(ROBOT, 1, 40)
+    bags = []
+    for name, before in (("a", ""), ("b", "/base"), ("c", "")):
+        sent = [
+            (f"{before}{topic}", *rest) for topic, *rest in (*joints(ros, run), *gyro(ros, run))
+        ]
+        bags.append(ros.write(tmp_path / name, sorted(sent, key=lambda entry: entry[1])))
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(SIZES + NAMES)
+    told = werrimbi("info", *bags, "--robot", robot).words
+    assert f"The topics of {bags[1]} have other names: info of it alone prints its" in told
+    command = shlex.split(told.rpartition("Next: ")[2])
+    assert command[-2:] == [str(bags[0]), str(bags[2])]
+    werrimbi(*command[1:])
+
+
+def test_the_description_of_a_robot_in_a_namespace_is_found(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """The other robot's comes first in the bag; only the wheels' own has the right sizes."""
+    ros, run = Messages(), run_of(ROBOT, 1, 20)
+    entries = [(f"/two{name}", stamp, sent) for name, stamp, sent in joints(ros, run)]
+    own = ros.make("std_msgs/msg/String", urdf())
+    other = ros.make("std_msgs/msg/String", urdf().replace('radius="', 'radius="9'))
+    for space, text in (("/one", other), ("/two", own)):
+        entries.append((f"{space}/robot_description", stamp_of(0.0), ("std_msgs/msg/String", text)))
+    bag = ros.write(tmp_path / "bag", sorted(entries, key=lambda entry: entry[1]))
+    werrimbi("info", bag, "--out", tmp_path / "robot.yaml")
+    robot = wo.read_robot(tmp_path / "robot.yaml").robot
+    assert robot.wheel_radius == pytest.approx(ROBOT.wheel_radius, abs=1e-6)
 
 
 @pytest.mark.parametrize("until", [5.0, 60.0])

@@ -64,14 +64,14 @@ class Messages:
         where = np.array(positions, dtype=np.float64)
         return kind, self.make(kind, self.header(nanoseconds), list(names), where, none, none)
 
-    def count(self, value: int, bits: int = 32) -> tuple[str, Any]:
-        kind = f"std_msgs/msg/Int{bits}"
+    def count(self, value: float, bits: int = 32, of: str = "Int") -> tuple[str, Any]:
+        kind = f"std_msgs/msg/{of}{bits}"
         return kind, self.make(kind, value)
 
-    def counts(self, *values: int, bits: int = 64) -> tuple[str, Any]:
-        kind = f"std_msgs/msg/Int{bits}MultiArray"
+    def counts(self, *values: int, bits: int = 64, of: str = "Int") -> tuple[str, Any]:
+        kind = f"std_msgs/msg/{of}{bits}MultiArray"
         layout = self.make("std_msgs/msg/MultiArrayLayout", [], 0)
-        return kind, self.make(kind, layout, np.array(values, dtype=f"int{bits}"))
+        return kind, self.make(kind, layout, np.array(values, dtype=f"{of.lower()}{bits}"))
 
     def floats(self, *values: float) -> tuple[str, Any]:
         kind = "std_msgs/msg/Float64MultiArray"
@@ -200,12 +200,16 @@ class Messages:
         folder: Path,
         entries: Sequence[tuple[str, int, tuple[str, Any]]],
         plugin: str = "mcap",
+        compressed: str = "",
     ) -> Path:
-        """A bag of (topic, received [ns], (type, message))."""
-        from rosbags.rosbag2 import StoragePlugin, Writer
+        """A bag of (topic, received [ns], (type, message)); `compressed`: FILE or MESSAGE."""
+        from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
         storage = {"mcap": StoragePlugin.MCAP, "sqlite3": StoragePlugin.SQLITE3}[plugin]
-        with Writer(folder, version=9, storage_plugin=storage) as writer:
+        opened = Writer(folder, version=9, storage_plugin=storage)
+        if compressed:
+            opened.set_compression(CompressionMode[compressed], CompressionFormat.ZSTD)
+        with opened as writer:
             connections: dict[tuple[str, str], Any] = {}
             for topic, received, (kind, message) in entries:
                 of = (topic, kind)

@@ -14,7 +14,8 @@ import pytest
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Contents, contents_of
 from werrimbi_odom.files.measured_topic import preference
-from werrimbi_odom.files.own_odometry import why_from_wheels
+from werrimbi_odom.files.own_odometry import is_asked_for, why_from_wheels
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.simulation.lidar import Lidar
 
@@ -173,6 +174,12 @@ def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
         ("/odometry/filtered", ODOMETRY, "map", "base_link", True),
         ("/robot_pose_ekf/odom_combined", "", "odom_combined", "", True),
         ("/wheel_odom", ODOMETRY, "", "", True),
+        ("/slam_bot/odom", ODOMETRY, "odom", "base_link", True),
+        ("/odom", ODOMETRY, "ground_robot/odom", "ground_robot/base_link", True),
+        ("/robot/dlio/odom_node/odom", ODOMETRY, "odom", "base_link", False),
+        ("/stereo_odometry/odom", ODOMETRY, "odom", "base_link", False),
+        ("/rgbd_odometry/odom", ODOMETRY, "odom", "base_link", False),
+        ("/fastlio2/odom", ODOMETRY, "odom", "base_link", False),
         ("/rtabmap/odom", ODOMETRY, "odom", "base_link", False),
         ("/zed2/zed_node/odom", ODOMETRY, "odom", "base_link", False),
         ("/Odometry", ODOMETRY, "camera_init", "body", False),
@@ -184,6 +191,17 @@ def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
 )
 def test_names(topic: str, kind: str, parent: str, child: str, from_wheels: bool) -> None:
     assert bool(why_from_wheels(topic, kind, parent, child)) is from_wheels
+
+
+def test_a_namespace_that_holds_wheels_is_the_robots_name(tmp_path: Path, ros: Any) -> None:
+    """/vision/odom may be a camera's; beside /vision/joint_states it is that robot's own."""
+    for joints, independent in ((WHEELS, []), (["pan", "tilt"], ["/vision/odom"])):
+        entries = [
+            ("/vision/joint_states", 1, ros.joints(1 * MS, joints, [0.0, 0.0])),
+            ("/vision/odom", 2, ros.odometry(2 * MS, 0.0, 0.0, 0.0)),
+        ]
+        held = contents(ros.write(tmp_path / joints[0], entries))
+        assert [each.name for each in held.independent] == independent
 
 
 def turning(ros: Any, other: str, apart: float, drift: float) -> list[Any]:
@@ -305,3 +323,29 @@ def test_points_in_no_frame_come_after_satellites(tmp_path: Path, ros: Any) -> N
     held = contents(ros.write(tmp_path / "bag", entries))
     assert [each.name for each in held.references][-1] == "/a_speed"
     assert "may be no positions" in held.references[-1].why
+
+
+@pytest.mark.parametrize(
+    ("topic", "asked_for"),
+    [
+        *((name, False) for name in ("/planar_pose", "/floorplan_pose", "/goalie/pose")),
+        *((name, True) for name in ("/goal_pose", "/move_base_simple/goal", "/targetPose")),
+        *((name, True) for name in ("/initialpose", "/clicked_point", "/goalpose", "/plan1")),
+        *((name, True) for name in ("/pose_error", "/cmd_pose", "/mavros/setpoint_position/local")),
+    ],
+)
+def test_goals_and_commands_are_told_by_whole_words(topic: str, asked_for: bool) -> None:
+    assert is_asked_for(topic) is asked_for
+
+
+def test_a_body_that_is_called_target_is_a_reference_if_it_is_asked_for(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    topic = "/vrpn_client_node/target/pose"
+    entries = [("/joint_states", 1, ros.joints(1 * MS, WHEELS, [0.0, 0.0]))]
+    entries += [(topic, n, ros.pose(n * MS, 0.1 * n, 0.0, 0.0)) for n in range(1, 9)]
+    bag = ros.write(tmp_path / "bag", entries)
+    assert contents(bag).references == ()
+    run = read_run(bag, robot(), reference_topic=topic)
+    assert run.reference is not None
+    assert not run.circle

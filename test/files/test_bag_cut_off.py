@@ -82,6 +82,60 @@ def test_several_recordings_in_a_folder_are_not_one(
     assert f"{folder / 'a'}." in str(said.value)
 
 
+@pytest.mark.parametrize("share", [1.0, 0.5])
+def test_a_folder_of_ros1_bags(tmp_path: Path, ros: Any, robot: Any, share: float) -> None:
+    """As `rosbag record --split` leaves it: whole, or the last one cut off."""
+    folder = tmp_path / "bags"
+    folder.mkdir()
+    for number in range(2):
+        part = drive(ros, 2000)[1000 * number :][:1000]
+        last = ros.write_ros1(folder / f"run_{number}.bag", part)
+    whole = last.read_bytes()
+    last.write_bytes(whole[: int(share * len(whole))])
+    run = read_run(folder, robot())
+    np.testing.assert_allclose(run.ticks.left, 100.0 / (2 * np.pi) * 1000.0 * run.ticks.time)
+    assert (run.ticks.rows == 2000) == (run.damage == ()) == (share == 1.0)
+
+
+@pytest.mark.parametrize(("name", "share"), [("X.BAG", 1.0), ("x.bag.active", 0.9)])
+def test_other_ends_of_the_name_of_a_ros1_bag(
+    tmp_path: Path, ros: Any, robot: Any, name: str, share: float
+) -> None:
+    """Of another file system, and of a recorder that was killed."""
+    plain = ros.write_ros1(tmp_path / "x.bag", drive(ros, 300))
+    bag = tmp_path / name
+    bag.write_bytes(plain.read_bytes()[: int(share * plain.stat().st_size)])
+    plain.unlink()
+    for path in (bag, tmp_path):
+        run = read_run(path, robot())
+        assert 100 < run.ticks.rows <= 300
+        assert bool(run.damage) == (share < 1.0)
+
+
+@pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
+@pytest.mark.parametrize("mode", ["MESSAGE", "FILE"])
+def test_compressed_by_ros2_bag_and_without_metadata(
+    tmp_path: Path, ros: Any, robot: Any, plugin: str, mode: str
+) -> None:
+    bag = ros.write(tmp_path / "bag", drive(ros, 30), plugin, mode)
+    (bag / "metadata.yaml").unlink()
+    (file,) = bag.iterdir()
+    if mode == "MESSAGE":
+        assert read_run(bag, robot()).ticks.rows == 30
+        return
+    for path in (bag, file):
+        with pytest.raises(InputError, match=rf"`zstd -d {file.name}` writes {file.stem}, which"):
+            read_run(path, robot())
+
+
+def test_what_recovers_a_bag_is_of_its_kind(tmp_path: Path, ros: Any, robot: Any) -> None:
+    for name, tool in (("x.bag", "`rosbag reindex`"), ("x.mcap", "`mcap recover`")):
+        begin = b"#ROSBAG V2.0\n" if name == "x.bag" else b"\x89MCAP0\r\n"
+        (tmp_path / name).write_bytes(begin + 9 * b"\xff")
+        with pytest.raises(InputError, match=tool):
+            read_run(tmp_path / name, robot())
+
+
 @pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
 def test_a_file_that_was_renamed_is_read_beside_its_old_metadata(
     tmp_path: Path, ros: Any, robot: Any, plugin: str

@@ -194,6 +194,29 @@ def test_without_an_echo_it_says_so(ranges: float, tmp_path: Path, ros: Any, rob
         read_run(bag, robot())
 
 
+@pytest.mark.parametrize(
+    ("names", "times", "said"),
+    [
+        (
+            ("angle_min", "angle_max", "angle_increment"),
+            180.0 / np.pi,
+            r"around by 360 rad: .* in ",
+        ),
+        (("ranges", "range_min", "range_max"), 1000.0, "they are in millimetres, and must be in"),
+    ],
+)
+def test_other_units_of_a_scan_are_told(
+    names: tuple[str, ...], times: float, said: str, tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Too little was said to be within its reach, and more walls to be asked for."""
+    held = entries(ros, sweeps())
+    for topic, _, (_, scan) in held:
+        for name in names if topic == "/scan" else ():
+            setattr(scan, name, getattr(scan, name) * times)
+    with pytest.raises(InputError, match=said):
+        read_run(ros.write(tmp_path / "run", held), robot())
+
+
 def test_in_an_empty_hall_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
     """A few chairs are within its reach."""
     hall = Room(np.concatenate([rooms.box(x, 4.0, x + 0.1, 4.1) for x in (-1.0, 0.0, 1.0)]))

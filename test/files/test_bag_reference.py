@@ -108,6 +108,13 @@ def test_of_poses_that_come_in_bursts_the_last_is_kept(
     assert any("all come 10 at a time, of which the last is kept" in note for note in run.notes)
 
 
+def test_an_imu_that_states_no_rate_is_told_as_that(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """It was asked for a frame, of which there are none."""
+    entries = [("/imu", n * MS, ros.imu(n * MS, 0.1, known=False)) for n in (1, 2, 3)]
+    with pytest.raises(InputError, match=r"/imu: no message holds a yaw rate: angular_velocity_c"):
+        read_run(written(ros, tmp_path, entries), robot())
+
+
 @pytest.mark.parametrize("stamps", [[1, 2, 3, 4], [1, 2, 60, 61, 62, 120, 121, 122]])
 def test_what_a_person_measured_together_is_kept(
     stamps: list[int], tmp_path: Path, ros: Any, robot: Any

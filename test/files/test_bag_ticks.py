@@ -207,6 +207,49 @@ def test_counters_as_floats_are_read_where_they_are_asked_for(
     assert run.ticks.right.tolist() == [-3, -6, -9]
 
 
+@pytest.mark.parametrize("bits", [16, 32])
+def test_unsigned_counters_run_on_below_zero(
+    tmp_path: Path, ros: Any, robot: Any, bits: int
+) -> None:
+    """Backwards from zero: the counter of a board that drives away astern."""
+    rows = [(-round(200 * math.sin(0.05 * n)), round(150 * math.sin(0.04 * n))) for n in range(90)]
+    wrapped = [tuple(count % 2**bits for count in row) for row in rows]
+    single = [
+        (f"/{side}_ticks", n * MS, ros.count(row[place], bits, "UInt"))
+        for n, row in enumerate(wrapped, start=1)
+        for place, side in enumerate(("left", "right"))
+    ]
+    array = [
+        ("/board", n * MS, ros.counts(*row, bits=bits, of="UInt"))
+        for n, row in enumerate(wrapped, start=1)
+    ]
+    for entries, topic in ((single, None), (array, "/board")):
+        name = "array" if topic else "single"
+        run = read_run(ros.write(tmp_path / name, entries), robot(), ticks_topic=topic)
+        assert run.ticks.left.tolist() == [left for left, _ in rows]
+        assert run.ticks.right.tolist() == [right for _, right in rows]
+
+
+def test_what_may_be_a_power_is_read_where_it_is_asked_for(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    for of, bits in (("UInt", 16), ("Float", 32)):
+        entries = [
+            (f"/{side}_motor", n * MS, ros.count(times * n, bits, of))
+            for n in (1, 2, 3)
+            for times, side in ((100, "left"), (90, "right"))
+        ]
+        bag = ros.write(tmp_path / of, entries)
+        with pytest.raises(InputError, match="no topic holds ticks"):
+            read_run(bag, robot())
+        run = read_run(bag, robot(), ticks_topic="/left_motor,/right_motor")
+        assert run.ticks.right.tolist() == [90, 180, 270]
+    entries = [(f"/{side}", 1, ros.count(0.5, 64, "Float")) for side in ("a", "b")]
+    bag = ros.write(tmp_path / "speeds", entries)
+    with pytest.raises(InputError, match=r"/a,/b: 0\.5 is no whole number, and so no counter"):
+        read_run(bag, robot(), ticks_topic="/a,/b")
+
+
 def board(n: int) -> tuple[float, ...]:
     """What a board sends at once: ms, two commands, two counters, a battery."""
     speed = 20.0 * math.sin(0.1 * n)
@@ -336,6 +379,21 @@ def test_bags_without_ticks(tmp_path: Path, ros: Any, robot: Any) -> None:
     )
     with pytest.raises(InputError, match="no two counts within the pairing_window"):
         read_run(lonely, robot())
+
+
+def test_the_window_that_takes_counts_apart_is_told(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [
+        (f"/{side}_ticks", (200 * n + late) * MS, ros.count(n))
+        for n in range(1, 9)
+        for late, side in ((0, "left"), (50, "right"))
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    told = (
+        r"pairing_window of the robot file, 0\.02 s; .* 0\.05 s apart .*: pairing_window: 0\.06 t"
+    )
+    with pytest.raises(InputError, match=told):
+        read_run(bag, robot("pairing_window: 0.02"))
+    assert read_run(bag, robot("pairing_window: 0.06")).ticks.rows == 8
 
 
 @pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])

@@ -109,12 +109,32 @@ def test_angles_that_never_change_are_none(tmp_path: Path, ros: Any, robot: Any)
     entries = [joints(ros, n, [0.0, 0.0], [1.0, 1.0]) for n in range(11)]
     run = read_run(ros.write(tmp_path / "bag", entries), robot())
     assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi))
+    assert run.wheels_from == "velocities", "compare and info say that they are integrated"
     entries = [joints(ros, n, [0.1 * n, 0.1 * n], [9.0, 9.0]) for n in range(11)]
     run = read_run(ros.write(tmp_path / "other", entries), robot())
     assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi)), "angles are what was counted"
     entries = [joints(ros, n, [0.5, 0.5], [0.0, 0.0]) for n in range(3)]
     run = read_run(ros.write(tmp_path / "still", entries), robot())
     assert not any("speeds" in note for note in run.notes), "a robot that stands has angles"
+
+
+def test_angles_that_are_no_numbers_are_none(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """A joint_state_broadcaster writes NaN for an interface that the hardware does not have."""
+    for name, angle in (("none", math.nan), ("later", 0.0)):
+        entries = [joints(ros, n, [angle if n else math.nan] * 2, [1.0, 1.0]) for n in range(11)]
+        run = read_run(ros.write(tmp_path / name, entries), robot())
+        assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi))
+        assert any("only speeds: they are integrated" in note for note in run.notes)
+
+
+def test_wheels_in_messages_of_their_own(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Each motor has a node: both joints are there, and the nearest name was the other wheel."""
+    entries = [
+        ("/joint_states", n * MS, ros.joints(n * MS, [WHEELS[n % 2]], [0.1 * n])) for n in range(8)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    with pytest.raises(InputError, match="joint_states: no message holds left_wheel_joint, right"):
+        read_run(bag, robot())
 
 
 def test_angles_that_begin_anew_at_each_turn(tmp_path: Path, ros: Any, robot: Any) -> None:

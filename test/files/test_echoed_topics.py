@@ -133,6 +133,38 @@ def test_files_may_end_in_txt(tmp_path: Path, ros: Any, robot: Any) -> None:
     same(*(read_run(path, robot()) for path in (text, named)))
 
 
+def test_a_byte_order_mark_a_capital_end_and_names_once_more(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Saved again by an editor; and two echoes, one after the other, into one file."""
+    entries = drive(ros, 0)
+    plain, text = echoed(tmp_path / "csv", entries), echoed(tmp_path / "text", entries)
+    wheels = text / "joint_states.csv"
+    first, *rows = wheels.read_text().splitlines(keepends=True)
+    told = [first, *rows[:30], first, *rows[30:]]
+    (text / "joint_states.CSV").write_text("".join(told), encoding="utf-8-sig")
+    wheels.unlink()
+    same(*(read_run(path, robot()) for path in (text, plain)))
+
+
+@pytest.mark.parametrize("kind", ["counts", "floats"])
+def test_arrays_of_counters(tmp_path: Path, ros: Any, robot: Any, kind: str) -> None:
+    """Of two whole numbers both are counters; of floats those that run on as counters do."""
+    entries = [
+        (
+            "/encoders",
+            n * 50 * MS + 10**18,
+            getattr(ros, kind)(round(300 * np.sin(0.02 * n)), round(200 * np.sin(0.03 * n))),
+        )
+        for n in range(300)
+    ]
+    text = echoed(tmp_path / "text", entries)
+    run = read_run(text, robot())
+    assert run.ticks.left.tolist() == [round(300 * np.sin(0.02 * n)) for n in range(300)]
+    assert run.ticks.right.tolist() == [round(200 * np.sin(0.03 * n)) for n in range(300)]
+    assert f"std_msgs/msg/{'Int' if kind == 'counts' else 'Float'}64MultiArray" in run.notes[0]
+
+
 @pytest.mark.parametrize("dot", ["", "."])
 @pytest.mark.parametrize("number", range(4))
 def test_what_bagpy_writes_is_the_bag(

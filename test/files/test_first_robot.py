@@ -113,6 +113,13 @@ def test_names_that_the_bag_told_are_not_said_to_be_of_the_file(tmp_path: Path, 
         assert told in line
 
 
+def test_a_date_that_is_none_is_told_with_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "controllers.yaml"
+    path.write_text("diff_drive_controller:\n  ros__parameters:\n    built: 2024-13-45\n")
+    with pytest.raises(wo.InputError, match=r"controllers\.yaml cannot be read: month must be in"):
+        of_controller(path)
+
+
 def test_a_file_without_wheels_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "other.yaml"
     path.write_text("amcl:\n  ros__parameters:\n    max_particles: 2000\n")

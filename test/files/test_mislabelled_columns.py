@@ -226,6 +226,17 @@ def test_a_yaw_that_was_never_measured() -> None:
         refuse_wrong_columns(wrong)
 
 
+@pytest.mark.parametrize(("period", "told"), [(1 << 12, False), (2000, True)])
+def test_of_a_bag_columns_are_not_to_be_converted(period: int, told: bool) -> None:
+    """A line in the robot file can be written all the same."""
+    wrong = counted(driven(0), lambda total: total % period)
+    for of_bag in (False, True):
+        with pytest.raises(InputError) as error:
+            refuse_wrong_columns(replace(wrong, of_bag=of_bag))
+        words = "a bag has no such columns: mend what its driver sends, or write the converted"
+        assert (words in str(error.value)) == (told and of_bag)
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("signed", [False, True])
 @pytest.mark.parametrize(

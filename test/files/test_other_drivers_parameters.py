@@ -117,6 +117,15 @@ def test_a_controllers_file_is_read_and_it_is_said_what_is_not_needed(tmp_path: 
     assert "publish_rate: 50.0" in out.read_text()
 
 
+def test_parameters_of_older_controllers_are_not_needed_either(tmp_path: Path) -> None:
+    """As in Clearpath's file of an A200."""
+    older = ("preserve_turning_radius", "publish_cmd", "publish_wheel_data")
+    path = tmp_path / "control.yaml"
+    path.write_text(CONTROLLERS + TICKS + "".join(f"    {name}: true\n" for name in older))
+    (remark,) = read_robot_file(path).remarks
+    assert ", ".join(older) in remark
+
+
 @pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT, NEWER_TURTLEBOT, OWN])
 def test_without_ticks_positions_in_radians_are_read_and_counts_refused(
     tmp_path: Path, text: str

@@ -65,6 +65,7 @@ def test_the_name_of_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         FINE.replace("0.1,3", "\n0.1,3"),
         FINE.replace("0.1,3,4", " 0.1 , 3 ,\t4 "),
         '"t_s","left_ticks","right_ticks"\n"0.0","1","2"\n"0.1","3","4"\n',
+        '"t_s", "left_ticks",\t"right_ticks"\n"0.0", "1", "2"\n"0.1", "3", "4"',
         FINE.replace("0.1,3,4", "1e-1,3.0,+4"),
         "right_ticks,t_s,left_ticks\n2,0.0,1\n4,0.1,3\n",
         "right_ticks, note,t_s,left_ticks\n2,,0.0,1\n4,,0.1,3\n",
@@ -169,6 +170,11 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
             "ticks.csv, line 1: column 4 has no name",
         ),
         (FINE + "0.2,x,6\n", "ticks.csv, line 4, column left_ticks: 'x' is not a number"),
+        (
+            TICKS[:-1] + ",mode\n0,1,2,auto\n",
+            "ticks.csv, line 2, column mode: 'auto' is not a number; leave the cell empty where "
+            "there is none; leave a column of text out",
+        ),
         (FINE + "\n0.2,5,1_0\n", "ticks.csv, line 5, column right_ticks: '1_0' is not a number"),
         (FINE + "0.2,5,٣\n", "ticks.csv, line 4, column right_ticks: '٣' is not a number"),
         (FINE + "0.2,5,6\0\n", "ticks.csv, line 4, column right_ticks: '6\\x00' is not a number"),
@@ -351,6 +357,8 @@ RENAMED = {
     "time,s_right,s_left": "right_ticks for s_right, a way or an angle: as whole numbers of small",
     "time,dL,dR": "right_ticks for dR, if that is what came since the row before, its running sum)",
     "time,left_cmd,right_cmd": "in place of its own (perhaps t_s for time), and bring",
+    "sec,nanosec,left,right": "(perhaps t_s for sec, plus nanosec divided by 10^9; left_ticks for",
+    "stamp.secs,stamp.nsecs,l,r": "(perhaps t_s for stamp.secs, plus stamp.nsecs divided by 10^9;",
     "leftEncoder,rightEncoder": "no column is called like a time: where rows come at a steady rate",
 }
 

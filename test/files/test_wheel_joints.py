@@ -114,6 +114,18 @@ def test_speeds_alone_are_integrated(tmp_path: Path, ros: Any) -> None:
         )
 
 
+def test_info_says_that_speeds_are_integrated_where_angles_stay_at_zero(
+    tmp_path: Path, ros: Any
+) -> None:
+    entries = []
+    for n in range(400):
+        kind, message = ros.joints((1000 + 50 * n) * MS, WHEELS[1:3], [0.0, 0.0])
+        message.velocity = np.array([3.0, 4.0])
+        entries.append(("/joint_states", n + 1, (kind, message)))
+    said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
+    assert "Wheels: /joint_states, speeds of the wheels, which are integrated" in said
+
+
 def test_a_message_that_cannot_be_read_ends_the_look_and_raises_nothing() -> None:
     """Who reads the wheels afterwards tells of it, with topic and type."""
 
@@ -186,6 +198,15 @@ def test_an_arm_in_a_urdf_moves_neither_base_nor_radius() -> None:
     assert (robot.separation, robot.radius) == (0.4, 0.1)
 
 
+@pytest.mark.parametrize("off", [0.0, 0.001, -0.02])
+def test_a_wheel_in_the_middle_of_a_urdf_drives_neither_side(off: float) -> None:
+    """A passive wheel that a drawing puts 1 mm off made a base of 0.3005 m of 0.4 m."""
+    sides = (("left", 0.2), ("right", -0.2), ("rear_wheel", off))
+    parts = [WHEEL.format(name=name, y=y) for name, y in sides]
+    robot = of_urdf(f'<robot name="r"><link name="base_link"/>{"".join(parts)}</robot>')
+    assert (robot.left, robot.right, robot.separation) == (("left",), ("right",), 0.4)
+
+
 def test_an_array_of_more_than_two_values_is_not_called_an_unread_type(
     tmp_path: Path, ros: Any
 ) -> None:
@@ -195,6 +216,37 @@ def test_an_array_of_more_than_two_values_is_not_called_an_unread_type(
     said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
     assert "if two of its values count the wheels, --ticks-topic /encoder_status:0:1" in said
     assert "no type that is read" not in said
+
+
+def test_two_counters_of_other_names_are_offered_as_the_wheels(tmp_path: Path, ros: Any) -> None:
+    """As differential_drive calls them; they were told to be read where each wheel has a topic."""
+    entries = [("/imu", n, ros.imu(10 * n * MS, 0.1)) for n in range(1, 60)]
+    for n in range(1, 60):
+        entries += [(f"/{side}wheel", n * MS, ros.count(n, 16)) for side in "lr"]
+    bag = ros.write(tmp_path / "bag", entries)
+    result = wo.info(bag)
+    said = " ".join(result.summary().split())
+    assert "--ticks-topic /lwheel,/rwheel reads them" in said
+    assert "Record how the wheels turned" not in said
+    assert result.to_dict()["next"] == f"werrimbi info {bag} --ticks-topic /lwheel,/rwheel"
+
+
+def test_odometry_in_another_frame_is_offered_as_the_wheels(tmp_path: Path, ros: Any) -> None:
+    """In the frame world it may be a sensor's; it was told to record at least the /odom."""
+    entries = []
+    for n in range(1, 800):
+        kind, sent = ros.odometry(20 * n * MS, math.sin(0.01 * n), 1 - math.cos(0.01 * n), 0.01 * n)
+        sent.header.frame_id = "world"
+        entries.append(("/odom", 20 * n * MS, (kind, sent)))
+        entries.append(("/imu", 20 * n * MS + 1, ros.imu(20 * n * MS, 0.5)))
+    bag = ros.write(tmp_path / "bag", entries)
+    result = wo.info(bag)
+    assert result.to_dict()["next"] == f"werrimbi info {bag} --ticks-topic /odom"
+    assert "Record how the wheels turned" not in result.summary()
+    found = wo.info(bag, ticks_topic="/odom")
+    said = " ".join(found.summary().split())
+    assert "its yaw rate is integrated). It is taken." in said
+    assert "Reference /odom" not in said
 
 
 def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, ros: Any) -> None:
@@ -212,3 +264,30 @@ def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, 
     assert "By name /wheel_mode (std_msgs/msg/Bool) may, but is of no type that is read." in said
     assert "Record how the wheels turned as well" in said
     assert result.to_dict()["next"] is None
+
+
+@pytest.mark.parametrize(
+    ("wheels", "further", "taken"),
+    [
+        ("/joint_states", "/base/odom", "/base/imu"),
+        ("/joint_states", "/other/joint_states", None),
+        ("/robot/joint_states", "/base/odom", None),
+    ],
+)
+def test_a_driver_in_a_namespace_is_of_the_robot_whose_wheels_have_none(
+    tmp_path: Path, ros: Any, wheels: str, further: str, taken: str | None
+) -> None:
+    """The driver's odometry and gyro were another robot's; asked for, any reference is taken."""
+    space, entries = further.rpartition("/")[0], []
+    for n in range(1, 500):
+        stamp, angles = 20 * n * MS, (0.1 * n, 0.1 * n + 0.3 * math.sin(0.02 * n))
+        moving = ros.joints(stamp, WHEELS[1:3], angles)
+        other = ros.odometry(stamp, 0.1 * n, 0.0, 0.0) if "odom" in further else moving
+        gyro = ros.imu(stamp, math.cos(0.02 * n))
+        entries += [(wheels, stamp, moving), (further, stamp, other)]
+        entries.append((f"{space}/imu", stamp, gyro))
+    bag = ros.write(tmp_path / "bag", entries)
+    for wish in (None, f"{space}/imu"):
+        (run,) = wo.info(bag, reference_topic=wish, ticks_topic=wheels).to_dict()["runs"]
+        found = [each["topic"] for each in run["references"] if each["taken"]]
+        assert found == ([] if taken is None and wish is None else [f"{space}/imu"])

@@ -15,7 +15,7 @@ import numpy as np
 
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.bag import Bag, opened_bag
 from werrimbi_odom.files.bag_contents import Wheels, contents_of
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
@@ -225,11 +225,10 @@ def _of_bag(
     """Contents of a bag, and what it says about the robot."""
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
-        contents = contents_of(opened, base)
+        contents = contents_of(opened, base, wished=[reference_topic or ""])
         wheels, joints = chosen_wheels(opened, contents, ticks_topic, source)
         if source is None and not first.has_sizes:
-            text = opened.firsts([DESCRIPTION]).get(DESCRIPTION)
-            first = of_urdf(getattr(text, "data", ""), tuple(joints.turned or ()))
+            first = of_urdf(_description(opened, wheels), tuple(joints.turned or ()))
         if source is None and wheels:
             first = with_driver(replace(first, counted=wheels.gives == "counts"), wheels.kind)
             if first.counted and not wheels.places:
@@ -242,7 +241,9 @@ def _of_bag(
             if (joints.left, joints.right) != known and "joints" in told:
                 told["joints"] = "the bag's joints, by their names"
             first = replace(first, left=joints.left, right=joints.right, told=told)
-        others = of_another_robot(contents, wheels)
+        others = of_another_robot(contents, wheels) if reference_topic is None else set()
+        if wheels is not None:  # odometry that is asked for as the wheels measures nothing more
+            others = {*others, wheels.name}
         ours = [each for each in contents.references if each.name not in others]
         reference = _best(ours, reference_topic)
         beside = None if reference_topic else _gyro(ours, reference)
@@ -253,6 +254,20 @@ def _of_bag(
     return held, first
 
 
+def _description(bag: Bag, wheels: Wheels | None) -> str:
+    """The URDF of the namespace of the wheels, or else the first one; "" without one."""
+    spaces = [
+        each.name.removesuffix(DESCRIPTION)
+        for each in bag.topics
+        if each.name.endswith(DESCRIPTION)
+    ]
+    ours = "" if wheels is None else wheels.name
+    spaces.sort(key=lambda space: (not ours.startswith(f"{space}/"), -len(space)))
+    named = [f"{space}{DESCRIPTION}" for space in spaces]
+    found = bag.firsts(named[:1])
+    return next((getattr(each, "data", "") for each in found.values()), "")
+
+
 def _separate(other: Path, source: RobotFile | None, wish: str | None) -> Measured | None:
     """The reference in a recording of its own; None for a folder with reference.csv."""
     bag = bag_at(other, REFERENCE)
@@ -260,7 +275,7 @@ def _separate(other: Path, source: RobotFile | None, wish: str | None) -> Measur
         return None
     base = "" if source is None else str(source.values["base_frame_id"])
     with opened_bag(bag) as opened:
-        return _best(contents_of(opened, base).references, wish)
+        return _best(contents_of(opened, base, wished=[wish or ""]).references, wish)
 
 
 def _topics(each: Wheels | Measured) -> list[str]:
@@ -296,6 +311,8 @@ def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
         ticks_topic=wheels.name,
         reference_topic="none",
     )
+    if run.wheels_from != "positions":  # they stay at zero beside speeds
+        return first
     angles = (run.ticks.left, run.ticks.right)
     return with_steps(first, [np.asarray(each, dtype=np.float64) for each in angles])
 

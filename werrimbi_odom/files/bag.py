@@ -18,7 +18,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.driver_messages import Types
 from werrimbi_odom.files.echoed_topics import Parsed, echoed_files, echoed_messages, echoed_topic
 from werrimbi_odom.files.several_bags import refuse_several
-from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
+from werrimbi_odom.files.unfinished_bag import Raw, absolute, ending, of_message, raw_messages
 
 ROS1 = ".bag"
 SUFFIXES = (".mcap", ".db3", ROS1)
@@ -88,7 +88,7 @@ class Bag:
 
     def _read(self, raw: Raw) -> Any:
         try:
-            return self._types.read(raw.data, raw.kind)
+            return self._types.read(of_message(raw.data), raw.kind)
         except Exception as error:  # as above
             problem = _in_a_line(error)
             raise InputError(
@@ -127,7 +127,7 @@ def opened_bag(path: Path) -> Iterator[Bag]:
             'pip install "werrimbi_odom[tools]"'
         ) from missing
     reader: Any = None
-    ros1 = path.suffix == ROS1 and not path.is_dir()  # `ros2 bag record -o drive.bag`: a folder
+    ros1 = ending(path) == ROS1 and not path.is_dir()  # `ros2 bag record -o drive.bag`: a folder
     try:
         if path.is_dir():
             _refuse_repeated(path)
@@ -188,8 +188,12 @@ def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
 
 
 def _scanned(path: Path, ros1: bool) -> Bag | None:
-    """Read a truncated bag up to the cut; None if nothing is readable."""
+    """Read a truncated bag up to the cut; None if nothing is readable.
+
+    The files of `rosbag record --split`, which have no metadata, are read so as well.
+    """
     files = _files(path)
+    split = path.is_dir() and all(ending(each) == ROS1 for each in files)
     counts: Counter[tuple[str, str]] = Counter()
     definitions: dict[str, str] = {}
     last = 0
@@ -203,9 +207,13 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
     def raw(names: Sequence[str]) -> Iterator[Raw]:
         return (each for each in raw_messages(files) if each.topic in names)
 
-    told = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}"
+    told: tuple[str, ...] = (
+        f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}",
+    )
+    if split and all(map(_is_whole, files)):
+        told = ()
     topics = _topics((name, kind, number) for (name, kind), number in counts.items())
-    return Bag(path, topics, (told,), raw, Types(ros1, definitions))
+    return Bag(path, topics, told, raw, Types(ros1 or split, definitions))
 
 
 def _is_cut_off(path: Path) -> bool:
@@ -223,11 +231,22 @@ def _is_cut_off(path: Path) -> bool:
     return False
 
 
+def _is_whole(file: Path) -> bool:
+    """Whether a ROS 1 bag has its index."""
+    from rosbags.rosbag1 import Reader
+
+    try:
+        with Reader(file):
+            return True
+    except Exception:  # as above
+        return False
+
+
 def _files(path: Path) -> list[Path]:
     """Files of a bag, in order of recording."""
     if not path.is_dir():
         return [path]
-    found = [each for each in path.iterdir() if each.suffix in SUFFIXES]
+    found = [each for each in path.iterdir() if ending(each) in SUFFIXES]
     return sorted(found, key=lambda each: (len(each.name), each.name))  # bag_9 before bag_10
 
 
@@ -262,7 +281,10 @@ def _refuse_repeated(folder: Path) -> None:
 def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    hint = "a recording cut off in mid-file: `mcap recover`, or `ros2 bag reindex`"
+    tools = "`mcap recover`, or `ros2 bag reindex`"
+    if ending(path) == ROS1:
+        tools = "`rosbag reindex`"
+    hint = f"a recording cut off in mid-file: {tools}"
     with suppress(OSError), path.open("rb") as file:  # a folder cannot be opened
         if not file.read(16).startswith(_BEGIN):
             hint = "it does not begin as an MCAP, SQLite or ROS 1 bag does"

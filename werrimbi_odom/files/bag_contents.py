@@ -46,11 +46,24 @@ PAIRS = {
     INT64: 0,
     "std_msgs/msg/Int16": 16,
     "duckietown_msgs/msg/WheelEncoderStamped": 32,
+    "std_msgs/msg/UInt16": 16,
+    "std_msgs/msg/UInt32": 32,
+    "std_msgs/msg/Float32": 0,
+    "std_msgs/msg/Float64": 0,
 }
 """Message types with the counter of one wheel, and its wrap width; 0: it never wraps."""
 MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
-ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int16MultiArray": 16}
+ARRAYS = {
+    MULTI_ARRAY: 0,
+    "std_msgs/msg/Int32MultiArray": 32,
+    "std_msgs/msg/Int16MultiArray": 16,
+    "std_msgs/msg/UInt32MultiArray": 32,
+    "std_msgs/msg/UInt16MultiArray": 16,
+}
 """The same for both wheels, as values without names."""
+_UNSIGNED = ("/UInt16", "/UInt32")
+"""They may hold a power or a distance: read unasked if name or values are a counter's."""
+_COUNTS = ("tick", "encoder", "count")
 FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
 """They may hold counters but usually hold commands; read on request only."""
 CLOUDS = {
@@ -142,13 +155,17 @@ class Contents:
         return tuple(sorted(self.independent, key=preference))
 
 
-def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
+def contents_of(
+    bag: Bag, base: str = "", *, choosing: bool = True, wished: Sequence[str] = ()
+) -> Contents:
     """Analyse an open bag.
 
     `base`: the robot's frame, as `base_frame_id` of its file; "" to detect it by name. `choosing`:
     whether a reference still has to be chosen. References that contain odometry are then placed
-    last; detecting them takes another pass over their messages.
+    last; detecting them takes another pass over their messages. `wished`: references that are asked
+    for, and so are listed even if their names are of goals or commands.
     """
+    named = {"/" + wish.partition(":")[0].strip().strip("/") for wish in wished}
     edges = EdgeCollector()
     names = [each.name for each in bag.topics if each.kind in TRANSFORMS]
     for message in bag.messages(names) if names else ():
@@ -157,11 +174,16 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     kinds = (JOINT_STATE, *ARRAYS, *FLOATS, *POSES, *CLOUDS)
     looked_at = [each.name for each in bag.topics if each.kind in kinds]
     firsts = bag.firsts(looked_at)
+    robots = _robots(bag, firsts)
     references = [
         *_chains(found, base),
-        *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
+        *(
+            _measured(each, firsts.get(each.name), robots)
+            for each in bag.topics
+            if each.kind in POSES
+        ),
     ]
-    references = [each for each in references if not is_asked_for(each.name)]
+    references = [each for each in references if each.name in named or not is_asked_for(each.name)]
     on_robot = _frames_on_the_robot(found, references)
     references = [_aboard(each) if each.parent in on_robot else each for each in references]
     whys = {each.name: each.why for each in references}
@@ -191,7 +213,7 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         for each in bag.topics
         if each.kind in CLOUDS and _is_of_room(where := _frame_of(firsts.get(each.name)))
     }
-    wheels = tuple(_wheels(bag, firsts, found))
+    wheels = tuple(_wheels(bag, firsts, found, robots))
     return Contents(bag.path, bag.topics, wheels, tuple(references), found, moved)
 
 
@@ -219,7 +241,18 @@ def _is_of_room(name: str) -> bool:
     return is_odometry_frame(name) or is_map(name) or name == "world"
 
 
-def _measured(topic: Topic, first: Any) -> Measured:
+def _robots(bag: Bag, firsts: Mapping[str, Any]) -> set[str]:
+    """First parts of the names of topics of wheels: the name of a robot, and of no sensor."""
+
+    def of_wheels(topic: Topic) -> bool:
+        joints = getattr(firsts.get(topic.name), "name", ()) if topic.kind == JOINT_STATE else ()
+        return topic.kind in DRIVERS or any("wheel" in name for name in joints)
+
+    found = {each.name.strip("/").partition("/")[0] for each in bag.topics if of_wheels(each)}
+    return found - {"gazebo"}
+
+
+def _measured(topic: Topic, first: Any, robots: set[str]) -> Measured:
     kind = topic.kind
     parent = _frame_of(first)
     child = frame(getattr(first, "child_frame_id", ""))
@@ -236,7 +269,7 @@ def _measured(topic: Topic, first: Any) -> Measured:
         reason = FUSED if "filtered" in topic.name.lower().replace("unfiltered", "") else ""
         why = reason or "satellites"
     else:
-        reason = why_from_wheels(topic.name, kind, parent, child)
+        reason = why_from_wheels(topic.name, kind, parent, child, robots)
         why = reason or f"poses in {parent or 'a frame of their own'}, of a sensor or a localiser"
         if kind == POINT and not parent:
             why = "points in no frame, which may be no positions at all"
@@ -288,7 +321,16 @@ def _chains(edges: tuple[Edge, ...], base: str) -> list[Measured]:
     return found
 
 
-def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Wheels]:
+def _may_count(topic: Topic) -> bool:
+    """Whether a message of one value is read as a counter without being asked for."""
+    if topic.kind.endswith(_UNSIGNED):
+        return any(word in topic.name.lower() for word in _COUNTS)
+    return "/Float" not in topic.kind
+
+
+def _wheels(
+    bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge], robots: set[str]
+) -> list[Wheels]:
     found: list[Wheels] = []
     for topic in bag.topics:
         if topic.kind == JOINT_STATE:
@@ -301,13 +343,14 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
             found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
         elif topic.kind in (*ARRAYS, *FLOATS):
             values = len(getattr(firsts.get(topic.name), "data", ()))
-            if values == 2 and topic.kind in ARRAYS:
+            signed = topic.kind in ARRAYS and not any(each in topic.kind for each in _UNSIGNED)
+            if values == 2 and signed:
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
             elif values > 1 and (sides := counting_sides(bag, topic.name, values)) is not None:
                 name = f"{topic.name}:{sides[0][0]}:{sides[1][0]}"
                 like = (sides[0][1:], sides[1][1:])
                 found.append(Wheels(name, topic.kind, topic.messages, "counts", like=like))
-        elif topic.kind in PAIRS:
+        elif topic.kind in PAIRS and _may_count(topic):
             mirrored = topic.name.replace("left", "right")
             for each in bag.topics if mirrored != topic.name else ():
                 if each.name == mirrored and each.kind == topic.kind:
@@ -321,6 +364,7 @@ def _wheels(bag: Bag, firsts: dict[str, Any], edges: Sequence[Edge]) -> list[Whe
                 topic.kind,
                 _frame_of(firsts.get(topic.name)),
                 frame(getattr(firsts.get(topic.name), "child_frame_id", "")),
+                robots,
             )
             if reason and not is_filtered(topic.name):
                 found.append(Wheels(topic.name, topic.kind, topic.messages, "odometry"))

@@ -44,6 +44,8 @@ class JointsCollector:
         self._angles = _Rows()
         self._speeds = _Rows()
         self._names: list[str] = []
+        self._seen: dict[str, None] = {}
+        """Names of the joints in all messages."""
         self._places: list[int] = []
         self._left_out: Counter[str] = Counter()
 
@@ -52,6 +54,7 @@ class JointsCollector:
         content = message.content
         if content.name != self._names or not self._places:
             self._names = list(content.name)
+            self._seen |= dict.fromkeys(self._names)
             known = all(name in self._names for name in self._wheels)
             self._places = [self._names.index(name) for name in self._wheels] if known else []
         if not self._places:
@@ -87,8 +90,10 @@ class JointsCollector:
         speeds = self._speeds.arrays(len(self._wheels))[1]
         if speeds.size == 0 or positions.shape[0] > speeds.shape[0]:
             return False
-        still = positions.shape[0] == 0 or not np.ptp(positions, axis=0).any()
-        return bool(still and (positions.shape[0] == 0 or np.any(speeds != 0.0)))
+        known = positions[np.isfinite(positions).all(axis=1)]  # a broadcaster writes NaN for none
+        still = known.shape[0] == 0 or not np.ptp(known, axis=0).any()
+        moves = np.isfinite(speeds) & (speeds != 0.0)
+        return bool(still and (positions.shape[0] == 0 or moves.any()))
 
     def _side(self, time: Floats, positions: Floats, side: str) -> Counts:
         values = self._file.values
@@ -157,13 +162,20 @@ class JointsCollector:
             )
 
     def _why_none(self) -> str:
-        absent = [name for name in self._wheels if name not in self._names]
+        absent = [name for name in self._wheels if name not in self._seen]
+        if not absent and self._left_out["without our joints"]:
+            return (
+                f"no message holds {', '.join(self._wheels)} together: they come in messages of "
+                "their own. joint_state_publisher puts them together, with both topics in its "
+                "source_list; of a recording, save the counts as ticks.csv of a folder "
+                "(docs/recordings.md)"
+            )
         if not absent:
             return "no message gives a position for each joint"
-        near = difflib.get_close_matches(absent[0], self._names, n=1, cutoff=0.0)
+        near = difflib.get_close_matches(absent[0], self._seen, n=1, cutoff=0.0)
         nearest = f", the nearest is {near[0]}" if near else ""
         return (
-            f"no joint {absent[0]}{nearest}; it has {', '.join(self._names) or 'none'}; "
+            f"no joint {absent[0]}{nearest}; it has {', '.join(self._seen) or 'none'}; "
             "set left_wheel_names and right_wheel_names in the robot file"
         )
 

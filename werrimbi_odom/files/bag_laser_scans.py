@@ -31,6 +31,12 @@ WHY: dict[Flag, str] = {
 }
 """Reasons why a scan is not matched, as the end of a sentence."""
 
+_AROUND = 3.0 * np.pi
+"""Angle between the first and the last beam above which it is in degrees [rad]: no lidar goes
+around one and a half times in a scan, and 10 degrees are more."""
+_FAR = 200.0
+"""Usual range above which ranges are in millimetres [m]: 0.2 m, or farther than lidars reach."""
+
 _ORDERS: dict[Order, str] = {
     "first to last": "from the first to the last",
     "last to first": "from the last to the first",
@@ -49,6 +55,7 @@ class LidarCollector:
         self._matcher = AnyOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self._undirected = 0
+        self._around, self._ranges = 0.0, list[float]()
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
 
     def take(self, message: BagMessage) -> None:
@@ -63,6 +70,9 @@ class LidarCollector:
         if float(scan.angle_increment) == 0.0 or not np.isfinite(angles).all():
             self._undirected += 1
             ranges, angles = np.zeros(0), np.zeros(0)
+        self._around = max(self._around, abs(float(scan.angle_increment)) * angles.size)
+        echoes = ranges[np.isfinite(ranges) & (ranges > 0.0)]
+        self._ranges += [float(np.median(echoes))] if echoes.size else []
         interval = float(scan.time_increment)
         if not abs(interval) * ranges.size <= LONGEST_SWEEP:  # nor NaN
             interval = 0.0
@@ -83,7 +93,9 @@ class LidarCollector:
             if 2 * self._undirected > found.scans:
                 words = _undirected(self._undirected, found)
             else:
-                words = _lost(found) if self._echoes else _blind(found, self._reach)
+                words = _other_unit(self._around, self._ranges) or (
+                    _lost(found) if self._echoes else _blind(found, self._reach)
+                )
             raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else None
         poses, covariances, walked = of_base(found, mount or Mount(0.0, 0.0, 0.0))
@@ -192,6 +204,27 @@ def _undirected(count: int, found: ScanPath) -> str:
         "beams, if they go once around). Mend that where the lidar's driver is set up, or choose "
         "another reference"
     )
+
+
+def _other_unit(around: float, ranges: list[float]) -> str:
+    """Which numbers of scans that fit nowhere are not in radians or metres; "" if all may be.
+
+    `around`: angle from the first beam to the last [rad]. `ranges`: median range of each scan [m].
+    """
+    if around > _AROUND:
+        return (
+            f"the beams of a scan go around by {around:.4g} rad: angle_min, angle_max and "
+            "angle_increment are in degrees, and must be in radians (times pi/180). Mend that "
+            "where the lidar's driver is set up, or choose another reference"
+        )
+    usual = float(np.median(ranges)) if ranges else 0.0
+    if usual > _FAR:
+        return (
+            f"half of all ranges are beyond {usual:.4g} m: they are in millimetres, and must be in "
+            "metres, as range_min and range_max. Mend that where the lidar's driver is set up, or "
+            "choose another reference"
+        )
+    return ""
 
 
 def _blind(found: ScanPath, reach: tuple[float, float]) -> str:

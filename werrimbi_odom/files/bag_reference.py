@@ -19,6 +19,7 @@ from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.own_odometry import is_map
+from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind, integrated
 from werrimbi_odom.files.stamps import newest_of_bursts
@@ -108,6 +109,12 @@ class ReferenceCollector:
             pairs = [pair for pair in pairs if pair[1] == self._base] or pairs
         if len(pairs) == 1:
             return pairs[0]
+        if not self._found and self._source.kind == IMU:
+            raise InputError(
+                f"{self._place}: no message holds a yaw rate: angular_velocity_covariance[0] is "
+                "-1, which states that there is none, or angular_velocity.z is no number; choose "
+                f"another with --reference-topic ({NONE} for no reference)"
+            )
         listed = ", ".join(f"{parent} -> {child}" for parent, child in self._found) or "none"
         raise InputError(
             f"{self._place}: name the frame with --reference-topic "

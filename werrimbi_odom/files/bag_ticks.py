@@ -189,15 +189,9 @@ class MultiArrays(_TwoCounts):
             self._left_out[f"not of {self._wanted}"] += 1
             return
         both = [data[place] for place in self._places or (0, 1)]
-        left, right = map(float, both)
-        if not (math.isfinite(left) and math.isfinite(right)):
-            self._left_out["with a value that is no number"] += 1
+        if not _whole(self._place, both):
+            self._left_out[_NO_NUMBER] += 1
             return
-        if not (left.is_integer() and right.is_integer()):
-            raise InputError(
-                f"{self._place}: {left:.6g} and {right:.6g} are no whole numbers, and so no "
-                "counters; angles and speeds of wheels are read from a JointState"
-            )
         self._add(message.received / 1e9, *map(int, both))
 
     @property
@@ -227,9 +221,13 @@ class Pairs(_TwoCounts):
         self._left = source.name.split(",")[0]
         self._window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._read_at, self._side, self._count = array("d"), array("b"), array("q")
+        self._no_numbers = 0
 
     def take(self, message: BagMessage) -> None:
         """Add a message."""
+        if not _whole(self._place, [message.content.data]):
+            self._no_numbers += 1
+            return
         stamped = hasattr(message.content, "header")
         self._read_at.append(stamp_of(message) if stamped else message.received / 1e9)
         self._side.append(message.topic != self._left)
@@ -243,9 +241,47 @@ class Pairs(_TwoCounts):
             pair = pairing.take(side, self._count[row], round(1e9 * read_at))
             if pair is not None:
                 self._add(read_at, *pair)
-        ticks = self._ticks("no two counts within the pairing_window of the robot file")
-        left_out = Counter({"without a partner in time": pairing.unpaired})
+        ticks = self._ticks(
+            f"no two counts within the pairing_window of the robot file{self._apart()}"
+        )
+        left_out = Counter(
+            {"without a partner in time": pairing.unpaired, _NO_NUMBER: self._no_numbers}
+        )
         return ticks, left_out_words(left_out)
+
+    def _apart(self) -> str:
+        """How far apart the counts of both wheels are as a rule, and the window that takes them."""
+        time, right = np.array(self._read_at), np.array(self._side, dtype=bool)
+        left = np.sort(time[~right])
+        if left.size < 2 or not right.any():
+            return ""
+        after = np.searchsorted(left, time[right])
+        beside = left[np.stack([np.maximum(after - 1, 0), np.minimum(after, left.size - 1)])]
+        gap = float(np.median(np.abs(beside - time[right]).min(axis=0)))
+        return (
+            f", {self._window:g} s; a count of the one wheel and the nearest of the other are "
+            f"{gap:.2g} s apart as a rule: pairing_window: {1.2 * gap:.2g} takes them"
+        )
+
+
+_NO_NUMBER = "with a value that is no number"
+
+
+def _whole(place: str, values: Sequence[float]) -> bool:
+    """Whether values are finite; InputError if one is no whole number, and so no counter."""
+    if not all(map(math.isfinite, values)):
+        return False
+    if not all(float(value).is_integer() for value in values):
+        verb = (
+            "is no whole number, and so no counter"
+            if len(values) == 1
+            else ("are no whole numbers, and so no counters")
+        )
+        raise InputError(
+            f"{place}: {' and '.join(f'{value:.6g}' for value in values)} {verb}; angles and "
+            "speeds of wheels are read from a JointState"
+        )
+    return True
 
 
 def _width(robot_file: RobotFile, bits: int) -> int:

@@ -40,8 +40,11 @@ _STEPS = _set("d delta diff inc increment")
 _WAYS = _set("s dist distance travel odom m mm cm rad deg angle pos position")
 
 _MILLI = dict.fromkeys(("ms", "msec", "millis", "milliseconds"), ", divided by 1000")
-_MICRO = dict.fromkeys(("us", "usec", "micros", "microseconds"), ", divided by 10^6")
-_NANO = dict.fromkeys(("ns", "nsec", "nanos", "nanoseconds"), ", divided by 10^9")
+_MICRO = dict.fromkeys(("us", "usec", "usecs", "micros", "microseconds"), ", divided by 10^6")
+_NANO = dict.fromkeys(
+    ("ns", "nsec", "nsecs", "nanos", "nanosec", "nanosecs", "nanoseconds"), ", divided by 10^9"
+)
+_SECONDS = _set("s sec secs seconds")
 _LENGTHS = {"mm": ", divided by 1000", "cm": ", divided by 100", "in": ", times 0.0254"}
 _CONVERTED = {
     "t_s": _MILLI | _MICRO | _NANO,
@@ -57,7 +60,9 @@ def perhaps_meant(missing: Sequence[str], names: Sequence[str]) -> str:
     found: dict[str, list[str]] = {}
     for name in missing:
         like = _like(name, names)
-        if len(like) == 1:
+        if name == "t_s" and (parts := _in_two_parts(names)):
+            found[f", plus {parts[1]}{parts[2].removeprefix(',')}"] = [f"{name} for {parts[0]}"]
+        elif len(like) == 1:
             conversion = _conversion(name, _words(like[0]))
             found.setdefault(conversion, []).append(f"{name} for {like[0]}")
     groups = [f"{', '.join(each)}{conversion}" for conversion, each in found.items()]
@@ -68,6 +73,16 @@ def perhaps_meant(missing: Sequence[str], names: Sequence[str]) -> str:
             "of the row divided by that rate"
         )
     return told
+
+
+def _in_two_parts(names: Sequence[str]) -> tuple[str, str, str] | None:
+    """Columns of whole seconds and of their fraction, and how the fraction is converted."""
+    whole = [own for own in names if _words(own) & _SECONDS]
+    for units in (_NANO, _MICRO):
+        rest = [own for own in names if _words(own) & set(units)]
+        if len(whole) == len(rest) == 1 and whole != rest:
+            return whole[0], rest[0], next(iter(units.values()))
+    return None
 
 
 def _like(name: str, names: Sequence[str]) -> list[str]:

@@ -13,7 +13,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.other_drivers_parameters import translated
 from werrimbi_odom.files.wheel_joints import SIDES
-from werrimbi_odom.files.yaml_text import BlocksInParts
+from werrimbi_odom.files.yaml_text import ERRORS_OF_SCALARS, BlocksInParts
 
 _SIZES = ("wheel_separation", "wheel_radius")
 _MULTIPLIERS = (
@@ -37,7 +37,7 @@ def of_controller(path: Path) -> FirstRobot:
     yaml.Composer = BlocksInParts
     try:
         content = yaml.load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, YAMLError, RecursionError) as error:
+    except (OSError, YAMLError, RecursionError, *ERRORS_OF_SCALARS) as error:
         raise InputError(f"{path} cannot be read: {' '.join(str(error).split())[:200]}") from error
     wrong = ""
     for found in _blocks(content):

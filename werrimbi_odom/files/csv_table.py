@@ -35,6 +35,8 @@ _BLANK = re.compile(r'[\s,"]*\Z')
 """A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
 """Empty cells of a line."""
+_BEFORE_QUOTE = re.compile(r'(?<=,)[ \t]+(?=")')
+"""Blanks in front of a cell in quotes."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,7 @@ def read_table(
         _refuse_too_large(path)
         names = _header(path, required, filled, enough)
         cut = _cut_line(path, names, [names.index(name) for name in filled])
-        values = _values(path, names, cut)
+        values = _values(path, names, cut, required)
     except IsADirectoryError:
         raise InputError(f"{path} is a folder; it must be a CSV file") from None
     except FileNotFoundError:
@@ -136,7 +138,7 @@ def _header(
     if not line:
         raise InputError(f"{path} is empty; its first line must be {wanted}")
     # numpy.savetxt writes the names as a remark.
-    names = tuple(name.strip() for name in next(csv.reader([line.lstrip("#% ")]), []))
+    names = tuple(name.strip() for name in next(_cells(line.lstrip("#% ")), []))
     place = f"{path}, line 1"
     missing = [name for name in required if name not in names]
     if missing and set(names) not in map(set, enough):
@@ -189,7 +191,7 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
         return 0
     cells = last.split(",")
     whole = len(cells) == len(names) and all(
-        _NUMBER.match(cell.strip('"')) or not cell.strip() for cell in cells
+        _NUMBER.match(cell.strip().strip('"')) or not cell.strip() for cell in cells
     )
     if whole and all(cells[place].strip() for place in filled):
         return 0
@@ -198,7 +200,7 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
     return lines if lines > 2 else 0  # only a header and no complete row: there is nothing to read
 
 
-def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
+def _values(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> Floats:
     number = np.dtype(np.float64)
     try:
         try:
@@ -211,9 +213,9 @@ def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
     except UnicodeDecodeError:
         raise
     except ValueError as error:
-        _refuse_bad_row(path, names, cut)
+        _refuse_bad_row(path, names, cut, required)
         raise InputError(f"{path} cannot be read: {error}") from error
-    _refuse_bad_row(path, names, cut)
+    _refuse_bad_row(path, names, cut, required)
     raise InputError(f"{path} has a header and no rows")
 
 
@@ -239,7 +241,11 @@ def _lines(path: Path, cut: int) -> Iterator[str]:
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in itertools.islice(file, cut - 1 if cut else None):
             if not _BLANK.match(line):
-                yield _EMPTY.sub("nan", line)
+                yield _EMPTY.sub("nan", _BEFORE_QUOTE.sub("", line))
+
+
+def _cells(line: str) -> Iterator[list[str]]:
+    return csv.reader([_BEFORE_QUOTE.sub("", line)])
 
 
 def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
@@ -247,18 +253,19 @@ def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
             if not _BLANK.match(line):
-                yield number, next(csv.reader([line.rstrip("\n")]))
+                yield number, next(_cells(line.rstrip("\n")))
 
 
-def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
+def _refuse_bad_row(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> None:
     try:
         for number, cells in _rows(path, cut):
             place = f"{path}, line {number}"
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):
+                    further = "" if name in required else "; leave a column of text out"
                     raise InputError(
                         f"{place}, column {name}: {_shown(cell)} is not a number; "
-                        "leave the cell empty where there is none"
+                        f"leave the cell empty where there is none{further}"
                     )
             if len(cells) != len(names):
                 raise InputError(

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import csv
 import re
+from codecs import BOM_UTF8
 from collections.abc import Iterator, Sequence
 from heapq import merge
 from operator import attrgetter
@@ -30,6 +31,7 @@ _FIRST = "%time"
 _STAMP = ("header.stamp.secs", "header.stamp.nsecs")
 """Columns by which the text of other programs is known, whose first is `Time` or `time`."""
 _OF_STAMP = {"secs": "sec", "nsecs": "nanosec"}
+_INTEGERS, _FLOATS = "std_msgs/msg/Int64MultiArray", "std_msgs/msg/Float64MultiArray"
 _KINDS = {
     "nav_msgs/msg/Odometry": ("pose.pose.position.x", "twist.twist.linear.x"),
     "geometry_msgs/msg/PoseWithCovarianceStamped": ("pose.pose.position.x", "pose.covariance0"),
@@ -46,6 +48,7 @@ _KINDS = {
     "kobuki_msgs/msg/SensorState": ("left_encoder", "right_encoder", "time_stamp"),
     "irobot_create_msgs/msg/WheelTicks": ("ticks_left", "ticks_right"),
     "duckietown_msgs/msg/WheelEncoderStamped": ("header.stamp", "data", "resolution"),
+    _INTEGERS: ("layout.data_offset", "data0"),
     "std_msgs/msg/Int64": ("data",),
 }
 """Fields by which a type is told; the first of which all are there."""
@@ -70,12 +73,16 @@ class EchoedTopic(NamedTuple):
 def echoed_files(path: Path) -> list[Path]:
     """Files of such topics: the path itself, or what it holds."""
     files = sorted(path.iterdir()) if path.is_dir() else [path]
-    return [each for each in files if each.suffix in SUFFIXES and each.is_file() and _begins(each)]
+    return [
+        each
+        for each in files
+        if each.suffix.lower() in SUFFIXES and each.is_file() and _begins(each)
+    ]
 
 
 def _begins(file: Path) -> bool:
     with file.open("rb") as opened:
-        if opened.read(len(_FIRST)) == _FIRST.encode():
+        if opened.read(len(_FIRST) + 3).removeprefix(BOM_UTF8).startswith(_FIRST.encode()):
             return True
     first = next(_rows(file), [])
     return first[:1] in (["Time"], ["time"]) and set(_fields(first)).issuperset(_STAMP)
@@ -91,8 +98,10 @@ def echoed_topic(file: Path) -> EchoedTopic:
     """Read the first line of a file, and count its rows."""
     rows = _rows(file)
     header = _fields(next(rows))
-    names, counts = set(header), list[bool]()
+    names, counts, whole = set(header), list[bool](), True
+    values = [place for place, name in enumerate(header, start=1) if re.fullmatch(r"data\d+", name)]
     for row in rows:
+        whole = whole and not any("." in row[place] for place in values if place < len(row))
         if not counts:  # an array in one cell has a first item as well
             names |= {
                 f"{name}0" for name, cell in zip(header, row[1:], strict=False) if _many(cell)
@@ -103,6 +112,8 @@ def echoed_topic(file: Path) -> EchoedTopic:
     kind = next((kind for kind, own in _KINDS.items() if names.issuperset(own)), "unknown")
     if kind == "std_msgs/msg/Int64" and len(header) > 1:
         kind = "unknown"
+    if kind == _INTEGERS and not whole:
+        kind = _FLOATS
     fields = tuple(tuple(each.split(".")) for each in header)
     return EchoedTopic(file, f"/{file.stem}", kind, fields, sum(counts), counts.count(False))
 
@@ -125,9 +136,12 @@ class Parsed:
 
 def _rows(file: Path) -> Iterator[list[str]]:
     csv.field_size_limit(LONGEST_CELL)  # of the whole process; a table of numbers needs none
-    with file.open(encoding="utf-8", errors="replace", newline="") as opened:
-        lines = (line.replace("\0", "") for line in opened)
-        yield from (row for row in csv.reader(lines) if row)
+    with file.open(encoding="utf-8-sig", errors="replace", newline="") as opened:
+        first: list[str] = []
+        for row in csv.reader(line.replace("\0", "") for line in opened):
+            if row and row != first:  # one echo after another into a file: names once more
+                yield row
+            first = first or row
 
 
 def _messages(topic: EchoedTopic) -> Iterator[Raw]:

@@ -89,6 +89,11 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
         or _no_heading(ticks, reference)
         or _no_turn(ticks, reference, robot)
     )
+    if words and run.of_bag and "robot file" not in words:
+        words += (
+            "; a bag has no such columns: mend what its driver sends, or write the converted "
+            "values as a run folder (wo.write_run, docs/python.md)"
+        )
     if words:
         raise InputError(f"{run.path}: {words}")
 

@@ -9,12 +9,13 @@ Names are not sufficient evidence; how closely such poses follow the wheels is t
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
 _SENSORS = """
-aruco apriltag amcl camera cartographer fiducial fix gazebo gnss gps gt icp kiss laser lidar
-lio liosam loam localiser localizer mocap motion motive ndt optitrack orb orbslam qualisys
-realsense rf2o rtabmap rtk slam svo t265 tag tracker tracking true truth uwb vicon vins vio
-vision visual vo vslam zed rovio okvis openvins scan reference qtm ground
+aruco apriltag amcl camera cartographer dlio dlo fastlio fiducial fix gazebo gnss gps gt icp kiss
+laser lidar lio liosam loam localiser localizer mocap motion motive ndt optitrack orb orbslam
+qualisys realsense rf2o rgbd rtabmap rtk slam stereo svo t265 tag tracker tracking true truth uwb
+vicon vins vio vision visual vo vslam zed rovio okvis openvins scan reference qtm ground
 """
 SENSORS = frozenset(_SENSORS.split())
 """Words in the names of poses from a sensor that observes the surroundings."""
@@ -29,21 +30,26 @@ FUSED = "a filter's output, which fuses the wheels"
 UNFILTERED = ("unfiltered", "raw", "wheel")
 """Words in the names of odometry beside a filter's output under a plain name, as linorobot's."""
 
-_COMMANDED = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
-NO_MEASUREMENT = (*_COMMANDED, "error")
+_NO_MEASUREMENT = """
+goal goals subgoal subgoals target targets setpoint setpoints initialpose clicked plan plans planned
+planner planning cmd command commands commanded error errors
+"""
+NO_MEASUREMENT = frozenset(_NO_MEASUREMENT.split())
 """Words in topics of commanded or requested poses, from RViz or a program, and of how far the
 robot is from them."""
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 
-def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
+def why_from_wheels(
+    topic: str, kind: str, parent: str, child: str, robots: Collection[str] = ()
+) -> str:
     """Reason why poses are probably computed from the wheels; "" if names do not suggest it.
 
     `topic`, `kind`: topic and message type; "" for a transform. `parent`, `child`: their frames, as
-    far as known.
+    far as known. `robots`: namespaces that are known to be a robot's.
     """
-    if _words(topic, parent, child) & SENSORS:
+    if _words(*(_without_robot(name, robots) for name in (topic, parent, child))) & SENSORS:
         return ""
     if is_filtered(topic):
         return FUSED
@@ -77,7 +83,9 @@ def names_a_measurement(topic: str) -> bool:
 
 def is_asked_for(topic: str) -> bool:
     """Whether poses of a topic are requested, or relative to such, and not measured."""
-    return any(word in topic.lower() for word in NO_MEASUREMENT)
+    words = _words(re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", topic))
+    words |= {word.removesuffix("pose").removesuffix("point") for word in words}  # goalpose
+    return bool(words & NO_MEASUREMENT)
 
 
 def is_base(frame: str) -> bool:
@@ -96,6 +104,12 @@ def is_odometry_frame(frame: str) -> bool:
 def is_map(frame: str) -> bool:
     """Whether a frame is a localiser's map, perhaps of one of several robots, by its name."""
     return frame.rpartition("/")[2] == "map"
+
+
+def _without_robot(name: str, robots: Collection[str]) -> str:
+    """A topic or a frame without a first part that names the robot, as in `/slam_bot/odom`."""
+    first, _, rest = name.strip("/").partition("/")
+    return rest if rest and (first in robots or _words(first) & {"robot", "bot"}) else name
 
 
 def _words(*names: str) -> set[str]:

@@ -30,6 +30,7 @@ from werrimbi_odom.files.run_folder import (
     read_reference,
     read_run_folder,
 )
+from werrimbi_odom.files.unfinished_bag import ending
 
 _TEXT = (".csv", ".txt", ".dat", ".log", ".tsv", ".clf")
 _TABLES = (".mat", ".xls", ".xlsx", ".ods", ".npy", ".npz", ".pkl", ".parquet", ".h5", ".json")
@@ -132,7 +133,7 @@ def _of_kind(
 
 
 def _bag_in(folder: Path) -> Path:
-    files = sorted(each for each in folder.iterdir() if each.suffix in SUFFIXES)
+    files = sorted(each for each in folder.iterdir() if ending(each) in SUFFIXES)
     if (folder / "metadata.yaml").exists():
         named = named_files(folder) if len(files) == 1 else []
         renamed = named and not any(file.exists() for file in named)
@@ -150,7 +151,7 @@ def _bag_in(folder: Path) -> Path:
 
 
 def _bag_file(path: Path) -> Path:
-    if path.suffix in SUFFIXES or echoed_files(path):
+    if ending(path) in SUFFIXES or echoed_files(path):
         return path
     if path.name == TICKS:
         raise InputError(f"{path}: give the folder that holds it, {path.parent}")
@@ -162,6 +163,10 @@ def _bag_file(path: Path) -> Path:
 def _hint(path: Path) -> str:
     """How a log that is no bag is read."""
     kind = path.suffix.lower()
+    if kind in (".zstd", ".zst"):
+        return f"; it is compressed: `zstd -d {path.name}` writes {path.stem}, which is read"
+    if kind in SUFFIXES:
+        return f"; give it the name {path.stem}{kind}"
     if kind in _TABLES:
         return f"; save what {path.name} holds as text: {FROM_TEXT}"
     return f"; {FROM_TEXT}" if kind in _TEXT else ""

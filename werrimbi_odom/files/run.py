@@ -234,6 +234,8 @@ class Run:
     taken_out: tuple[tuple[float, float], ...] = ()
     """Stretches of the reference that are excluded on purpose, start and end in its stamps [s]:
     legs end there, and start again."""
+    of_bag: bool = False
+    """Whether it was read from the messages of a bag, and not from columns."""
     happened: tuple[tuple[float, float], ...] = ()
     """Stretches in which the robot or the reference was displaced at once, start and end in the
     stamps of the reference [s]: an event, which no model explains. Legs continue through it, and

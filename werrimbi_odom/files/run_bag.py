@@ -20,7 +20,7 @@ from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Collected, Reference, Run, Ticks
+from werrimbi_odom.files.run import WORKED_OUT, Collected, Reference, Run, Ticks
 from werrimbi_odom.files.stamps import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.text_files import readable
 from werrimbi_odom.files.unstamped import unstamped_words, with_stamps
@@ -82,8 +82,9 @@ def read_run_bag(
         damage=(*bag.damage, *unstamped, *found.damage, *clocks, *_stand(held, source, ticks)),
         no_reference=lacking,
         circle=found.circle,
-        wheels_from=source.gives,
+        wheels_from="velocities" if WORKED_OUT["velocities"] in notes else source.gives,
         taken_out=found.taken_out,
+        of_bag=True,
     )
 
 
@@ -134,7 +135,9 @@ def read_reference_bag(
 
 
 def _contents_of(bag: Bag, robot_file: RobotFile, wish: Topics) -> Contents:
-    return contents_of(bag, str(robot_file.values["base_frame_id"]), choosing=not wish)
+    wished = [wish] if isinstance(wish, str) else wish or ()
+    base = str(robot_file.values["base_frame_id"])
+    return contents_of(bag, base, choosing=not wish, wished=wished)
 
 
 def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:

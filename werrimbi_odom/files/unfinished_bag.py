@@ -14,7 +14,7 @@ import sqlite3
 import struct
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import IO, Any, NamedTuple
 
 from werrimbi_odom.files.unfinished_sqlite import described, rows_of
@@ -43,6 +43,25 @@ def absolute(topic: str) -> str:
     return "/" + topic.strip("/")
 
 
+def ending(file: Path) -> str:
+    """End of a bag's name: `.bag` in any case, and of one that `rosbag record` has not closed."""
+    low = PurePath(file.name.lower().removesuffix(".active")).suffix
+    return low if low == ".bag" else file.suffix
+
+
+def of_message(data: Any) -> Any:
+    """A message's bytes, without the compression of each message by `ros2 bag record`.
+
+    The metadata tell of it, and may be missing; neither CDR nor text begins so.
+    """
+    if isinstance(data, bytes | memoryview) and bytes(data[:4]) == _ZSTD:
+        return _decompressor("zstd").decompress(data, LARGEST)
+    return data
+
+
+_ZSTD = b"\x28\xb5\x2f\xfd"
+
+
 class SpoiltError(Exception):
     """A file ends in mid-record, or contains an invalid record."""
 
@@ -50,7 +69,7 @@ class SpoiltError(Exception):
 def raw_messages(files: Sequence[Path]) -> Iterator[Raw]:
     """Yield the messages of successive files, each up to its damage."""
     for file in files:
-        scan = _SCANS[file.suffix]
+        scan = _SCANS[ending(file)]
         try:
             yield from scan(file)
         except (SpoiltError, sqlite3.Error, struct.error, OSError, ValueError, LookupError):

@@ -23,6 +23,10 @@ _AXLE = 0.9
 """Cosine between a wheel's axis and the robot's y axis, above which it rolls forwards."""
 
 
+_MIDDLE = 0.25
+"""Share of the half base within which a wheel stands in the middle and drives neither side."""
+
+
 def of_urdf(text: str, joints: Sequence[str] = ()) -> FirstRobot:
     """Radius, separation and joints of the driven wheels in a URDF.
 
@@ -37,15 +41,16 @@ def of_urdf(text: str, joints: Sequence[str] = ()) -> FirstRobot:
         return FirstRobot()
     if not wheels:
         return FirstRobot()
-    middle = float(np.mean([each.place[1] for each in wheels]))
-    left = [each for each in wheels if each.place[1] > middle]
-    right = [each for each in wheels if each.place[1] < middle]
+    across = [float(each.place[1]) for each in wheels]
+    middle, half = 0.5 * (max(across) + min(across)), 0.5 * (max(across) - min(across))
+    left = [each for each in wheels if each.place[1] - middle > _MIDDLE * half]
+    right = [each for each in wheels if middle - each.place[1] > _MIDDLE * half]
     if not left or not right:
         return FirstRobot()
     apart = float(
         np.mean([each.place[1] for each in left]) - np.mean([each.place[1] for each in right])
     )
-    radii = [each.radius for each in wheels if each.radius is not None]
+    radii = [each.radius for each in (*left, *right) if each.radius is not None]
     names = tuple(each.joint for each in left), tuple(each.joint for each in right)
     told = {"separation": "URDF: between the wheels' joints", "joints": "URDF"}
     if radii:

@@ -268,9 +268,16 @@ def _moves(bag: Bag, topic: str) -> bool:
 
 
 def of_another_robot(contents: Contents, wheels: Wheels | None) -> set[str]:
-    """References in the namespace of other wheels than the chosen ones."""
+    """References in the namespace of other wheels than the chosen ones.
+
+    Beside wheels without a namespace, as `/joint_states`, another robot has the same topic in its
+    own; a driver's further topics (`/mobile_base/odom`) are of the same robot.
+    """
     ours = _space(wheels.name) if wheels is not None else ""
-    spaces = {_space(each.name) for each in contents.wheels} - {ours, ""}
+    others = [each.topics[0] for each in contents.wheels]
+    if wheels is not None and not ours:
+        others = [name for name in others if name.endswith(wheels.topics[0])]
+    spaces = {_space(name) for name in others} - {ours, ""}
     return {each.name for each in contents.references if _space(each.name) in spaces}
 
 

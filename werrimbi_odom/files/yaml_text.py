@@ -27,7 +27,7 @@ from ruamel.yaml.scalarbool import ScalarBoolean
 from werrimbi_odom.errors import InputError
 
 MAX_DEPTH = 8
-_ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
+ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
 """Exceptions that ruamel does not wrap (a date in month 13)."""
 _TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
 
@@ -102,7 +102,7 @@ def load(text: str, path: Path) -> tuple[CommentedMap, tuple[str, ...]]:
             f"{path}{where}: a comment between a key and its value cannot be kept; put it on a "
             "line above them"
         ) from None
-    except (YAMLError, *_ERRORS_OF_SCALARS) as error:
+    except (YAMLError, *ERRORS_OF_SCALARS) as error:
         problem = " ".join(str(error).split())
         raise InputError(f"{path}: this is not YAML: {problem}") from None
     if content is None:

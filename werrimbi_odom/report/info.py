@@ -16,9 +16,9 @@ from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.report.document import Document, Paragraph
-from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS
+from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, wheels_to_try
 from werrimbi_odom.report.info_words import words_of
-from werrimbi_odom.report.number_format import counted, picked
+from werrimbi_odom.report.number_format import counted, listed, picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -120,7 +120,26 @@ def next_step(found: Info) -> tuple[str, str]:
                 "the parameter file of the diff_drive_controller with --robot."
             ), ""
         return "Next: a first robot file.", command_of(found)
-    return _before_command(found), command_of(found)
+    apart = [str(each.path) for each in usable if each not in _of_one_command(usable)]
+    told = ""
+    if apart:
+        alone = "it" if len(apart) == 1 else "each"
+        told = (
+            f"The topics of {listed(apart)} have other names: info of {alone} alone prints its "
+            "command. "
+        )
+    return told + _before_command(found), command_of(found)
+
+
+def _of_one_command(usable: Sequence[Held]) -> list[Held]:
+    """Those whose topics have the names that the first one's have; folders have none."""
+    named = {
+        index: (each.wheels.name, each.reference and each.reference.name)
+        for index, each in enumerate(usable)
+        if each.wheels is not None
+    }
+    first = next(iter(named.values()), None)
+    return [each for index, each in enumerate(usable) if named.get(index, first) == first]
 
 
 def _before_command(found: Info) -> str:
@@ -162,6 +181,8 @@ def _before_command(found: Info) -> str:
 def _otherwise(found: Info) -> tuple[str, str]:
     """Next step if the chosen topics are not usable: what is missing, or another topic to try."""
     if all(held.contents is not None and held.wheels is None for held in found.held):
+        if topic := wheels_to_try(found.held[0]):
+            return f"Next, if {topic} is of its wheels:", _once_more(found, "--ticks-topic", topic)
         return WITHOUT_WHEELS, ""
     for held in found.held:
         if held.at_fault == "names":
@@ -178,13 +199,18 @@ def _otherwise(found: Info) -> tuple[str, str]:
         scans = held.reference.kind == SCAN
         others = sorted(known[first:], key=lambda each: scans and each.kind == SCAN)
         if others:
-            words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
-            file = found.given or found.written or found.parameters
-            words += [] if file is None else ["--robot", str(file)]
-            words += _wheels_asked([held])
-            command = shlex.join([*words, "--reference-topic", others[0].name])
+            asked = _wheels_asked([held])
+            command = _once_more(found, *asked, "--reference-topic", others[0].name)
             return f"By {held.reference.name} nothing can be judged. Next:", command
     return "Nothing of it can be judged as it is.", ""
+
+
+def _once_more(found: Info, *words: str) -> str:
+    """The command itself with more words."""
+    file = found.given or found.written or found.parameters
+    robot = [] if file is None else ["--robot", str(file)]
+    paths = [str(each.path) for each in found.held]
+    return shlex.join(["werrimbi", "info", *paths, *robot, *_others(found.held), *words])
 
 
 def _names_to_write(held: Held, found: Info) -> str:
@@ -238,7 +264,9 @@ def command_of(found: Info) -> str:
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]
-    held = usable[0]
+    usable = _of_one_command(usable)
+    paths = [str(each.path) for each in usable]
+    held = next((each for each in usable if each.wheels is not None), usable[0])
     if held.wheels is not None:
         words += ["--ticks-topic", held.wheels.name]
     if held.reference is not None:

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from werrimbi_odom.files.bag import topic_in_words
+from werrimbi_odom.files.bag import Topic, topic_in_words
 from werrimbi_odom.files.bag_contents import ARRAYS, FLOATS, PAIRS
-from werrimbi_odom.files.own_odometry import ODOMETRY, is_filtered
+from werrimbi_odom.files.own_odometry import ODOMETRY, is_filtered, names_a_sensor
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.report.number_format import listed
@@ -48,7 +48,8 @@ def wheels_words(held: Held) -> str:
             f"right one's, {_which_is_left(held)}; "
             f"--ticks-topic {wheels.topics[0]}:LEFT:RIGHT takes others"
         )
-    gives = _OF_FILTER if is_filtered(wheels.name) else _GIVES[wheels.gives]
+    found = wheels.gives if held.run is None else held.run.wheels_from  # angles may stay at zero
+    gives = _OF_FILTER if is_filtered(wheels.name) else _GIVES[found]
     return f"Wheels: {wheels.name}, {gives}{rate_words(held, wheels.name)}{told}."
 
 
@@ -60,25 +61,54 @@ def _which_is_left(held: Held) -> str:
     return "in their order, as nothing shows which is left"
 
 
-def _unread(held: Held) -> str:
-    """Topics with names that suggest wheel data, but that are not read by default."""
+def wheels_to_try(held: Held) -> str:
+    """What may tell of wheels, though nothing says so; "" for nothing."""
+    assert held.contents is not None
+    odometry = (
+        each.name
+        for each in held.contents.topics
+        if each.kind == ODOMETRY and not (is_filtered(each.name) or names_a_sensor(each.name))
+    )
+    return pair_of_counters(held) or next(odometry, "")
+
+
+def pair_of_counters(held: Held) -> str:
+    """LEFT,RIGHT if just two topics may be the wheels' counters, as /lwheel and /rwheel."""
+    found = sorted(each for each in _may_tell(held) if each.kind in PAIRS)
+    if len(found) != 2 or found[0].kind != found[1].kind:
+        return ""
+    return ",".join(each.name for each in found)
+
+
+def _may_tell(held: Held) -> list[Topic]:
+    """Topics with names that suggest wheel data."""
     assert held.contents is not None
     known = {each.name for each in held.contents.references}
-    may = [
+    return [
         each
         for each in held.contents.topics
         if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
     ]
+
+
+def _unread(held: Held) -> str:
+    """Topics with names that suggest wheel data, but that are not read by default."""
+    assert held.contents is not None
+    may = _may_tell(held)
     words = [
         f" By name {topic_in_words(each)} may: if two of its values count the wheels, "
         f"--ticks-topic {each.name}:0:1 reads the first two, and other numbers others."
         for each in may
         if each.kind in (*ARRAYS, *FLOATS)
     ]
+    pair = pair_of_counters(held)
     if named := [topic_in_words(each) for each in may if each.kind in PAIRS]:
         words.append(
-            f" By name {listed(named)} may, but such a type is read only where each wheel has a "
-            "topic (--ticks-topic LEFT,RIGHT)."
+            f" By name {listed(named)} may: if they count the left and the right wheel, "
+            f"--ticks-topic {pair} reads them."
+            if pair
+            else f" By name {listed(named)} may, but such a type is read only where each wheel has "
+            "a topic (--ticks-topic LEFT,RIGHT)."
         )
     for each in held.contents.topics:
         if each.kind == ODOMETRY and is_filtered(each.name):

@@ -99,6 +99,8 @@ def _references(held: Held) -> Iterator[str]:
     assert held.contents is not None
     for each in held.contents.references:
         taken = ""
+        if each.independent and held.wheels is not None and each.name == held.wheels.name:
+            continue
         if each == held.reference and not held.problem:
             taken = " It is taken." if held.beside is None else " Its positions are taken."
         elif held.beside is not None and each == held.beside and not held.problem:
