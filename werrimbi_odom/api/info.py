@@ -16,10 +16,11 @@ import numpy as np
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, opened_bag
-from werrimbi_odom.files.bag_contents import Wheels, contents_of
+from werrimbi_odom.files.bag_contents import contents_of
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_reference import LOCALISED
 from werrimbi_odom.files.bag_ticks import KINDS
+from werrimbi_odom.files.bag_wheels import Wheels
 from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.evaluation_options import EvaluationOptions

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
-from werrimbi_odom.files.bag_contents import Wheels
 from werrimbi_odom.files.bag_reference import planar
+from werrimbi_odom.files.bag_wheels import Wheels
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile

@@ -16,7 +16,10 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of, topic_in_words
-from werrimbi_odom.files.bag_contents import (
+from werrimbi_odom.files.bag_contents import Contents
+from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
+from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
+from werrimbi_odom.files.bag_wheels import (
     ARRAYS,
     FLOATS,
     INT32,
@@ -24,11 +27,8 @@ from werrimbi_odom.files.bag_contents import (
     JOINT_STATE,
     MULTI_ARRAY,
     PAIRS,
-    Contents,
     Wheels,
 )
-from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
-from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
 from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.own_odometry import ODOMETRY

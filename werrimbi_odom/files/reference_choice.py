@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_contents import CLOUDS, SCAN, Contents, Wheels, moved_words
+from werrimbi_odom.files.bag_contents import CLOUDS, SCAN, Contents, moved_words
+from werrimbi_odom.files.bag_wheels import Wheels
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, chain, frame, is_static
 from werrimbi_odom.files.measured_topic import Measured

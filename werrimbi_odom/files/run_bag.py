@@ -13,10 +13,11 @@ from typing import NamedTuple, Protocol
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, BagMessage, opened_bag, topic_in_words
 from werrimbi_odom.files.bag_chain import ChainCollector, mounting_chain
-from werrimbi_odom.files.bag_contents import JOINT_STATE, SCAN, Contents, Wheels, contents_of
+from werrimbi_odom.files.bag_contents import SCAN, Contents, contents_of
 from werrimbi_odom.files.bag_laser_scans import LidarCollector
 from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
+from werrimbi_odom.files.bag_wheels import JOINT_STATE, Wheels
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile

@@ -20,9 +20,10 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, stamp_of
-from werrimbi_odom.files.bag_contents import JOINT_STATE, Contents, Wheels
+from werrimbi_odom.files.bag_contents import Contents
 from werrimbi_odom.files.bag_joints import wheel_names
 from werrimbi_odom.files.bag_ticks import wished_ticks
+from werrimbi_odom.files.bag_wheels import JOINT_STATE, Wheels
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.unstamped import with_stamps

@@ -11,7 +11,8 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.files.bag_contents import Contents, Wheels
+from werrimbi_odom.files.bag_contents import Contents
+from werrimbi_odom.files.bag_wheels import Wheels
 from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.run import Run
