@@ -4,15 +4,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.bag import BagMessage, opened_bag
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
+from werrimbi_odom.files.unstamped import NEVER_STAMPS, with_stamps
 from werrimbi_odom.report.info_words import _clock
 
 MS = 10**6
@@ -165,3 +169,21 @@ def test_a_sender_that_never_stamps_is_told_by_receipt(
     run = read_run(ros.write(tmp_path / "bag", entries), robot())
     np.testing.assert_allclose(run.ticks.time, 0.05 * np.arange(1, 40))
     assert not run.damage
+
+
+def test_messages_of_a_sender_that_never_stamps_are_not_held_to_the_end() -> None:
+    """A long recording would be held in memory, and its order over topics lost."""
+    left_out: Counter[str] = Counter()
+    header = SimpleNamespace(frame_id="", stamp=SimpleNamespace(sec=0, nanosec=0))
+    taken = []
+
+    def messages() -> Iterator[BagMessage]:
+        for n in range(2 * NEVER_STAMPS):
+            taken.append(n)
+            yield BagMessage("/joint_states", n * 10**7, SimpleNamespace(header=header))
+
+    found = with_stamps(messages(), left_out)
+    assert next(found).received == 0
+    assert len(taken) == NEVER_STAMPS
+    assert sum(1 for _ in found) == 2 * NEVER_STAMPS - 1
+    assert not left_out

@@ -17,14 +17,17 @@ from werrimbi_odom.files.bag import BagMessage
 
 ONE_CLOCK = 0.1
 """Time from stamp to receipt up to which both are by one clock [s]."""
+NEVER_STAMPS = 1000
+"""Messages without a stamp, and none with one, from which a sender is taken for one that never
+stamps: to wait to the end would hold a whole recording in memory."""
 
 
 def with_stamps(messages: Iterable[BagMessage], left_out: Counter[str]) -> Iterator[BagMessage]:
     """Yield messages without those that have no stamp while others of their sender have one.
 
     Where receipt is by the clock of the stamps, it stands for a stamp that lacks, and all come. Of
-    a sender that never stamps, all come at the end: times of receipt are used then. `left_out`
-    counts what does not come by topic.
+    a sender that never stamps, all come, at the end or from `NEVER_STAMPS` on: times of receipt are
+    used then. `left_out` counts what does not come by topic.
     """
     one_clock: dict[tuple[Any, ...], bool] = {}
     waiting: dict[tuple[Any, ...], list[BagMessage]] = {}
@@ -52,6 +55,9 @@ def with_stamps(messages: Iterable[BagMessage], left_out: Counter[str]) -> Itera
             left_out[message.topic] += 1
         else:
             waiting.setdefault(sender, []).append(message)
+            if len(waiting[sender]) >= NEVER_STAMPS:
+                one_clock[sender] = True
+                yield from waiting.pop(sender)
     for each in waiting.values():
         yield from each
 
