@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.unfinished_bag import ending
 
 APART, OVERLAP = 10.0, 0.5
 """Time between two files [s] from which they are not of one recording: a recorder that begins a new
@@ -42,7 +43,7 @@ def _span(file: Path) -> tuple[float, float] | None:
     from rosbags.rosbag1 import Reader as Reader1
     from rosbags.rosbag2 import Reader as Reader2
 
-    with suppress(Exception), (Reader1 if file.suffix == ".bag" else Reader2)(file) as reader:
+    with suppress(Exception), (Reader1 if ending(file) == ".bag" else Reader2)(file) as reader:
         if reader.message_count:
             return reader.start_time / 1e9, reader.end_time / 1e9
     return None
