@@ -18,6 +18,9 @@ from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.phrases import drive_names
 from werrimbi_odom.report.style import Figure
 
+Names = dict[tuple[Path, bool], str]
+"""A name for each drive, escaped, by its path and whether it was held out."""
+
 _TOLD = 6
 """Number of events reported one by one, in the order of their significance."""
 
@@ -203,7 +206,7 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
             group="measured",
             shown=number == 0,
         )
-    _marks(figure, happened, track, [event.place for event in happened.events])
+    _marks(figure, happened, track, [event.place for event in happened.events], names)
     return style.from_above(figure, 620, zeroline=False)
 
 
@@ -221,7 +224,7 @@ def over_time(happened: Events, track: float) -> Figure:
     for event in happened.events:
         name, start = starts[(event.run, event.held_out)]
         places.append((event.seen - start, name))
-    _marks(figure, happened, track, places)
+    _marks(figure, happened, track, places, names)
     figure.update_xaxes(title="time since the drive's first pose [s]", zeroline=False)
     figure.update_yaxes(autorange="reversed", showgrid=False)
     return style.plain(figure, height=140 + _DRIVE * len(happened.ways))
@@ -232,6 +235,7 @@ def _marks(
     happened: Events,
     track: float,
     places: list[tuple[float, float]] | list[tuple[float, str]],
+    names: Names,
 ) -> None:
     for channel, (words, colour, symbol) in _LOOKS.items():
         own = [index for index, event in enumerate(happened.events) if event.channel == channel]
@@ -243,19 +247,18 @@ def _marks(
                 [places[index][1] for index in own],
                 words,
                 hover="%{hovertext}",
-                hovertext=[_said(happened, happened.events[index], track) for index in own],
+                hovertext=[_said(happened, happened.events[index], track, names) for index in own],
                 marker={"color": colour, "symbol": symbol, "size": 12, "line": edge},
             )
 
 
-def _said(happened: Events, event: Event, track: float) -> str:
-    where = f"{_names(happened)[event.run, event.held_out]}, {when(event)}"
+def _said(happened: Events, event: Event, track: float, names: Names) -> str:
+    where = f"{names[event.run, event.held_out]}, {when(event)}"
     return f"{where}<br>{style.escaped(event_words(event, track, either=either(happened)))}"
 
 
-def _names(happened: Events) -> dict[tuple[Path, bool], str]:
-    """A name for each drive, escaped, by its path and whether it was held out."""
-    found = {}
+def _names(happened: Events) -> Names:
+    found: Names = {}
     for held_out, beside in ((False, ""), (True, " (held out)")):
         runs = [way.run for way in happened.ways if way.held_out == held_out]
         for run, name in drive_names(runs).items():

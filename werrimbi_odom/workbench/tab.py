@@ -22,7 +22,7 @@ from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import Verdict
-from werrimbi_odom.report.number_format import listed
+from werrimbi_odom.report.number_format import error_words, listed
 from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.leg_selection import Part
 from werrimbi_odom.workbench.loaded_input import Look, Opened
@@ -209,7 +209,7 @@ def size_told(error: float, unit: str) -> str:
     if math.isnan(error):
         return "not measured"
     if unit == "rad":
-        return f"{math.degrees(error):.2f}°"
+        return error_words(error, unit)
     if error >= 1.0:
         return f"{error:.2f} m"
     value = 1e3 * error
