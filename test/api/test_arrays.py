@@ -126,8 +126,9 @@ def test_rows_in_reverse_are_told(robot: Any, tmp_path: Path, of: str) -> None:
 @pytest.mark.parametrize(
     ("option", "told"),
     [
-        ({"leg": -1}, "leg must be a number greater than zero, and is -1"),
-        ({"leg": "1 m"}, "leg must be a number greater than zero, and is '1 m'"),
+        ({"leg": -1}, r"leg must be a number greater than zero \(.*\), and is -1"),
+        ({"leg": "1 m"}, r"leg must be a number greater than zero \(.*\), and is '1 m'"),
+        ({"reference_sigma_xy": 1e300}, "from 1e-09 to 1e.06"),
         ({"reference_kind": "map"}, "one of absolute, incremental, local_map, and is 'map'"),
         ({"reference_sigma_yaw": float("nan")}, "reference_sigma_yaw must be a number"),
     ],

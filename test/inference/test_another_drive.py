@@ -22,6 +22,7 @@ from werrimbi_odom.effects import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, advised_diagnosis
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
@@ -137,6 +138,11 @@ def test_wheels_that_stand_are_told_before_any_work() -> None:
     stood = replace(run.ticks, left=0 * run.ticks.left, right=0 * run.ticks.right)
     with pytest.raises(InputError, match="the wheels stood all the time"):
         diagnosed(replace(run, ticks=stood))
+    # To a reference that is exact to the last digit, no leg has any variance.
+    assert run.reference is not None
+    still = replace(run.reference, x=0 * run.reference.x, y=0 * run.reference.y)
+    with pytest.raises(InputError, match="the wheels stood all the time"):
+        compare([replace(run, ticks=stood, reference=still)], ROBOT)
 
 
 def straight(seed: int) -> Run:

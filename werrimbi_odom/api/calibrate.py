@@ -27,6 +27,7 @@ from werrimbi_odom.inference.comparison.prepared_runs import (
     for_fit,
     judged_by,
     prepare,
+    refuse_standing,
 )
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
@@ -67,6 +68,8 @@ def calibrate_fit(
 def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for recordings that are already read."""
     source = given.source
+    for drives in filter(None, (given.runs, given.holdout)):
+        refuse_standing(drives)
     given = replace(
         given, runs=tuple(with_no_driving(run, source.robot, source.limits) for run in given.runs)
     )

@@ -34,7 +34,8 @@ def number(kind: type[N], low: float, high: float, otherwise: str) -> Callable[[
     return read
 
 
-positive = number(float, sys.float_info.min, sys.float_info.max, "not a number greater than zero")
+# As DriveOptions has it, which this file does not wait for.
+positive = number(float, 1e-9, 1e6, "not a number greater than zero (from 1e-9 to 1e6)")
 
 
 def _file(says: str, metavar: str = "F", **more: Any) -> dict[str, Any]:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
@@ -27,6 +26,8 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
 BAG = "metadata.yaml"
+LEAST, MOST = 1e-9, 1e6
+"""Range of a leg and of the reference's standard deviations: squares are finite and not zero."""
 _NAMED = 8  # runs of a folder named before "..."
 
 
@@ -61,8 +62,11 @@ class DriveOptions:
         for name in ("leg", "reference_sigma_xy", "reference_sigma_yaw"):
             value = getattr(self, name)
             known = value is not None or name == "leg"
-            if known and not (isinstance(value, Real) and 0.0 < float(value) < math.inf):
-                raise InputError(f"{name} must be a number greater than zero, and is {value!r}")
+            if known and not (isinstance(value, Real) and LEAST <= float(value) <= MOST):
+                raise InputError(
+                    f"{name} must be a number greater than zero (from {LEAST:g} to {MOST:g}), and "
+                    f"is {value!r}"
+                )
 
 
 @dataclass(frozen=True)

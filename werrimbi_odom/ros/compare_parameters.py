@@ -5,12 +5,10 @@
 from __future__ import annotations
 
 from werrimbi_odom.files.node_parameter import NodeParameter
+from werrimbi_odom.files.recordings import LEAST, MOST
 from werrimbi_odom.inference import rules
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declared_parameters import table, within
-
-LEAST, MOST = 1e-9, 1e6
-"""Range of a standard deviation of the reference: its square must be finite and not zero."""
 
 # fmt: off
 PARAMETERS: tuple[NodeParameter, ...] = (

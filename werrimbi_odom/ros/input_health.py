@@ -171,7 +171,8 @@ class Health:
                     f"no odometry: {self._topics[0]} has {names}, and none of the joints in "
                     "left_wheel_names and right_wheel_names"
                 )
-            but = f"; {foreign} messages of other joints came" if foreign else ""
+            messages = "message" if foreign == 1 else "messages"
+            but = f"; {foreign} {messages} of other joints came" if foreign else ""
             return STALE, f"no input: {', '.join(silent)}{but}"
         if silent:
             return ERROR, f"no odometry without both wheels: {silent[0]}"

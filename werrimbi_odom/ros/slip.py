@@ -66,7 +66,8 @@ class Slip(NoSlip):
         if not self._heard:
             return {"slip": self._unheard}
         turn = math.degrees(self._guard.missed)
-        return {"slip": f"{self._guard.times} times, {turn:.1f} deg missed"}
+        times = self._guard.times
+        return {"slip": f"{times} time{'s' * (times != 1)}, {turn:.1f} deg missed"}
 
     def wrong(self) -> list[str]:
         """The gyro was not heard although the wheels were."""

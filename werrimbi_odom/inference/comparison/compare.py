@@ -21,7 +21,7 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     squared_deviation,
     statistics,
 )
-from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, prepare
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, prepare, refuse_standing
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.comparison.systematic import (
@@ -147,9 +147,10 @@ def compare(
     `runs`: recorded runs. `robot`: a `Model` has its own per-run values (phases, start headings).
     Those missing from a robot file are estimated in each run. `options`: leg length and what is
     known of the reference. `show`: progress callback. InputError if a run has no usable reference
-    or no ticks.
+    or no ticks, or if the wheels stood still in all of them.
     """
     own = robot.robot if isinstance(robot, Model) else robot
+    refuse_standing(runs)
     prepared = prepare(runs, own, options, show=lambda share, words: show(0.5 * share, words))
     return judged(prepared, robot, show=lambda share, words: show(0.5 + 0.5 * share, words))
 

@@ -130,6 +130,20 @@ def prepare(
     return PreparedRuns(robot, options, tuple(runs), groups, cuts, parts)
 
 
+def refuse_standing(runs: Sequence[Run]) -> None:
+    """Check that a wheel of some drive turned; InputError if none did."""
+    for run in runs:
+        counts = np.stack([run.ticks.left, run.ticks.right])
+        if np.any(np.nanmax(counts, axis=1) > np.nanmin(counts, axis=1)):
+            return
+    names = ", ".join(str(run.path) for run in runs)
+    raise InputError(
+        f"{names}: the wheels stood all the time: no count changes. Nothing is told by a robot "
+        "that stands; are these the ticks of this drive? `werrimbi info` lists what is in a "
+        "recording"
+    )
+
+
 def _refuse_increments_of_positions(run: Run, options: EvaluationOptions) -> None:
     """Without the heading at its start, no leg of a reference that adds up can be predicted."""
     if options.reference_kind != "incremental" or run.reference is None:

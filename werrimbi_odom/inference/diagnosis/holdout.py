@@ -7,8 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
@@ -18,6 +16,7 @@ from werrimbi_odom.inference.comparison.prepared_runs import (
     finely,
     judged_by,
     prepare,
+    refuse_standing,
 )
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
@@ -152,7 +151,7 @@ def begin(
         return set_up
 
     given = given or robot
-    _refuse_standing((*runs, *holdout))
+    refuse_standing((*runs, *holdout))
     fitted, held = divided(given)
     set_up = set_up_of(fitted)
     # One clock before anything else is looked for: rests, held stretches, legs, noise.
@@ -177,19 +176,6 @@ def begin(
 
     # What an effect of the file has anew in each drive is no mistake.
     return Begun(judge, set_up.beside(robot.effects), otherwise, prepared_by)
-
-
-def _refuse_standing(runs: Sequence[Run]) -> None:
-    for run in runs:
-        counts = np.stack([run.ticks.left, run.ticks.right])
-        if np.any(np.nanmax(counts, axis=1) > np.nanmin(counts, axis=1)):
-            return
-    names = ", ".join(str(run.path) for run in runs)
-    raise InputError(
-        f"{names}: the wheels stood all the time: no count changes. Nothing is told by a robot "
-        "that stands; are these the ticks of this drive? `werrimbi info` lists what is in a "
-        "recording"
-    )
 
 
 def judge_of(
