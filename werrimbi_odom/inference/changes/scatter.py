@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.changes.change_points import ChangePoints
+from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
-from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.model.pose import Floats
 
@@ -49,8 +48,8 @@ def scatter_of(values: Floats, std: Floats) -> float:
 
 def beyond_scatter(
     drives: DriveNumbers, found: ChangePoints, own: Values, scatter: Floats
-) -> list[NumberGroup]:
-    """Groups of the changes that exceed the scatter between drives, by Fisher's F.
+) -> list[GroupChange]:
+    """The changes that exceed the scatter between drives, by Fisher's F.
 
     The scatter is estimated from few drives, separately for each parameter. So the test uses the
     deviations of a parameter from its level, with the degrees of freedom of the drives.
@@ -61,16 +60,28 @@ def beyond_scatter(
         for name in step.group.numbers:
             number = drives.names.index(name)
             spread = own.spread[:, number, number] + scatter[number] ** 2
-            about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
+            away = own.value[:, number] - found.levels[:, number]
             moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
-            left = drives.count - 1 - moved
-            if left < 1:
-                return []
-            usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
+            size, left = _dispersion(away, spread, 1 + moved)
+            usual, free = max(usual, size), min(free, left)
         worth = step.gain / step.degrees / usual
         if (
-            bonferroni(found.tried, fisher_survival(worth, step.degrees, free))
+            free > 0.0
+            and bonferroni(found.tried, fisher_survival(worth, step.degrees, free))
             < rules.SURE_OF_A_CHANGE
         ):
-            lasting.append(step.group)
+            lasting.append(step)
     return lasting
+
+
+def _dispersion(away: Floats, spread: Floats, fitted: int) -> tuple[float, float]:
+    """Mean square of deviations over their variances, and its degrees of freedom.
+
+    Weighted by information: a drive that hardly knows a parameter does not show its scatter
+    (Satterthwaite). `away` (R,). `spread` (R,): variances. `fitted`: number of levels.
+    """
+    weight = 1.0 / spread
+    count = float(weight.sum() ** 2 / (weight @ weight))
+    left = max(count - fitted, 0.0)
+    square = float(weight @ (away**2 / spread) / weight.sum())
+    return square * count / max(left, 1e-9), left
