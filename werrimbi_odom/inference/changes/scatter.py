@@ -17,6 +17,10 @@ from werrimbi_odom.model.pose import Floats
 
 _MEDIAN_CHI2_1 = 0.4549
 
+_HARDLY = 10.0
+"""Standard deviation of a drive, over that of the one that knows a parameter best, above which it
+tells nothing of the scatter of that one."""
+
 
 class Values(NamedTuple):
     """Estimates of s parameters in each of R drives."""
@@ -52,7 +56,8 @@ def beyond_scatter(
     """The changes that exceed the scatter between drives, by Fisher's F.
 
     The scatter is estimated from few drives, separately for each parameter. So the test uses the
-    deviations of a parameter from its level, with the degrees of freedom of the drives.
+    deviations of a parameter from its level, with the degrees of freedom of the drives that know
+    it: others, of another reference, do not show its scatter.
     """
     lasting = []
     for step in found.steps:
@@ -60,28 +65,16 @@ def beyond_scatter(
         for name in step.group.numbers:
             number = drives.names.index(name)
             spread = own.spread[:, number, number] + scatter[number] ** 2
-            away = own.value[:, number] - found.levels[:, number]
+            told = spread < _HARDLY**2 * spread.min()
+            about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
             moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
-            size, left = _dispersion(away, spread, 1 + moved)
-            usual, free = max(usual, size), min(free, left)
+            left = int(told.sum()) - 1 - moved
+            usual, free = max(usual, float(np.sum(about[told])) / max(left, 1)), min(free, left)
         worth = step.gain / step.degrees / usual
         if (
-            free > 0.0
+            free > 0
             and bonferroni(found.tried, fisher_survival(worth, step.degrees, free))
             < rules.SURE_OF_A_CHANGE
         ):
             lasting.append(step)
     return lasting
-
-
-def _dispersion(away: Floats, spread: Floats, fitted: int) -> tuple[float, float]:
-    """Mean square of deviations over their variances, and its degrees of freedom.
-
-    Weighted by information: a drive that hardly knows a parameter does not show its scatter
-    (Satterthwaite). `away` (R,). `spread` (R,): variances. `fitted`: number of levels.
-    """
-    weight = 1.0 / spread
-    count = float(weight.sum() ** 2 / (weight @ weight))
-    left = max(count - fitted, 0.0)
-    square = float(weight @ (away**2 / spread) / weight.sum())
-    return square * count / max(left, 1e-9), left
