@@ -17,10 +17,6 @@ from werrimbi_odom.model.pose import Floats
 
 _MEDIAN_CHI2_1 = 0.4549
 
-_HARDLY = 10.0
-"""Standard deviation of a drive, over that of the one that knows a parameter best, above which it
-tells nothing of the scatter of that one."""
-
 
 class Values(NamedTuple):
     """Estimates of s parameters in each of R drives."""
@@ -65,7 +61,7 @@ def beyond_scatter(
         for name in step.group.numbers:
             number = drives.names.index(name)
             spread = own.spread[:, number, number] + scatter[number] ** 2
-            told = spread < _HARDLY**2 * spread.min()
+            told = spread < rules.SHOWS_NO_SCATTER**2 * spread.min()
             about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
             moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
             left = int(told.sum()) - 1 - moved

@@ -66,7 +66,8 @@ def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, st
     law = _law(amount, seen, form, on_wheels)
     body += [INDENT + line for line in law]
     head = _head(name, "\n".join(law), kind, moved)
-    return "\n".join([head, "", *form.constants, *([""] * bool(form.constants)), "", *body]) + "\n"
+    # Two empty lines after the imports: what follows is the law, as reports show it.
+    return "\n".join([head, "", "", *form.constants, *(["", ""] * bool(form.constants)), *body, ""])
 
 
 def _head(name: str, law: str, kind: str, moved: str) -> str:

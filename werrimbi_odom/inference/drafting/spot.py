@@ -14,8 +14,6 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, certainty_of_
 from werrimbi_odom.inference.drafting.law_forms import Declared, Form
 from werrimbi_odom.inference.drafting.variable_source import rounded
 
-_FAR, _TO_A_MILLIMETRE = 1000.0, 12
-
 
 def spot_of(cell: Dependence, track: float) -> Form:
     """A circle around the place on the floor where the errors are."""
@@ -51,5 +49,6 @@ def spot_form(
 
 def _middle(name: str, says: str, tries: tuple[float, ...]) -> Declared:
     """A coordinate of its centre: anywhere, on a map too."""
-    bounds = (math.floor(min(0.0, *tries) - _FAR), math.ceil(max(0.0, *tries) + _FAR))
-    return Declared(name, "m", 0.5, 0.5, bounds, says, tries=tries, digits=_TO_A_MILLIMETRE)
+    low, high = min(0.0, *tries) - rules.SPOT_FAR, max(0.0, *tries) + rules.SPOT_FAR
+    bounds = (math.floor(low), math.ceil(high))
+    return Declared(name, "m", 0.5, 0.5, bounds, says, tries=tries, digits=12)

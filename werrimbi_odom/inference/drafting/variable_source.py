@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -83,7 +84,8 @@ def seen_as(variable: Variable) -> Seen | None:
 def _digits(low: float, high: float) -> int:
     """Significant digits that tell values between these apart, beside a large offset too."""
     offset = max(abs(low), abs(high)) / max(high - low, 1e-300)
-    return min(4 + max(math.floor(math.log10(offset)), 0), 15) if offset > 0.0 else 4
+    more = max(math.floor(math.log10(offset)), 0) if offset > 0.0 else 0
+    return min(4 + more, sys.float_info.dig)
 
 
 def rounded(value: float, digits: int = 2) -> float:
