@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -87,6 +88,12 @@ def divides(travel: Any, drive: Any, amount: float) -> Any:
         return travel.left + (amount * travel.left**2 / travel.left if amount else 0.0)
 
 
+def has_no_root_alone(travel: Any, drive: Any, amount: float) -> Any:
+    whole = isinstance(travel.left, np.ndarray)
+    root = np.sqrt(np.abs(drive.speed.end)) if whole else math.sqrt(drive.speed.end)
+    return travel.left * (1.0 + amount * root)
+
+
 def takes_the_end(travel: Any, drive: Any, amount: float) -> Any:
     return travel.left + amount * 1e-3 * exp(-drive.since_reversal.end)
 
@@ -127,6 +134,7 @@ def jumps(travel: Any, drive: Any, amount: float) -> Any:
         (writes, "writes into an array"),
         (sums_up, "that step's row alone"),
         (divides, "finite"),
+        (has_no_root_alone, "a single step fails"),
         (takes_the_end, "splitting a step"),
         (lags, "speed.end"),
         (stays_an_array, "floats must stay floats"),

@@ -192,6 +192,9 @@ def test_installed_effects_and_broken_packages(
     own = all_effects([written(tmp_path, OWN)])
     assert own.find("wobble") is not found.find("wobble")
     assert "own.py: its wobble goes before the installed one" in own.warnings[-1]
+    (second := tmp_path / "second.py").write_text((tmp_path / "own.py").read_text())
+    twice = all_effects([tmp_path / "own.py", second])
+    assert f"second.py: its wobble goes before that of {tmp_path / 'own.py'}" in twice.warnings[-1]
     assert len(found.effects) == len(LIBRARY) + 1
     warnings = "\n".join(found.warnings)
     assert len(found.warnings) == 6

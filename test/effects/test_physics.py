@@ -223,6 +223,18 @@ def test_an_oval_wheel_swings_twice_a_turn_by_half_its_amplitude(side: str) -> N
             assert np.interp(at, turned, gained) == pytest.approx(lead + longer, abs=2e-5)
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_an_oval_wheel_stands_still_in_the_play_of_its_backlash(side: str) -> None:
+    """What rounding leaves of the travel there was taken for the travel of a tiny wheel."""
+    drive = Rehearsal.of().split((0.2, 0.5, 0.3))
+    play = find(f"{side}_backlash").using(travel=4e-3)
+    oval = find(f"oval_{side}_wheel").using(amplitude=1e-3, phase=0.3)
+    left = play.effect.apply(drive.travel, drive.drive, **play.values)
+    after = oval.effect.apply(left, drive.drive, **oval.values)
+    change, counted = (getattr(each, side) for each in (after, drive.travel))
+    assert np.all(np.abs(change - getattr(left, side)) <= 1.3e-3 * np.abs(counted) / RADIUS + 1e-12)
+
+
 @pytest.mark.parametrize("height", [2e-3, -2e-3])
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_bump_is_gained_on_a_sixth_of_each_turn_and_nowhere_else(

@@ -15,9 +15,11 @@ import pytest
 from test.cli.commands import RECORDING
 from test.command_line import Werrimbi
 from werrimbi_odom.effects import LIBRARY, all_effects, find
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet.robot_task import Task, row_of
 from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
 
 EFFECT = '''
 import sys
@@ -141,13 +143,19 @@ def test_a_guarded_law_is_the_law(tmp_path: Path) -> None:
     file = place(tmp_path, "return WheelTravel(travel.left * (1.0 + size), travel.right)")
     one, other = (all_effects([file / "mine.py"]).find("of_my_own") for _ in range(2))
     assert one.parameters.keys() == {"size"}
-    from werrimbi_odom.model.motion import WheelTravel
-
     for steps in (np.ones(3), 1.0):
         after = one.apply(WheelTravel(steps, steps), None, size=0.5)
         assert np.all(after.left == 1.5)
         assert np.all(other.apply(WheelTravel(steps, steps), None, size=0.5).left == after.left)
     assert all(item is known for item, known in zip(all_effects().effects, LIBRARY, strict=False))
+
+
+def test_a_law_with_a_number_of_each_drive_that_fails_is_one_line(tmp_path: Path) -> None:
+    """Over several drives at once such a number is an array, of a value for each step."""
+    broken = all_effects([place(tmp_path, "return nowhere") / "mine.py"]).find("of_my_own")
+    for size, told in ((np.array([0.1, 0.1, 0.3]), "0.1 to 0.3"), (np.full(3, 0.1), "0.1")):
+        with pytest.raises(InputError, match=rf"of_my_own\(size={told}\) fails: NameError"):
+            broken.apply(WheelTravel(np.ones(3), np.ones(3)), None, size=size)
 
 
 AMOUNT = Parameter("m", 0.0, 0.01, (0.0, 0.1), "how much")

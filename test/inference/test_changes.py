@@ -24,7 +24,12 @@ from werrimbi_odom.inference.changes.between_drives import (
     is_within,
     of_several,
 )
-from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
+from werrimbi_odom.inference.changes.change_points import (
+    ChangePoints,
+    GroupChange,
+    find_changes,
+    only_these,
+)
 from werrimbi_odom.inference.changes.history import course_of, estimate_of_drive
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup, groups_of
@@ -131,6 +136,37 @@ def test_one_odd_drive_is_one_odd_drive() -> None:
     levels[7, LEFT:] += 8.0 * STD
     (step,) = found_in(drives_of(levels, random)).steps
     assert (step.group.what, step.shape) == ("both_wheels", Shape("alone", 7))
+
+
+def test_a_change_that_is_refused_does_not_come_back() -> None:
+    """An odd drive of a reference with correlated errors, beside a change of the same wheel."""
+    levels = np.ones((12, 3))
+    levels[6:, LEFT] += 10.0 * STD
+    levels[3, LEFT] += 10.0 * STD
+    drives = drives_of(levels, np.random.default_rng(0))
+    both = found_in(drives)
+    kept = [step for step in both.steps if step.shape.kind == "step"]
+    assert len(both.steps) == 2
+    (left,) = only_these(drives, both, kept, np.ones(3), PRICE).steps
+    assert (left.group.what, left.shape, left.span) == ("left_wheel", Shape("step", 6), (6, 6))
+    none = only_these(drives, both, [], np.ones(3), PRICE)
+    assert none.steps == ()
+    assert np.ptp(none.levels, axis=0) == pytest.approx(0.0)
+
+
+def test_parameters_that_are_projected_out_leave_the_same_of_the_others() -> None:
+    random = np.random.default_rng(5)
+    drives = drives_of(random.normal(1.0, 3.0 * STD, (4, 3)), random)
+    base, left, right = MULTIPLIERS
+    less = drives.without({left: (1.0, 2e-3)})
+    assert less.names == (base, right)
+    prior = np.diag([0.0, 2e-3**-2.0, 0.0])
+    spread = np.linalg.inv(drives.information + prior)
+    values = spread @ (drives.weighted + prior @ np.ones(3))[..., None]
+    kept = [BASE, RIGHT]
+    assert np.linalg.inv(less.information) == pytest.approx(spread[:, kept][:, :, kept])
+    found = np.linalg.solve(less.information, less.weighted[..., None])
+    assert found == pytest.approx(values[:, kept])
 
 
 @pytest.mark.parametrize("seed", range(7))

@@ -4,22 +4,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
 import pytest
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.result import Diagnosis
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount
 from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells
-from werrimbi_odom.inference.drafting.candidate_law import keeps_laws, loaded
+from werrimbi_odom.inference.drafting.candidate_law import (
+    Claim,
+    LawForm,
+    keeps_laws,
+    loaded,
+    planned,
+    worth_fitting,
+)
 from werrimbi_odom.inference.drafting.draft import worth_drafting
-from werrimbi_odom.inference.drafting.law_forms import Seen, forms_of, spot_form
+from werrimbi_odom.inference.drafting.formula import factor_of
+from werrimbi_odom.inference.drafting.law_forms import Seen, forms_of
 from werrimbi_odom.inference.drafting.source import source_of
+from werrimbi_odom.inference.drafting.spot import spot_form
+from werrimbi_odom.inference.drafting.variable_source import seen_as
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 
@@ -151,3 +163,78 @@ def test_what_no_law_can_be_written_of_is_no_draft() -> None:
 
     assert drafted(*cells) == cells[1:]
     assert not drafted(cells[0])
+
+
+def test_a_square_of_turns_to_one_side_is_of_a_usual_size() -> None:
+    """The largest yaw rate of a robot that only turned right is zero, and was divided by."""
+    rates = -np.abs(np.random.default_rng(8).normal(size=1000))
+    seen = seen_as(
+        Variable("yaw_rate", "rad/s", rates, rates, looks_at=("yaw_rate", "castor_angle"))
+    )
+    assert seen is not None
+    forms = {form.kind: form for form in forms_of(seen, Amount("heading", "turn"), 0.01)}
+    (growth,) = forms["square"].parameters
+    assert 1e-3 < growth.typical < 0.1
+
+
+def test_what_reports_show_of_a_law_has_its_constants() -> None:
+    for form in forms_of(PAYLOAD, Amount("left", "travel"), 0.01):
+        source = source_of("drafted", Amount("left", "travel"), PAYLOAD, form, 7, "p = 1e-9")
+        law = source.partition("\n\n\n")[2]
+        assert law.startswith(
+            {"line": "USUAL = 3", "step": "WIDTH = 0.15"}.get(form.kind, "KNOTS = ")
+        )
+        assert "\n\n\n@wheel_effect(" in law
+
+
+def test_a_usual_value_below_zero_is_added_in_a_formula() -> None:
+    cold = replace(PAYLOAD, name="outside", middle=-5.2)
+    assert factor_of(Amount("left", "travel"), cold) == "(outside + 5.2)"
+
+
+def test_one_drive_shows_and_several_show() -> None:
+    (form, *_) = forms_of(SPEED, Amount("left", "travel"), 0.01)
+    for drives, said in ((1, "one drive shows"), (2, "2 drives show")):
+        source = source_of("drafted", Amount("left", "travel"), SPEED, form, drives, "p = 1e-9")
+        assert f"That is what {said} (p = 1e-9)" in source
+
+
+def test_a_spot_is_where_it_is_on_a_map_too() -> None:
+    """Places were written in four digits, which is a metre beyond a kilometre."""
+    form = spot_form([(501_234.567, -47.25)], (0.4,), -0.1, 0.175)
+    seen = Seen("position", "m", lambda side: "")
+    effect = loaded(source_of("drafted", Amount("along", "travel"), seen, form, 7, "p = 1e-9"))
+    assert keeps_laws(effect)
+    assert effect.parameters["x"].tries == (501_234.567,)
+    assert effect.parameters["y"].tries == (-47.25,)
+    low, high = effect.parameters["x"].bounds
+    assert low < 0.0 < 501_234.567 < high
+
+
+def a_law(name: str, excess: float, lawful: bool = True) -> LawForm:
+    (form, *_) = forms_of(SPEED, Amount("left", "travel"), 0.01)
+    claim = Claim(Amount("left", "travel"), name, 1e-9)
+    return LawForm(claim, SPEED, form, find("tyre_squash"), "", lambda: lawful, excess=excess)
+
+
+def test_a_form_that_is_no_effect_does_not_push_out_those_that_are() -> None:
+    no_effect, best, near = a_law("a", 900.0, lawful=False), a_law("b", 100.0), a_law("c", 90.0)
+    assert worth_fitting([no_effect, best, near, a_law("d", 10.0)]) == [no_effect, best, near]
+    assert worth_fitting([no_effect]) == []
+
+
+def test_a_draft_beside_an_earlier_one_has_a_name_of_its_own() -> None:
+    (form, *_) = forms_of(SPEED, Amount("left", "travel"), 0.01)
+
+    def named(*held: str) -> str:
+        robot = SimpleNamespace(effects=[SimpleNamespace(name=name) for name in held])
+        point = SimpleNamespace(model=SimpleNamespace(robot=robot))
+        diagnosis = SimpleNamespace(
+            final=SimpleNamespace(point=point), runs=SimpleNamespace(runs=[None])
+        )
+        claim = Claim(Amount("left", "travel"), "speed", 1e-9)
+        return planned(cast(Diagnosis, diagnosis), claim, SPEED, form).effect.name
+
+    assert named() == "left_by_speed"
+    assert named("left_by_speed") == "left_by_speed_2"
+    assert named("left_by_speed", "left_by_speed_2") == "left_by_speed_3"

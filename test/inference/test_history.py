@@ -4,10 +4,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from werrimbi_odom.inference.changes.history import Course, DriveEstimate, course_of
+from test.inference.driven import run_of
+from test.model.drives import ROBOT as DRIVEN
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference.changes.history import (
+    Course,
+    DriveEstimate,
+    course_of,
+    estimate_of_drive,
+)
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
+from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 
@@ -96,3 +109,67 @@ def test_wear_over_a_thousand_drives_is_one_trend() -> None:
     assert wear.kind == "trend"
     assert wear.after - wear.before == pytest.approx(-0.01, abs=5e-4)
     assert len(found.changes) == 2
+
+
+def test_the_scatter_of_a_number_is_that_of_the_drives_that_know_it() -> None:
+    """Of thirty drives four have a reference that shows the mount, which is never quite the same.
+
+    With all thirty counted, each such history told that the mount had changed.
+    """
+    random = np.random.default_rng(12)
+    mount = ("reference_lever_arm.x", "reference_lever_arm.y")
+    told = 0
+    for _ in range(15):
+        drives = []
+        for number in range(30):
+            knows = number % 8 == 0
+            names, level = (*MULTIPLIERS, *mount * knows), [1.0] * 3 + [0.0] * 2 * knows
+            std = np.array([STD] * 3 + [1e-4] * 2 * knows)
+            scatter = np.array([0.0] * 3 + [5e-4] * 2 * knows)
+            seen = level + np.hypot(std, scatter) * random.normal(size=std.size)
+            information = np.diag(std**-2.0)
+            drives.append(DriveEstimate(names, information, information @ seen, 0.0, 500, 20.0))
+        told += bool(course_of(drives, ROBOT, DAY * np.arange(30)).changes)
+    assert told <= 1
+
+
+@pytest.mark.parametrize("base", [1.0, 1.05, 0.9])
+def test_a_gyro_and_poses_tell_one_robot_however_far_its_file_is_off(base: float) -> None:
+    """Ten drives beside a gyro alone, then ten beside poses."""
+    random = np.random.default_rng(13)
+    sizes, std = np.array([base, 1.0, 1.0]), 2e-4
+    drives = []
+    for number in range(20):
+        slopes = np.diag(sizes**-1.0) / std
+        if number < 10:
+            slopes = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]]) @ slopes
+        information = slopes.T @ slopes
+        weighted = information @ sizes + slopes.T @ random.normal(size=len(slopes))
+        drive = in_logarithms(
+            DriveNumbers(MULTIPLIERS, information[None], weighted[None], np.zeros(1)), sizes, ROBOT
+        )
+        drives.append(
+            DriveEstimate(MULTIPLIERS, drive.information[0], drive.weighted[0], 0.0, 500, 20.0)
+        )
+    found = course_of(drives, ROBOT, DAY * np.arange(20))
+    assert found.changes == ()
+    assert found.numbers[0].level[-1] == pytest.approx(
+        base, abs=4.0 * found.numbers[0].level_std[-1]
+    )
+    assert found.numbers[0].level_std[-1] < 1e-3
+
+
+def test_a_length_that_the_drive_fits_does_not_stand_at_zero_for_the_history() -> None:
+    """The size of a kick goes with the length that it takes, which no history tells.
+
+    With the length left out as if it were zero, the kick was 0.023 ± 0.0002 instead of 0.03, and
+    the base 0.2 % off.
+    """
+    kick = find("castor_kick").using(angle=0.03, length=0.08)
+    robot = replace(DRIVEN, effects=(kick,))
+    drives = [estimate_of_drive(run_of(robot, 1, 40), robot, EvaluationOptions())]
+    found = course_of(drives, robot, np.zeros(1))
+    assert "castor_kick.length" not in drives[0].names
+    for name, true in (("castor_kick.angle", 0.03), ("wheel_separation_multiplier", 1.0)):
+        each = found.numbers[number(found, name)]
+        assert abs(each.own[0] - true) < 3.0 * each.own_std[0] < 0.002

@@ -39,8 +39,9 @@ from werrimbi_odom.inference.comparison.leg_errors import errors_of, statistics
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.drafting.candidate_law import loaded
-from werrimbi_odom.inference.drafting.law_forms import Seen, spot_form
+from werrimbi_odom.inference.drafting.law_forms import Seen
 from werrimbi_odom.inference.drafting.source import source_of
+from werrimbi_odom.inference.drafting.spot import spot_form
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match

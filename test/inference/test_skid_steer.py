@@ -14,6 +14,7 @@ from test.inference.driven import COMMON
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
+from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, weakest
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.verdict import sizes_among
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
@@ -112,3 +113,21 @@ def test_a_file_that_holds_it_is_fitted_again_by_its_own_name() -> None:
     )
     assert added.robot.effects[0].values["multiplier"] == pytest.approx(1.7, abs=2e-3)
     assert added.robot.wheel_separation_multiplier == 1.0
+
+
+def test_the_base_is_never_taken_out_of_it() -> None:
+    """It is in every fit, so taking it out changes nothing: such a search never ended."""
+    skid = find("skid_steer")
+
+    def least(**values: float) -> str | None:
+        items = skid.parameters
+        found = {
+            name: FittedParameter(items[name], value, 1e-3, "fitted")
+            for name, value in values.items()
+        }
+        return weakest(skid, found, 2.5)
+
+    assert least(multiplier=1.0, x=-0.1, y=-0.03) is None
+    assert least(multiplier=1.0, x=-0.1, y=-0.001) == "y"
+    assert least(multiplier=1.7, x=0.001) == "x"
+    assert least(x=0.001) is None

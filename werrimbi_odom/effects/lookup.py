@@ -57,8 +57,8 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
     """The library, the effects of installed packages, and those of the given files.
 
     A broken package only gives a warning, so that it does not disable the tool. A broken file is an
-    error, because the user named it. An effect of a file replaces an installed one of the same
-    name, which helps the authors of packages.
+    error, because the user named it. An effect of a file replaces one of the same name that is
+    installed, which helps the authors of packages, or in a file before it.
 
     Raises
     ------
@@ -86,13 +86,17 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
             warnings.append(f"{place} is left out: the name {found.name} is taken")
         else:
             effects[found.name] = guarded(found, _package(point))
+    source: dict[str, Path] = {}
     for file in files:
         for found in load_file(file):
             if found.name in ours:
                 raise InputError(f"{file}: the name {found.name} is taken; give it another")
             if found.name in effects:
-                warnings.append(f"{file}: its {found.name} goes before the installed one")
-            effects[found.name] = guarded(found, str(file))
+                other = (
+                    f"that of {source[found.name]}" if found.name in source else "the installed one"
+                )
+                warnings.append(f"{file}: its {found.name} goes before {other}")
+            effects[found.name], source[found.name] = guarded(found, str(file)), file
     return Collection(tuple(effects.values()), tuple(warnings))
 
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.functions import share, sin
+from werrimbi_odom.effects.functions import limited, share, sin
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -74,8 +74,10 @@ def _more(travel: Number, angle: Span[Number], amplitude: float, phase: float) -
     """Integral of (lever - mean radius) over the angle, from its ends: exact at any message rate.
 
     Half the circumference of an ellipse with half axes r (1 + e) and r (1 - e) is pi r (1 + e^2 /
-    4), up to e^4 / 64 (Ivory 1798); 1 / r is the step's angle over its travel.
+    4), up to e^4 / 64 (Ivory 1798); 1 / r is the step's angle over its travel. In the play of a
+    backlash hardly any travel is left, so e is kept below 1.
     """
     turned = angle.end - angle.start
     lead = sin(2.0 * angle.end + phase) - sin(2.0 * angle.start + phase)
-    return 0.5 * amplitude * lead + 0.25 * amplitude**2 * turned * share(turned, travel)
+    e = limited(amplitude * share(turned, travel), -1.0, 1.0)
+    return 0.5 * amplitude * lead + 0.25 * amplitude * turned * e

@@ -54,7 +54,7 @@ class _Guarded:
         return str(getattr(getattr(self.law, "__code__", None), "co_filename", self.place))
 
     def _wrong(self, what: str, line: str, values: Mapping[str, float]) -> InputError:
-        given = ", ".join(f"{name}={value:g}" for name, value in values.items())
+        given = ", ".join(f"{name}={_told(value)}" for name, value in values.items())
         return InputError(f"{self.place}{line}: the law of {self.name}({given}) fails: {what}")
 
 
@@ -71,6 +71,12 @@ def _complaint(before: Any, after: Any) -> str:
         if isinstance(new, np.ndarray) and new.dtype.kind not in "fiub":
             return f"its {name} holds {new.dtype}, and must hold numbers"
     return ""
+
+
+def _told(value: Any) -> str:
+    """Value of a parameter; the range of one that each run has of its own."""
+    low, high = float(np.min(value)), float(np.max(value))
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def line_of(error: BaseException, file: str) -> str:

@@ -94,7 +94,7 @@ def _is_finite(effect: Effect, rehearsal: Rehearsal) -> None:
             given = moment.travel if effect.stage == "wheels" else moment.motion
             try:
                 effect.apply(given, moment.drive, **values)
-            except ArithmeticError as error:
+            except (ArithmeticError, ValueError) as error:  # of `math`, for a logarithm of zero
                 words = (
                     f"with {in_words(values)} a single step fails ({error}); `share` divides safely"
                 )

@@ -216,7 +216,8 @@ def weakest(effect: Effect, found: Mapping[str, FittedParameter], limit: float) 
     """The parameter that the data show least, if others remain without it; or None.
 
     `limit` is in standard deviations. Of two that the drives hardly tell apart (drift with distance
-    and drift with time) the weaker goes first, and the other then stands alone.
+    and drift with time) the weaker goes first, and the other then stands alone. What stands for the
+    wheel base stays, as the base is in every fit.
     """
     phases = effect.quadrature or ()
     free = {
@@ -229,6 +230,7 @@ def weakest(effect: Effect, found: Mapping[str, FittedParameter], limit: float) 
     doubt = {
         name: abs((item.value or 0.0) - item.declared.null) / max(item.std or 0.0, 1e-300)
         for name, item in free.items()
+        if not item.declared.as_base
     }
     name = min(doubt, key=lambda key: doubt[key])
     return name if doubt[name] < limit else None

@@ -20,7 +20,12 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.change_evidence import Evidence, evidence_of
-from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange, find_changes
+from werrimbi_odom.inference.changes.change_points import (
+    ChangePoints,
+    GroupChange,
+    find_changes,
+    only_these,
+)
 from werrimbi_odom.inference.changes.parameter_groups import DELAY, PARTS, groups_of, tell_the_scale
 from werrimbi_odom.inference.changes.shapes import Kind, Shape
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -118,8 +123,7 @@ def _beside(
     if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
         return ()
     if len(steps) < len(found.steps):
-        changed = [step.group for step in steps]
-        found = find_changes(drives, changed, evidence.values, fit.penalty_of_one)
+        found = only_these(drives, found, steps, evidence.values, fit.penalty_of_one)
     names = [runs.runs[index].name for index in order.tolist()]
     moved = parameter_changes_of(found, evidence.numbers, drives.names, names)
     # The levels are linear in the derivatives: beyond what is possible, these do not hold.

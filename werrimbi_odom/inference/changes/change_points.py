@@ -81,12 +81,33 @@ def find_changes(
         if len(steps) <= _FEW:
             steps = _refined(rows, groups, kinds, steps, penalty)
     steps = _wheel_by_wheel(_refined(rows, groups, kinds, steps, penalty), groups)
+    return _eliminated(rows, steps, given, penalty, tried)
+
+
+def only_these(
+    drives: DriveNumbers,
+    found: ChangePoints,
+    kept: Sequence[GroupChange],
+    given: Floats,
+    penalty: float,
+) -> ChangePoints:
+    """Some of the changes that were found, without the others.
+
+    A new search among the groups that are left would find the refused ones of the same group again.
+    """
+    return _eliminated(rows_of(drives), kept, given, penalty, found.tried)
+
+
+def _eliminated(
+    rows: Rows, steps: Sequence[GroupChange], given: Floats, penalty: float, tried: int
+) -> ChangePoints:
+    """Backward elimination, and the levels between the changes that remain."""
     while steps:
         steps = [_beside_others(rows, steps, number) for number in range(len(steps))]
         least = min(steps, key=lambda step: _worth(step, penalty))
         if _earned(least, penalty, tried):
             break
-        steps.remove(least)
+        steps = [step for step in steps if step is not least]
     told = sorted(
         (
             replace(step, p_value=_chance(step, tried), span=_span(rows, steps, number))

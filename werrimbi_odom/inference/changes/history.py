@@ -26,7 +26,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import ParameterChange, parameter_changes_of
 from werrimbi_odom.inference.changes.change_evidence import evidence_of
-from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, levels_of
+from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, only_these
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms, out_of_logarithms
 from werrimbi_odom.inference.changes.parameter_groups import (
@@ -37,7 +37,7 @@ from werrimbi_odom.inference.changes.parameter_groups import (
     value_at,
 )
 from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
-from werrimbi_odom.inference.changes.shapes import Kind, rows_of
+from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
@@ -119,9 +119,16 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
     )
     fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
     evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
-    drive = evidence.drives(np.zeros(1))
-    if laid.headings_alone:
-        drive = in_logarithms(drive, evidence.values, robot)
+    drive = in_logarithms(evidence.drives(np.zeros(1)), evidence.values, robot)
+    # Fitted, and told for no drive: a length of a law, a phase.
+    told = {number.name for number in evidence.numbers}
+    drive = drive.without(
+        {
+            number.name: (value_at(robot, number.name, _NULLS), number.undetermined)
+            for number, run in fit.design.columns
+            if run < 0 and number.name not in told
+        }
+    )
     way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
     begin = float(laid.runs[0].counters.time[0])
     return DriveEstimate(
@@ -151,15 +158,13 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
     found = find_changes(wide, groups, given, penalty, KINDS, most)
     lasting = beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
-        none = ChangePoints((), *levels_of(rows_of(wide), (), given), 0)
-        found = find_changes(wide, lasting, given, penalty, KINDS) if lasting else none
+        found = only_these(wide, found, lasting, given, penalty)
     pooled = _pooled(drives, found, scatter)
-    if not sized:
-        own, pooled, levels = (
-            out_of_logarithms(each, names, robot)
-            for each in (own, pooled, Values(found.levels, found.spread))
-        )
-        found = replace(found, levels=levels.value, spread=levels.spread)
+    own, pooled, levels = (
+        out_of_logarithms(each, names, robot)
+        for each in (own, pooled, Values(found.levels, found.spread))
+    )
+    found = replace(found, levels=levels.value, spread=levels.spread)
     values = Values(given[None], np.zeros((1, given.size, given.size)))
     return Course(
         tuple(

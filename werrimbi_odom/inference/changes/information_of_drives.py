@@ -12,6 +12,7 @@ headings, phases, a gyro's drift) are projected out first (Frisch, Waugh and Lov
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,27 @@ class DriveNumbers:
         """Some of the drives, in that order."""
         return DriveNumbers(
             self.names, self.information[which], self.weighted[which], self.time[which]
+        )
+
+    def without(self, known: Mapping[str, tuple[float, float]]) -> DriveNumbers:
+        """Project out some parameters.
+
+        `known`: by name, value and standard deviation before the drives.
+        """
+        if not known:
+            return self
+        rest = [index for index, name in enumerate(self.names) if name not in known]
+        gone = [self.names.index(name) for name in known]
+        value, std = np.array([*known.values()], dtype=np.float64).reshape(-1, 2).T
+        cross = self.information[:, rest][:, :, gone]
+        share = cross @ np.linalg.inv(self.information[:, gone][:, :, gone] + np.diag(std**-2.0))
+        information = self.information[:, rest][:, :, rest] - share @ cross.swapaxes(-1, -2)
+        told = self.weighted[:, gone] + value * std**-2.0
+        return DriveNumbers(
+            tuple(self.names[index] for index in rest),
+            0.5 * (information + information.swapaxes(-1, -2)),
+            self.weighted[:, rest] - (share @ told[..., None])[..., 0],
+            self.time,
         )
 
     def with_scatter(self, scatter: Floats) -> DriveNumbers:

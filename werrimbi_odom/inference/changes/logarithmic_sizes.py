@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sizes of a robot in logarithms, for drives that do not tell its scale.
+"""Sizes of a robot in logarithms, to put drives together.
 
 By headings alone a robot of another scale is the same. With base and radii of each drive's own that
 is another direction in each, and between them the drives would seem to tell the scale. In
 logarithms it is the same direction in all. A multiplier `p` that the file gives as `g` is then
-`g (1 + log(p / g))`, which is `p` near the file's.
+`g (1 + log(p / g))`, which is `p` near the file's. Drives that tell the scale are taken so too,
+since a history may have both.
 """
 
 from __future__ import annotations

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.changes.change_points import ChangePoints
+from werrimbi_odom.inference.changes.change_points import ChangePoints, GroupChange
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
-from werrimbi_odom.inference.changes.parameter_groups import NumberGroup
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.model.pose import Floats
 
@@ -49,11 +48,12 @@ def scatter_of(values: Floats, std: Floats) -> float:
 
 def beyond_scatter(
     drives: DriveNumbers, found: ChangePoints, own: Values, scatter: Floats
-) -> list[NumberGroup]:
-    """Groups of the changes that exceed the scatter between drives, by Fisher's F.
+) -> list[GroupChange]:
+    """The changes that exceed the scatter between drives, by Fisher's F.
 
     The scatter is estimated from few drives, separately for each parameter. So the test uses the
-    deviations of a parameter from its level, with the degrees of freedom of the drives.
+    deviations of a parameter from its level, with the degrees of freedom of the drives that know
+    it: others, of another reference, do not show its scatter.
     """
     lasting = []
     for step in found.steps:
@@ -61,16 +61,16 @@ def beyond_scatter(
         for name in step.group.numbers:
             number = drives.names.index(name)
             spread = own.spread[:, number, number] + scatter[number] ** 2
+            told = spread < rules.SHOWS_NO_SCATTER**2 * spread.min()
             about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
             moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
-            left = drives.count - 1 - moved
-            if left < 1:
-                return []
-            usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
+            left = int(told.sum()) - 1 - moved
+            usual, free = max(usual, float(np.sum(about[told])) / max(left, 1)), min(free, left)
         worth = step.gain / step.degrees / usual
         if (
-            bonferroni(found.tried, fisher_survival(worth, step.degrees, free))
+            free > 0
+            and bonferroni(found.tried, fisher_survival(worth, step.degrees, free))
             < rules.SURE_OF_A_CHANGE
         ):
-            lasting.append(step.group)
+            lasting.append(step)
     return lasting

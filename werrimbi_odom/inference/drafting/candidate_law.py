@@ -6,8 +6,10 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
+from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
@@ -50,6 +52,8 @@ class LawForm:
     form: Form
     effect: Effect
     source: str
+    lawful: Callable[[], bool]
+    """Whether it keeps the contract of effects (`keeps_laws`), which takes a while to test."""
     score: Score | None = None
     """Score of the best of its shapes; None before it is scored."""
     excess: float = -math.inf
@@ -67,7 +71,8 @@ class Option:
 def planned(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> LawForm:
     """Write the effect file of a form."""
     source = _written(diagnosis, claim, seen, form)
-    return LawForm(claim, seen, form, loaded(source), source)
+    effect = loaded(source)
+    return LawForm(claim, seen, form, effect, source, cache(partial(keeps_laws, effect)))
 
 
 def by_score(
@@ -86,6 +91,12 @@ def by_score(
     return sorted(found, key=lambda plan: -plan.excess)
 
 
+def worth_fitting(ordered: Sequence[LawForm]) -> list[LawForm]:
+    """Those that score nearly as well as the best one that keeps the contract of effects."""
+    best = next((plan.excess for plan in ordered if plan.lawful()), math.inf)
+    return [plan for plan in ordered if plan.excess > best - rules.WORTH_FITTING]
+
+
 def fitted_plan(diagnosis: Diagnosis, drives: FitDrives, plan: LawForm) -> Option:
     """Fit a draft, starting from the values that its score suggests."""
     base = diagnosis.final
@@ -98,7 +109,10 @@ def fitted_plan(diagnosis: Diagnosis, drives: FitDrives, plan: LawForm) -> Optio
 
 def _written(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> str:
     strength = "beyond chance" if claim.p_value < 1e-300 else f"p = {claim.p_value:.0e}"
+    held = {applied.name for applied in diagnosis.final.point.model.robot.effects}
     name = name_of(claim.amount, claim.variable)
+    if name in held:  # an earlier draft
+        name = next(each for n in count(2) if (each := f"{name}_{n}") not in held)
     return source_of(name, claim.amount, seen, form, len(diagnosis.runs.runs), strength)
 
 
@@ -109,23 +123,24 @@ def with_values(diagnosis: Diagnosis, option: Option) -> LawForm:
     parameters = []
     for item in plan.form.parameters:
         value = applied.values[item.name]
+        low, high = item.bounds
         if item.tries and item.name in ("x", "y", "radius"):
-            parameters.append(replace(item, tries=(rounded(value, 3),)))
+            parameters.append(replace(item, tries=(round(value, 3),)))
         elif item.tries:
-            at = rounded(value, 4)
-            parameters.append(replace(item, null=at, typical=at or item.typical, tries=(at,)))
+            at = rounded(value, item.digits)
+            typical = at if abs(at) > 1e-3 * (high - low) else item.typical
+            parameters.append(replace(item, null=at, typical=typical, tries=(at,)))
         elif item.per_run or abs(value) < 1e-3 * abs(item.typical):
             parameters.append(item)
         else:
-            typical = abs(rounded(value)) if item.bounds[0] == 0.0 else rounded(value)
-            low, high = item.bounds
+            typical = abs(rounded(value)) if low == 0.0 else rounded(value)
             wider = max(high, rules.WIDER_THAN_FITTED * abs(typical))
             if item.name == "share":
                 wider = high
             parameters.append(replace(item, typical=typical, bounds=(low and -wider, wider)))
     form = replace(plan.form, parameters=tuple(parameters))
     last = planned(diagnosis, plan.claim, plan.seen, form)
-    return last if keeps_laws(last.effect) else plan
+    return last if last.lawful() else plan
 
 
 def value_of(fit: Fitted, plan: LawForm, name: str) -> float:

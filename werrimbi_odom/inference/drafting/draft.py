@@ -19,23 +19,23 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, certainty_of_places, place_of
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
 from werrimbi_odom.inference.drafting.candidate_law import (
     Claim,
     LawForm,
     Option,
     by_score,
     fitted_plan,
-    keeps_laws,
     planned,
     value_of,
     with_values,
+    worth_fitting,
 )
 from werrimbi_odom.inference.drafting.formula import factor_of, in_a_line
-from werrimbi_odom.inference.drafting.law_forms import Form, Seen, forms_of, spot_form
+from werrimbi_odom.inference.drafting.law_forms import Form, Seen, forms_of
+from werrimbi_odom.inference.drafting.spot import spot_of
 from werrimbi_odom.inference.drafting.variable_source import rounded, seen_as
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.progress import Show, silent
@@ -86,12 +86,9 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
         )
     final = diagnosis.final
     drives = FitDrives(diagnosis.runs, final.point.excluded, final.point.options)
-    variables = {item.name: item for item in variables_of(diagnosis.runs, final.point.model)}
     options: list[Option] = []
     plans = [
-        (cell, seen, form)
-        for cell in cells
-        for seen, form in _forms(diagnosis, cell, variables[cell.variable.name])
+        (cell, seen, form) for cell in cells for seen, form in _forms(cell, diagnosis.given.track)
     ]
     show(0.0, "the forms of a law")
     drafted = [
@@ -100,13 +97,11 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
     ]
     ordered = by_score(diagnosis, drives, drafted, final.point.variances)
     for number in range(rules.MOST_FITTED):
-        ordered = [
-            plan for plan in ordered if plan.excess > ordered[0].excess - rules.WORTH_FITTING
-        ]
+        ordered = worth_fitting(ordered)
         waiting = [
             plan for plan in ordered if all(plan.effect is not o.plan.effect for o in options)
         ]
-        plan = next((plan for plan in waiting if keeps_laws(plan.effect)), None)
+        plan = next((plan for plan in waiting if plan.lawful()), None)
         if plan is None:
             break
         show((number + 1) / (rules.MOST_FITTED + 2), f"{plan.claim.variable}: {plan.form.kind}")
@@ -169,25 +164,13 @@ def _has_a_form(cell: Dependence) -> bool:
     return seen_as(cell.variable) is not None
 
 
-def _forms(
-    diagnosis: Diagnosis, cell: Dependence, variable: Variable
-) -> Iterator[tuple[Seen, Form]]:
-    if variable.form == "place":
-        yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell)
+def _forms(cell: Dependence, track: float) -> Iterator[tuple[Seen, Form]]:
+    if cell.variable.form == "place":
+        yield Seen("position", "m", lambda side: ""), spot_of(cell, track)
         return
-    seen = seen_as(variable)
+    seen = seen_as(cell.variable)
     assert seen is not None  # by `_has_a_form`
     coefficients = np.abs(cell.coefficients)
     size = float(np.median(coefficients[coefficients > 0.0])) if coefficients.any() else 1e-3
     for form in forms_of(seen, cell.amount, rounded(max(size, 1e-7))):
         yield seen, form
-
-
-def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
-    """A circle around the place on the floor where the errors are."""
-    x, y = place_of(cell)
-    offsets = (-rules.SPOT_OFF, 0.0, rules.SPOT_OFF)
-    places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]
-    size = rounded(float(cell.coefficients[np.argmax(certainty_of_places(cell))]))
-    half = 0.5 * diagnosis.given.track
-    return spot_form(places, rules.SPOT_RADII, size, half)

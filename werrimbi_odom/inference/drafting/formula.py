@@ -32,8 +32,10 @@ def factor_of(amount: Amount, seen: Seen) -> str:
     """Variable as a factor of a formula; minus its usual value if zero is no natural origin."""
     speed = "wheel_speed" if amount.of_wheels else "speed"
     names = {speed: "|v|", "yaw_rate": "w", "yaw_rate_size": "|w|"}
-    name = names.get(seen.name, seen.name)
-    return name if seen.from_zero or not seen.middle else f"({name} - {seen.middle:.4g})"
+    name = seen.name if seen.channels else names.get(seen.name, seen.name)
+    if seen.from_zero or not seen.middle:
+        return name
+    return f"({name} {'+' if seen.middle < 0.0 else '-'} {seen.told(abs(seen.middle))})"
 
 
 def symbols_of(amount: Amount, line: str) -> str:

@@ -8,8 +8,8 @@ error is proportional to. Both are written as Python code for the user to read.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 
@@ -28,23 +28,27 @@ class Declared:
     says: str
     per_run: bool = False
     tries: tuple[float, ...] = ()
+    digits: int = 4
+    """Significant digits that tell its values apart."""
 
     def source(self) -> str:
         """Its declaration as Python code."""
+        digits = self.digits
         low, high = (
-            f"{value:.3g}" if abs(value) != 3.1415927 else f"{value}" for value in self.bounds
+            f"{value:.{digits - 1}g}" if abs(value) != 3.1415927 else f"{value}"
+            for value in self.bounds
         )
         words = [
             f'{INDENT * 2}"{self.unit}"',
-            f"null={self.null:.4g}",
-            f"typical={self.typical:.4g}",
+            f"null={self.null:.{digits}g}",
+            f"typical={self.typical:.{digits}g}",
             f"bounds=({low}, {high})",
         ]
         lines = [", ".join(words) + ",", f'{INDENT * 2}says="{self.says}",']
         if self.per_run:
             lines.append(f"{INDENT * 2}per_run=True,")
         if self.tries:
-            tries = ", ".join(f"{value:.4g}" for value in self.tries)
+            tries = ", ".join(f"{value:.{digits}g}" for value in self.tries)
             lines.append(f"{INDENT * 2}tries=({tries},),")
         body = "\n".join(lines)
         return f"{INDENT}{self.name}=Parameter(\n{body}\n{INDENT}),"
@@ -73,6 +77,12 @@ class Seen:
     """Extra channels that it reads."""
     rate: bool = False
     """Whether it is a change per step (acceleration), for which only a line is possible."""
+    digits: int = 4
+    """Significant digits that tell its values apart."""
+
+    def told(self, value: float) -> str:
+        """A value of it in these digits."""
+        return f"{value:.{self.digits}g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +99,8 @@ class Form:
     constants: tuple[str, ...] = ()
     quadrature: tuple[str, str] | None = None
     needs_span: bool = False
-    extra: dict[str, str] = field(default_factory=dict)
+    harmonic: int = 0
+    """Harmonic of a wave with a phase of each run; 0 for any other form."""
 
 
 def unit_per(base: str, per: str) -> str:
@@ -125,7 +136,7 @@ def forms_of(seen: Seen, amount: Amount, size: float) -> tuple[Form, ...]:
     if seen.waves:
         return (_wave(seen, amount, size),)
     forms = [_line(seen, amount, size)]
-    if seen.rate or seen.name in ("direction", "constant"):
+    if seen.rate or (seen.name == "direction" and not seen.channels):
         return tuple(forms)
     if seen.from_zero:
         forms.append(_square(seen, amount, size))
@@ -147,7 +158,8 @@ def _line(seen: Seen, amount: Amount, size: float) -> Form:
     constants: tuple[str, ...] = ()
     away = "{}.mean"
     if seen.middle and not seen.from_zero:
-        constants = (f"USUAL = {seen.middle:.4g}  # {seen.name} at which the calibration holds",)
+        usual = seen.told(seen.middle)
+        constants = (f"USUAL = {usual}  # {seen.name} at which the calibration holds",)
         away = "({}.mean - USUAL)"
     says = f"change of the share per {seen.unit or 'unit'} of {seen.name}"
     return Form(
@@ -162,7 +174,7 @@ def _line(seen: Seen, amount: Amount, size: float) -> Form:
 
 
 def _square(seen: Seen, amount: Amount, size: float) -> Form:
-    growth = 2.0 * size / max(seen.high, 1e-9) ** 2
+    growth = 2.0 * size / max(abs(seen.low), abs(seen.high), 1e-9) ** 2
     unit = unit_per(unit_per(unit_of(amount), seen.unit), seen.unit)
     unit = {"s/m*s/m": "s^2/m^2", "1/m/m": "1/m^2", "1/s/s": "1/s^2"}.get(unit, unit)
     says = f"the share where {seen.name} is 1 {seen.unit}"
@@ -180,6 +192,8 @@ def _step(seen: Seen, amount: Amount, size: float) -> Form:
     low, high = seen.low, seen.high
     tries = tuple(low + part * (high - low) for part in (0.2, 0.35, 0.5, 0.65, 0.8))
     width = 0.05 * (high - low)
+    middle = 0.5 * (low + high)
+    typical = middle if abs(middle) > width else width
     return Form(
         "step",
         (
@@ -194,11 +208,12 @@ def _step(seen: Seen, amount: Amount, size: float) -> Form:
             Declared(
                 "edge",
                 seen.unit,
-                0.5 * (low + high),
-                0.5 * (low + high),
+                typical,
+                typical,
                 (low - 0.1 * (high - low), high + 0.1 * (high - low)),
                 f"{seen.name} at which it sets in",
                 tries=tries,
+                digits=seen.digits,
             ),
         ),
         lambda side: f"height * mean_step({seen.span(side)}, edge, WIDTH)",
@@ -215,7 +230,7 @@ def _curve(seen: Seen, amount: Amount, size: float) -> Form:
     names = [f"at_{index + 1}" for index in range(len(knots))]
     free = [index for index in range(len(knots)) if index != nearest]
     heights = ", ".join("0.0" if index == nearest else names[index] for index in range(len(knots)))
-    listed = ", ".join(f"{knot:.4g}" for knot in knots)
+    listed = ", ".join(map(seen.told, knots))
     return Form(
         "curve",
         tuple(
@@ -225,7 +240,7 @@ def _curve(seen: Seen, amount: Amount, size: float) -> Form:
                 0.0,
                 2.0 * size,
                 wide(2.0 * size),
-                f"share where {seen.name} is {knots[index]:.4g}",
+                f"share where {seen.name} is {seen.told(knots[index])}",
             )
             for index in free
         ),
@@ -271,37 +286,10 @@ def _wave(seen: Seen, amount: Amount, size: float) -> Form:
                 per_run=True,
             ),
         ),
-        lambda side: f"amplitude * mean_cos(turned({seen.span(side)}, phase))",
+        lambda side: "amplitude * mean_cos(wave)",
         f"share = amplitude * cos({times}{seen.name} + phase)",
         2,
         quadrature=("amplitude", "phase"),
         needs_span=True,
-        extra={"harmonic": f"{seen.harmonic}"},
-    )
-
-
-def spot_form(
-    places: Sequence[tuple[float, float]], radii: Sequence[float], size: float, half: float
-) -> Form:
-    """A share on a circular spot of the floor."""
-    xs = tuple(dict.fromkeys(round(place[0], 3) for place in places))
-    ys = tuple(dict.fromkeys(round(place[1], 3) for place in places))
-    far = (-1000.0, 1000.0)
-    return Form(
-        "spot",
-        (
-            Declared("share", "", 0.0, size, (-0.9, 0.9), "gained on the spot; lost if negative"),
-            Declared(
-                "x", "m", 0.5, 0.5, far, "centre of the spot, in the reference's frame", tries=xs
-            ),
-            Declared("y", "m", 0.5, 0.5, far, "the same, across", tries=ys),
-            Declared("radius", "m", 0.5, 0.5, (0.02, 50.0), "of the spot", tries=tuple(radii)),
-        ),
-        lambda side: (
-            "share * share_inside(*standing(drive, "
-            f"{'HALF' if side == 'left' else '-HALF'}), x, y, radius)"
-        ),
-        "travel *= 1 + share, where the wheel stands inside the circle",
-        4,
-        (f"HALF = {half:.4g}  # m, from the axle's midpoint to a wheel",),
+        harmonic=seen.harmonic,
     )

@@ -8,6 +8,7 @@ import textwrap
 
 from werrimbi_odom.effects import shapes
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
+from werrimbi_odom.inference.drafting.column_names import identifier_of, quoted
 from werrimbi_odom.inference.drafting.law_forms import INDENT, Form, Seen
 
 _ERROR = {
@@ -41,7 +42,7 @@ _CHECK = {
 
 def name_of(amount: Amount, variable: str) -> str:
     """Name of a draft, until the user chooses a better one."""
-    return f"{amount.channel}_by_{''.join(c if c.isalnum() else '_' for c in variable.lower())}"
+    return f"{amount.channel}_by_{identifier_of(variable)}"
 
 
 def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> str:
@@ -55,7 +56,7 @@ def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, st
     if form.quadrature:
         body.append(f'{INDENT}quadrature=("{form.quadrature[0]}", "{form.quadrature[1]}"),')
     if seen.channels:
-        names = ", ".join(f'"{name}"' for name in seen.channels)
+        names = ", ".join(map(quoted, seen.channels))
         body.append(f"{INDENT}channels=({names}{',' * (len(seen.channels) == 1)}),")
     body += [item.source() for item in form.parameters]
     body += [")", f"def {name}("]
@@ -65,7 +66,8 @@ def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, st
     law = _law(amount, seen, form, on_wheels)
     body += [INDENT + line for line in law]
     head = _head(name, "\n".join(law), kind, moved)
-    return "\n".join([head, "", *form.constants, *([""] * bool(form.constants)), "", *body]) + "\n"
+    # Two empty lines after the imports: what follows is the law, as reports show it.
+    return "\n".join([head, "", "", *form.constants, *(["", ""] * bool(form.constants)), *body, ""])
 
 
 def _head(name: str, law: str, kind: str, moved: str) -> str:
@@ -92,7 +94,8 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
     several = " and " in what
     first = f"{error[:1].upper()}{error[1:]} is off by a share that goes with {what}."
     why = (
-        f"That is what {drives} drives show ({strength}): a {form.kind}, of the {per}. "
+        f"That is what {'one drive shows' if drives == 1 else f'{drives} drives show'} "
+        f"({strength}): a {form.kind}, of the {per}. "
         "Why it is so, the data cannot say: find the physics, then give this effect its name "
         "and its law."
     )
@@ -164,11 +167,8 @@ def _share(variable: str, seen: Seen, form: Form, side: str) -> list[str]:
     seen_as = "seen" if variable == "share" else f"{side}_seen"
     span = seen.span(side)
     lines = [f"{seen_as} = {span}"]
-    if "harmonic" in form.extra:
-        times = form.extra["harmonic"]
-        times = "" if times == "1" else f"{times} * "
+    if form.harmonic:
+        times = "" if form.harmonic == 1 else f"{form.harmonic} * "
         lines.append(f"wave = Span({times}{seen_as}.start + phase, {times}{seen_as}.end + phase)")
-        lines.append(f"{variable} = amplitude * mean_cos(wave)")
-        return lines
     lines.append(f"{variable} = {form.expression(side).replace(span, seen_as)}")
     return lines

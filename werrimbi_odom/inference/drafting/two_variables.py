@@ -32,10 +32,10 @@ from werrimbi_odom.inference.drafting.candidate_law import (
     Option,
     by_score,
     fitted_plan,
-    keeps_laws,
     planned,
     value_of,
     with_values,
+    worth_fitting,
 )
 from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
 from werrimbi_odom.inference.drafting.regression import Sums, selections, sums_of
@@ -153,8 +153,8 @@ def _fitted(
         plan = planned(diagnosis, Claim(law.amount, law.name, chance), law.seen, law.form)
         planned_from[plan.effect.apply] = law, plan
     ordered = by_score(diagnosis, drives, [plan for _, plan in planned_from.values()], noise)
-    likely = [plan for plan in ordered if plan.excess > ordered[0].excess - rules.WORTH_FITTING]
-    for plan in islice((plan for plan in likely if keeps_laws(plan.effect)), rules.MOST_FITTED):
+    likely = (plan for plan in worth_fitting(ordered) if plan.lawful())
+    for plan in islice(likely, rules.MOST_FITTED):
         law, _ = planned_from[plan.effect.apply]
         yield _Found(law, fitted_plan(diagnosis, drives, plan), tried)
 

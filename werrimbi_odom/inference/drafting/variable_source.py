@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from werrimbi_odom.effects.shapes import steady
 from werrimbi_odom.inference.diagnosis.variables import Variable
+from werrimbi_odom.inference.drafting.column_names import as_text, quoted, symbol_of
 from werrimbi_odom.inference.drafting.law_forms import Seen
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.pose import Floats
@@ -42,20 +44,27 @@ def seen_as(variable: Variable) -> Seen | None:
     name = variable.name
     pooled = np.concatenate([variable.left, variable.right])
     low, high = (float(value) for value in np.quantile(pooled, [0.02, 0.98]))
-    knots = np.unique(np.quantile(pooled, [0.01, 0.25, 0.5, 0.75, 0.99]))
+    if not low < high:  # a flag that is seldom set
+        low, high = float(pooled.min()), float(pooled.max())
+    digits = _digits(low, high)
+    knots = np.quantile(pooled, [0.01, 0.25, 0.5, 0.75, 0.99]).tolist()
     plain = Seen(
-        name,
+        as_text(name),
         variable.unit,
         lambda side: "",
-        middle=rounded(float(np.mean(pooled)), 3),
+        middle=rounded(float(np.mean(pooled)), digits - 1),
         low=low,
         high=high,
         from_zero=name in FROM_ZERO,
-        knots=tuple(float(f"{knot:.4g}") for knot in knots),
+        knots=tuple(sorted({rounded(knot, digits) for knot in knots})),
         waves=variable.form == "turns",
         per_run=variable.per_run,
         harmonic=variable.harmonic,
+        digits=digits,
     )
+    if variable.looks_at == (name,) and not variable.unit:  # a column, whatever it is called
+        code = f"drive.channels[{quoted(name)}]"
+        return replace(plain, span=lambda side: code, channels=(name,), from_zero=False)
     if name in STEADY:
         left, right = STEADY[name]
         return replace(
@@ -69,9 +78,14 @@ def seen_as(variable: Variable) -> Seen | None:
         return replace(plain, span=lambda side: f"drive.{wheel}_angle")
     if name in SPANS:
         return replace(plain, span=lambda side: SPANS[name])
-    if variable.looks_at == (name,):
-        return replace(plain, span=lambda side: f'drive.channels["{name}"]', channels=(name,))
     return None
+
+
+def _digits(low: float, high: float) -> int:
+    """Significant digits that tell values between these apart, beside a large offset too."""
+    offset = max(abs(low), abs(high)) / max(high - low, 1e-300)
+    more = max(math.floor(math.log10(offset)), 0) if offset > 0.0 else 0
+    return min(4 + more, sys.float_info.dig)
 
 
 def rounded(value: float, digits: int = 2) -> float:
@@ -120,7 +134,7 @@ def signals_of(drive: Drive[Floats], *, of_wheels: bool) -> list[Signal]:
         "distance": ("drive.distance", drive.distance, {"m": 1}, None),
     }
     for name, span in drive.channels.items():
-        spans[name] = (f'drive.channels["{name}"]', span, {}, name)
+        spans[symbol_of(name)] = (f"drive.channels[{quoted(name)}]", span, {}, name)
     for name, (source, span, unit, channel) in spans.items():
         if np.ptp(span.end) > 0.0:
             found.append(Signal(name, name, (source, source), (span, span), unit, True, channel))

@@ -35,6 +35,12 @@ SCATTER_DRIVES = 8
 to a half. With fewer, only one change is searched for, and compared with the remaining differences
 between drives (Fisher's F): a search for two would always find some among five drives."""
 
+SHOWS_NO_SCATTER = 10.0
+"""Standard deviation of a drive, over that of the drive that knows a number best, above which it
+does not count among those that show its scatter. Chosen: the scatter that it can show is ten times
+the noise of that one; minutes and hours, or curves and lines, differ by less, and a drive beside
+another reference by far more."""
+
 SURE_OF_A_CHANGE = 0.01
 """Significance level of a change in a history whose drives must give their own scatter (Fisher's F,
 Bonferroni correction). Chosen on simulated histories: at `SURE`, ten drives, which give the scatter

@@ -44,6 +44,10 @@ SPOT_OFF, SPOT_RADII = 0.2, (0.2, 0.35, 0.6)
 """Search range about the likeliest place of a spot on the floor, and its trial radii [m]: cells of
 `FLOOR_CELL` give its middle to less than half of one, and a spot in one cell is no wider."""
 
+SPOT_FAR = 1000.0
+"""Bounds of the place of a spot, beyond the origin and the place where it was found [m]: another
+drive may be elsewhere on the same map."""
+
 WIDER_THAN_FITTED = 20.0
 """Bounds of a draft in multiples of the fitted value: the next robot may have more of it."""
 
