@@ -148,9 +148,6 @@ DELAY_SPANS = 4
 """Shortest run in multiples of the largest lag, so that three quarters of it are left to compare at
 that lag, on either side."""
 
-DELAY_ROWS = 100
-"""Rows of the grid (ten seconds) that all runs together must have for an estimate of a lag."""
-
 DELAY_UNEXPLAINED = 1e-3
 """Least share of the variance that is taken as unexplained by any lag, so that a simulated record
 without noise does not give infinite evidence for the nearest lag."""

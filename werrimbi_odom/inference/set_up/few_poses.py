@@ -111,7 +111,7 @@ def _settings(ticks: float = 1.0) -> Iterator[Setting]:
                     yaw=half_turn,
                 )
                 if half_turn and swapped:
-                    continue  # equals neither, by algebra
+                    continue  # equals both reversed, by algebra, where the wheels count alike
                 plain = replace(AS_ENTERED, wired=wired, ticks=ticks)
                 yield plain
                 for factor in FACTORS.values():
