@@ -27,7 +27,6 @@ RULES = INFERENCE / "rules"
 
 ELSEWHERE = {
     "calibration/noise_likelihood.py": {
-        "CHI2_95": "a quantile",
         "_LEAST": "as good as zero: where the search of a variance ends",
         "_MOST": "the same, upwards",
     },
