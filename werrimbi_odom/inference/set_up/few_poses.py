@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
@@ -30,7 +31,6 @@ from werrimbi_odom.inference.set_up.records import (
     Cuts,
     SetUpRecord,
     cut,
-    effective_track,
     ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import errors, path_swept

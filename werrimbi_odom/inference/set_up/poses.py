@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
@@ -28,7 +29,6 @@ from werrimbi_odom.inference.set_up.records import (
     Cuts,
     SetUpRecord,
     cut,
-    effective_track,
     ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import (

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.records import (
@@ -25,7 +26,6 @@ from werrimbi_odom.inference.set_up.records import (
     Cuts,
     SetUpRecord,
     cut,
-    effective_track,
     ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import swept

@@ -20,7 +20,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.mislabelled_columns import YAW_IN_DEGREES
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
+from werrimbi_odom.inference.calibration_parametrisation import effective_track, skids_in_turns
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
@@ -44,7 +44,6 @@ from werrimbi_odom.inference.set_up.positions import search_positions
 from werrimbi_odom.inference.set_up.records import (
     SetUpRecord,
     cut,
-    effective_track,
     measured_by,
     ratio_of_ticks,
     record_of,
