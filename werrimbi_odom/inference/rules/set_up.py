@@ -203,8 +203,9 @@ SPARSE_SHARES = (0.002, 0.005, 0.01, 0.02, 0.04, 0.08)
 likeliest counts. From a calibrated robot on a hard floor to one that loses counts."""
 
 SPARSE_TURN, SPARSE_MOVE = 0.005, 0.003
-"""Error without any driving [rad, m]: noise of two poses by tape, each `TAPE_XY` (2 sqrt(2) = 2.8
-mm) and `TAPE_YAW`."""
+"""Error without any driving [rad, m]: noise of two positions by tape, each `TAPE_XY` (2 sqrt(2) =
+2.8 mm), and of one heading, `TAPE_YAW`. Chosen: the wheels' noise is added to either, not squared,
+and makes up for the other heading's within a metre."""
 
 SPARSE_MARGIN = 10.0
 """Log-likelihood by which a set-up must exceed the one entered: of 588 that are tried, chance makes
