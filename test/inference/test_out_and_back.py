@@ -230,3 +230,43 @@ def test_refused() -> None:
         fit_noise(sample * [1.0, 1.0, math.degrees(1.0)], paper_design())
     with pytest.raises(InputError, match=r"no rolling wheels err by more than 0\.01"):
         fit_noise(100.0 * sample, paper_design())
+    with pytest.raises(InputError, match=r"same error in yaw: measure it"):
+        fit_noise(sample * [1.0, 1.0, 0.0], paper_design())
+    with pytest.raises(InputError, match=r"same error in x and yaw"):
+        fit_noise(sample * [0.0, 1.0, 0.0] + 0.1, paper_design())
+    with pytest.raises(InputError, match="follows from the other two"):
+        fit_noise(
+            np.stack([sample[:, 0], 2.0 * sample[:, 0], sample[:, 2]], axis=-1), paper_design()
+        )
+
+
+def test_noise_that_no_wheel_has_is_refused_where_the_wheels_cannot_be_told_apart() -> None:
+    """Either wheel may then have none of it, but not both."""
+    sample = errors(np.random.default_rng(8), 20, turn_round=True)
+    model = paper_design(turn_round=True)
+    assert not fit_noise(sample, model).split_known
+    with pytest.raises(InputError, match=r"no rolling wheels err by more than 0\.01"):
+        fit_noise(100.0 * sample, model)
+
+
+@pytest.mark.parametrize("share", [1e-2, 1e-3, 1e-5])
+def test_headings_that_hardly_scatter_are_no_noise_of_wheels(share: float) -> None:
+    """Taken from the odometry, not measured: the search of an interval ended there."""
+    sample = errors(np.random.default_rng(8), 20) * [1.0, 1.0, share]
+    fit = fit_noise(sample, paper_design())
+    assert fit.misfit_p < 1e-6
+    assert 0.0 < fit.left.low < fit.left.value < fit.left.high < 0.1
+
+
+def test_runs_that_would_fit_in_degrees_by_the_reference_alone_are_told_as_they_are() -> None:
+    """The trial in degrees said that they scatter no more than the reference."""
+    sample = np.random.default_rng(0).normal(0.0, 1.0, (20, 3)) * [0.05, 0.05, 0.2]
+    assert fit_noise(sample, paper_design(0.036, 0.01)).misfit_p < 1e-5
+
+
+def test_where_the_sum_alone_is_known_the_difference_is_not_at_all() -> None:
+    half = 0.5 * (paper_design().left + paper_design().right)
+    alike = EndErrorDesign(half, half, np.zeros((3, 3)))
+    fit = fit_noise(errors(np.random.default_rng(8), 20), alike)
+    assert fit.difference_std == math.inf
+    assert fit.correlation == -1.0

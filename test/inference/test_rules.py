@@ -27,7 +27,6 @@ RULES = INFERENCE / "rules"
 
 ELSEWHERE = {
     "calibration/noise_likelihood.py": {
-        "CHI2_95": "a quantile",
         "_LEAST": "as good as zero: where the search of a variance ends",
         "_MOST": "the same, upwards",
     },
@@ -328,6 +327,9 @@ def test_the_figures_in_the_reasons_hold() -> None:
     assert strange == pytest.approx(2.5, abs=0.01)
     assert stats.norm.sf(strange) == pytest.approx(6e-3, abs=5e-4)
     assert pytest.approx(7e-3, abs=1e-4) == 1.0 / r.JUMP_SCATTER**2
+    held = r.NO_DRIVING_NOISE * stats.norm.isf(0.25)
+    assert held == pytest.approx(3.4, abs=0.05)
+    assert 1.0 / (2.0 * stats.norm.sf(held)) == pytest.approx(1300.0, rel=0.05)
     assert chi2(r.JUMP_OF_A_LEG, 3) == pytest.approx(1e-8, rel=0.1)
     floors = [chi2(degrees + r.SCORE_FLOOR, degrees) for degrees in (1, 2)]
     assert floors == pytest.approx([0.003, 0.007], abs=5e-4)

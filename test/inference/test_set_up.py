@@ -35,6 +35,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.comparison.leg_errors import errors_of, statistics
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
@@ -48,7 +49,7 @@ from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.explanation import AS_ENTERED
 from werrimbi_odom.inference.set_up.few_poses import _Drives, _settings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
-from werrimbi_odom.inference.set_up.records import cut, effective_track, record_of
+from werrimbi_odom.inference.set_up.records import cut, record_of
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot

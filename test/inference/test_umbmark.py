@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.squares import Squares, e_max_of_scatter, e_max_syst
 from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
@@ -246,3 +247,19 @@ def test_a_wrong_sign_in_the_papers_equation_9_would_correct_half() -> None:
     angles = first_order_angles(squares(ROBOT, true, 4.0))
     assert paper_factors(angles, 4.0, ROBOT.track).base == pytest.approx(1.01, abs=2e-4)
     assert math.pi / (math.pi - angles.alpha) == pytest.approx(1.005, abs=2e-4)
+
+
+@pytest.mark.parametrize("effect", ["skid_steer", "track_width"])
+def test_a_base_that_the_file_holds_as_an_effect_is_the_base(effect: str) -> None:
+    """By the nominal one, a little more than half of the difference of the radii was corrected."""
+    wide = replace(ROBOT, wheel_separation=1.9 * ROBOT.wheel_separation)
+    true = replace(wide, left_wheel_radius_multiplier=0.99, right_wheel_radius_multiplier=1.01)
+    ends = (square(wide, true, 4.0, sense) for sense in (-1, 1))
+    squares = Squares(4.0, *(scattered((x, y), by=MM) for x, y in ends))
+    held = replace(ROBOT, effects=(find(effect).using(multiplier=1.9),))
+    for robot in (wide, held):
+        found = umbmark(squares, robot)
+        assert found.ratio.value == pytest.approx(1.01 / 0.99, abs=2e-5)
+        assert found.base.value == pytest.approx(1.0, abs=2e-5)
+        corrected_squares = recomputed(squares, robot, found.factors)
+        assert e_max_syst(corrected_squares) < 0.1 * MM

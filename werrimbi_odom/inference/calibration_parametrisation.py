@@ -69,6 +69,11 @@ def sizes_of(robot: Robot) -> Sizes:
     return Sizes(base, left, right)
 
 
+def effective_track(robot: Robot) -> float:
+    """Wheel base of a robot, including its effects [m]."""
+    return robot.wheel_separation * sizes_of(robot).base
+
+
 def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
     """Move calibration effects that the given file does not hold into the robot's multipliers."""
     held = {item.name for item in given.effects}

@@ -73,9 +73,7 @@ def score_test(columns: Floats, free: Floats, residual: Floats) -> ScoreTest | N
     `columns` (n, k): Jacobian of the innovations in the tested parameters. `free` (n, k): the same
     with the nuisances projected out. `residual` (n,): innovations with the nuisances projected out.
     """
-    _, size = _unit(columns)
-    cross = free.T @ residual
-    return score_test_of_products(free.T @ free, cross, size)
+    return score_test_of_products(free.T @ free, free.T @ residual, _lengths(columns))
 
 
 def score_test_of_products(square: Floats, cross: Floats, size: Floats) -> ScoreTest | None:
@@ -132,7 +130,7 @@ def admitted(
     as its parameter would be too uncertain beside those kept, is skipped and does not block later
     ones.
     """
-    _, size = _unit(columns)
+    size = _lengths(columns)
     free = beside.residual(columns)
     kept: list[int] = []
     for column in range(columns.shape[-1]):
@@ -154,8 +152,12 @@ def covariance_of(columns: Floats) -> Floats:
 
 def _unit(columns: Floats) -> tuple[Floats, Floats]:
     """Scale columns to unit length, without those of length zero; also return all lengths."""
-    size = np.sqrt(np.sum(columns**2, axis=0))
+    size = _lengths(columns)
     return columns[:, size > 0.0] / size[size > 0.0], size
+
+
+def _lengths(columns: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.sum(columns**2, axis=0)))
 
 
 def inverse_root(covariance: Floats) -> Floats:

@@ -124,7 +124,8 @@ class Info:
         longer = max((_needed(each) for each in self.held), default=0.0)
         if longer > 1.0:
             return longer
-        return rules.SHORT_LEG if self.sizes and self.legs < rules.LEGS_ENOUGH else 1.0
+        few = self.sizes and self.legs < rules.LEGS_ENOUGH
+        return max(rules.SHORT_LEG, longer) if few else 1.0
 
 
 def leg_of_positions(noise: float) -> float:
@@ -206,10 +207,11 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
         "what goes sideways (slip, slope, how the reference is mounted)",
         "no heading shows it; a localiser or motion capture does",
     )
+    seldom = "turned back only once" if drive.reversals else "never drove to and fro"
     told(
         drive.reversals > 1,
         "what happens at reversals (a castor's kick, backlash)",
-        f"the robot never drove to and fro{_while_measured(held)}",
+        f"the robot {seldom}{_while_measured(held)}",
     )
     if (
         sizes

@@ -9,9 +9,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.distributions import CHI2_95, chi2_survival
 from werrimbi_odom.model.covariance import (
     CERTAIN,
     carried,
@@ -21,9 +22,6 @@ from werrimbi_odom.model.covariance import (
 )
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
-
-CHI2_95 = 3.841458820694124
-"""95 % quantile of chi-squared with one degree of freedom."""
 
 _LEAST, _MOST = 1e-8, 1e4  # bounds of k², relative to that of the dispersion
 
@@ -101,9 +99,9 @@ class Likelihood:
         return 0.5 * self.freedom * (float(volume) + misfit)
 
     def scale(self) -> float:
-        """k² that explains the heading dispersion without any reference noise."""
-        heading = self.design.left[2, 2] + self.design.right[2, 2]
-        return float(self.data[2, 2] / heading)
+        """Maximum-likelihood k² of equal wheels without any reference noise."""
+        both = self.design.left + self.design.right
+        return float(np.trace(np.linalg.solve(both, self.data))) / len(both)
 
     def same(self) -> float:
         """Maximum-likelihood k² if both wheels are equal.
@@ -161,7 +159,7 @@ class Likelihood:
         unit = self.scale()
 
         def above(log: float) -> float:
-            return cost(unit * math.exp(log)) - least - 0.5 * CHI2_95
+            return cost(unit * math.exp(log)) - least - 0.5 * float(CHI2_95[1])
 
         middle, low, high = math.log(best / unit), math.log(_LEAST), math.log(_MOST)
         bottom = (
@@ -178,7 +176,7 @@ class Likelihood:
         volume = float(np.linalg.slogdet(self.data)[1])
         ratio = 2.0 * self.cost(left, right) - self.freedom * (volume + 3.0)
         shrink = 1.0 - 6.5 / (6.0 * self.freedom)
-        return float(stats.chi2.sf(shrink * ratio, 6 - fitted))
+        return chi2_survival(shrink * ratio, 6 - fitted)
 
     def _likeliest(self, cost: Callable[[float], float]) -> float:
         unit = self.scale()

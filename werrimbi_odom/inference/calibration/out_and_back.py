@@ -23,12 +23,12 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration.noise_likelihood import EndErrorDesign, Likelihood
-from werrimbi_odom.inference.distributions import NORMAL_95
+from werrimbi_odom.inference.distributions import NORMAL_95, fisher_survival
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
 
@@ -75,7 +75,7 @@ class NoiseFit:
     difference_std: float
     """Standard deviation of k_R - k_L [m^0.5]; infinite where only the sum is identifiable."""
     correlation: float
-    """Correlation of the estimates of k_L and k_R."""
+    """Correlation of the estimates of k_L and k_R; -1 where only the sum is identifiable."""
     by_moments: tuple[float, float]
     """k_L, k_R by the method of moments, as in the paper [m^0.5]."""
     mean: Floats
@@ -107,15 +107,14 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
             f"too few runs: {runs} given, at least {rules.LEAST_RUNS} needed; "
             f"{rules.ADVISED_RUNS} tell k to about 13 %, the paper drove 60"
         )
-    data = np.asarray(np.cov(errors.T))
-    if not (np.diag(data) > 0.0).all():
-        raise InputError("every run has the same error: without scatter there is no noise to fit")
+    data = _scatter(errors)
     likelihood = Likelihood(design, data, runs - 1)
     same = likelihood.same()
     best = likelihood.best(same)
     split_known = _split_std(likelihood.covariance(same, same), same) <= rules.UNKNOWN_SPLIT
     left, right = _each(likelihood, best) if split_known else _alike(likelihood, same)
     spread = _of_roots(likelihood.covariance(*(best if split_known else (same, same))), left, right)
+    known = bool(np.isfinite(spread).all())
     mean = errors.mean(axis=0)
     squared = float(mean @ np.linalg.solve(data / runs, mean))
     written = (left.value**2, right.value**2)
@@ -125,7 +124,8 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
             "the headings look like degrees: divided by 57.3 they scatter as wheels make them that "
             "scatter x and y so, and as radians they do not; eyaw_rad is in radians"
         )
-    if min(left.low, right.low) > rules.STRANGE_NOISE:
+    least = likelihood.interval_of_same(same)[0]
+    if (min(left.low, right.low) if split_known else math.sqrt(least)) > rules.STRANGE_NOISE:
         raise InputError(
             f"k would be {left.value:.2g} and {right.value:.2g} m^0.5, and no rolling wheels err "
             f"by more than {rules.STRANGE_NOISE:g}: are the errors in metres and radians, is "
@@ -136,12 +136,12 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
         left=left,
         right=right,
         split_known=split_known,
-        difference_std=math.sqrt(spread[0, 0] - 2.0 * spread[0, 1] + spread[1, 1]),
-        correlation=float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])),
+        difference_std=_difference_std(spread) if known else math.inf,
+        correlation=float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])) if known else -1.0,
         by_moments=by_moments(data, design),
         mean=mean,
         mean_std=np.sqrt(np.diag(data) / runs),
-        mean_p=float(stats.f.sf(squared * (runs - 3) / (3 * (runs - 1)), 3, runs - 3)),
+        mean_p=fisher_survival(squared * (runs - 3) / (3 * (runs - 1)), 3, runs - 3),
         data=data,
         model=design.covariance(*written),
         misfit_p=misfit_p,
@@ -151,11 +151,34 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
     )
 
 
+def _scatter(errors: Floats) -> Floats:
+    """Sample covariance of the runs; InputError if it does not show all three errors."""
+    flat = np.ptp(errors, axis=0) == 0.0
+    if flat.all():
+        raise InputError("every run has the same error: without scatter there is no noise to fit")
+    if flat.any():
+        which = " and ".join(np.array(["x", "y", "yaw"])[flat])
+        raise InputError(
+            f"every run has the same error in {which}: measure it (to a millimetre, a milliradian) "
+            "in each run, as the scatter of all three is needed"
+        )
+    if np.linalg.matrix_rank(np.corrcoef(errors.T), tol=1e-12) < errors.shape[1]:
+        raise InputError(
+            "one of the errors in x, y and yaw follows from the other two in all runs: measure "
+            "each by itself, more finely, or drive more"
+        )
+    return np.asarray(np.cov(errors.T))
+
+
 def _fits_in_degrees(likelihood: Likelihood) -> bool:
     """Whether the model explains the scatter of the runs if their headings are in degrees."""
     scale = np.array([1.0, 1.0, math.radians(1.0)])
     turned = replace(likelihood, data=likelihood.data * np.outer(scale, scale))
-    return turned.misfit_p(*turned.best(turned.same()), 2) >= rules.SURE_WHEN_ASKED
+    try:
+        same = turned.same()
+    except InputError:  # then the reference's noise alone would explain it
+        return False
+    return turned.misfit_p(*turned.best(same), 2) >= rules.SURE_WHEN_ASKED
 
 
 def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, float] | None:
@@ -190,6 +213,10 @@ def _split_std(covariance: Floats, same: float) -> float:
     return (
         math.sqrt(float(slope @ covariance @ slope)) if np.isfinite(covariance).all() else math.inf
     )
+
+
+def _difference_std(covariance: Floats) -> float:
+    return math.sqrt(covariance[0, 0] - 2.0 * covariance[0, 1] + covariance[1, 1])
 
 
 def _of_roots(covariance: Floats, left: NoiseInterval, right: NoiseInterval) -> Floats:

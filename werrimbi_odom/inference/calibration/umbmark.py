@@ -23,7 +23,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference import rules
@@ -37,7 +37,8 @@ from werrimbi_odom.inference.calibration.umbmark_equations import (
     first_order_angles,
     paper_factors,
 )
-from werrimbi_odom.inference.distributions import NORMAL_95
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
+from werrimbi_odom.inference.distributions import NORMAL_95, fisher_survival, student_quantile
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -96,14 +97,15 @@ class Umbmark:
 def umbmark(squares: Squares, robot: Robot) -> Umbmark:
     """Corrections of base and radii from squares of both senses, with standard deviations.
 
-    `robot`: the robot that the odometry of these squares assumed. InputError if base and radii
+    `robot`: the robot that the odometry of these squares assumed; its base is that by its effects
+    (`skid_steer`), which the squares turned on. InputError if base and radii
     cannot cause these offsets.
     """
-    angles = first_order_angles(squares)
-    paper = paper_factors(angles, squares.side, robot.track)
+    angles, track = first_order_angles(squares), effective_track(robot)
+    paper = paper_factors(angles, squares.side, track)
     measured = np.concatenate([squares.cw.mean(axis=0), squares.ccw.mean(axis=0)])
     solution = optimize.least_squares(
-        lambda unknown: _offsets(squares, robot.track, *unknown) - measured,
+        lambda unknown: _offsets(squares, track, *unknown) - measured,
         [paper.base - 1.0, 0.5 * (paper.right - paper.left)],
         x_scale=0.01,
         xtol=1e-12,
@@ -114,7 +116,7 @@ def umbmark(squares: Squares, robot: Robot) -> Umbmark:
     across = _Across(squares, solution.jac, -solution.fun)
     across.check(measured)
     inverse = np.linalg.pinv(solution.jac)
-    bend = 2.0 * squares.side / (robot.track * base)  # β of a unit imbalance
+    bend = 2.0 * squares.side / (track * base)  # β of a unit imbalance
 
     def estimate(value: float, per_base: float, per_imbalance: float) -> ValueAndStd:
         return _estimate(value, np.array([per_base, per_imbalance]) @ inverse, squares)
@@ -149,11 +151,11 @@ def recomputed(squares: Squares, robot: Robot, factors: Factors) -> Squares:
 
     `robot`: the robot that the odometry of `squares` assumed.
     """
-    moved = []
+    moved, track = [], effective_track(robot)
     for sense, offsets in ((-1, squares.cw), (1, squares.ccw)):
         ends = [
-            run.end(robot.track * factors.base, factors.left, factors.right) - run.end(robot.track)
-            for run in squares.driven(sense, robot.track)
+            run.end(track * factors.base, factors.left, factors.right) - run.end(track)
+            for run in squares.driven(sense, track)
         ]
         moved.append(offsets - np.array(ends))
     return replace(squares, cw=moved[0], ccw=moved[1])
@@ -182,7 +184,7 @@ def _estimate(value: float, slope: Floats, squares: Squares) -> ValueAndStd:
     if variance <= 0.0:
         return ValueAndStd(value, 0.0)
     freedom = variance**2 / sum(part**2 / runs for part, runs in parts)
-    widening = float(stats.t.ppf(0.975, freedom)) / NORMAL_95
+    widening = student_quantile(0.975, freedom) / NORMAL_95
     return ValueAndStd(value, math.sqrt(variance) * widening)
 
 
@@ -208,7 +210,7 @@ class _Across:
             return math.nan
         freedom = len(self.squares.cw) + len(self.squares.ccw) - 2
         squared = float(seen @ np.linalg.solve(covariance, seen))
-        return float(stats.f.sf(squared * (freedom - 1) / (2 * freedom), 2, freedom - 1))
+        return fisher_survival(squared * (freedom - 1) / (2 * freedom), 2, freedom - 1)
 
     def angles(self) -> tuple[float, float]:
         """Residual as a difference between α and β from x and from y [rad]."""

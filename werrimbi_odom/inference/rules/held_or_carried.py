@@ -114,8 +114,8 @@ wheel's travel by more. A hand that let a TurtleBot go slowed it by 0.12 to 0.24
 in that second the robot went aside too, and the lidar was found 7 mm beside its place."""
 
 NO_DRIVING_NOISE = 5.0
-"""Least deviation in multiples of the typical scatter: 5.7 times the median of Gaussian noise is
-beyond 3.8 sigma, and a stretch is many windows."""
+"""Least deviation in multiples of the typical scatter: five times the median of Gaussian noise is
+3.4 sigma, beyond which is one window in 1300, and a stretch is many windows."""
 
 NO_DRIVING_GENTLE = 0.25
 """Share of the windows that keep to a law, the slowest ones, whose scatter is that of a robot at

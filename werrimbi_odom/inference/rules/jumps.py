@@ -20,9 +20,9 @@ reading and back are two intervals; what lasts longer is driving."""
 # ------------------------------------------------------------------------- jumps of the reference
 
 JUMP_SCATTER = 12.0
-"""Error of an interval in multiples of the median, above which it may be a jump of the reference.
-Chosen: by Chebyshev's inequality no distribution at all exceeds it in more than 0.7 % of intervals,
-and `JUMP_SHARE` is required as well."""
+"""Error of an interval in standard deviations (1.48 medians of its size), above which it may be a
+jump of the reference. Chosen: by Chebyshev's inequality whatever is distributed exceeds as many of
+its own in 0.7 % of intervals at most, and `JUMP_SHARE` is required as well."""
 
 JUMP_RARE = 0.1
 """Largest share of a run's intervals that may be jumps; more frequent errors are noise. Chosen:

@@ -148,9 +148,6 @@ DELAY_SPANS = 4
 """Shortest run in multiples of the largest lag, so that three quarters of it are left to compare at
 that lag, on either side."""
 
-DELAY_ROWS = 100
-"""Rows of the grid (ten seconds) that all runs together must have for an estimate of a lag."""
-
 DELAY_UNEXPLAINED = 1e-3
 """Least share of the variance that is taken as unexplained by any lag, so that a simulated record
 without noise does not give infinite evidence for the nearest lag."""
@@ -206,8 +203,9 @@ SPARSE_SHARES = (0.002, 0.005, 0.01, 0.02, 0.04, 0.08)
 likeliest counts. From a calibrated robot on a hard floor to one that loses counts."""
 
 SPARSE_TURN, SPARSE_MOVE = 0.005, 0.003
-"""Error without any driving [rad, m]: noise of two poses by tape, each `TAPE_XY` (2 sqrt(2) = 2.8
-mm) and `TAPE_YAW`."""
+"""Error without any driving [rad, m]: noise of two positions by tape, each `TAPE_XY` (2 sqrt(2) =
+2.8 mm), and of one heading, `TAPE_YAW`. Chosen: the wheels' noise is added to either, not squared,
+and makes up for the other heading's within a metre."""
 
 SPARSE_MARGIN = 10.0
 """Log-likelihood by which a set-up must exceed the one entered: of 588 that are tried, chance makes

@@ -49,7 +49,7 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
             if measured is not None:
                 measured[_in_any(touched(grid, unseen))] = np.nan
                 total.add(wheels, measured, _interval(record))
-    used = [total for total in sums if total.rows > rules.DELAY_ROWS]
+    used = [total for total in sums if total.rows > 0]
     if not used:
         return 0.0, 1.0
     misfit = np.sum([total.rows * np.log(total.residual_innovations()) for total in used], axis=0)
@@ -98,9 +98,13 @@ class _Sums:
         if scale == 0.0:
             return
         output = (measured - measured[known].mean()) / scale
+        together = self._inputs(wheels(0))[:, known]
+        together = together[:, np.isfinite(together[0])]
+        if together.size == 0:
+            return
         self.rows += int(known.sum())
         self.seconds += float(known.sum()) * _PERIOD / max(1.0, interval)
-        middle = np.nanmean(self._inputs(wheels(0))[:, known], axis=1, keepdims=True)
+        middle = together.mean(axis=1, keepdims=True)
         for number, lag in enumerate(range(-self.most, self.most + 1)):
             inputs = self._inputs(wheels(lag))
             both = known & np.isfinite(inputs[0])
@@ -117,7 +121,8 @@ class _Sums:
     def residual_innovations(self) -> Floats:
         """Unexplained share of the variance at each lag."""
         inverse = np.linalg.pinv(self.gram, rcond=1e-9, hermitian=True)
-        explained = np.einsum("ki,kij,kj->k", self.cross, inverse, self.cross) / self.square
+        explained = np.einsum("ki,kij,kj->k", self.cross, inverse, self.cross)
+        explained = explained / np.maximum(self.square, np.finfo(np.float64).tiny)
         return np.asarray(np.clip(1.0 - explained, rules.DELAY_UNEXPLAINED, 1.0))
 
 

@@ -38,10 +38,19 @@ def with_findings(
         values: Mapping[str, float] = {}
         if finding.effect != IN_DEGREES:
             robot, values = _with(robot, finding.effect, finding.values)
-        told.append(replace(finding, values=values))
+        told.append(replace(finding, values=values, words=finding.words + _in_all(finding, values)))
     if findings and setting is not None:
         robot = _calibrated(robot, before, setting)
     return robot, tuple(told)
+
+
+def _in_all(finding: SetUpFinding, values: Mapping[str, float]) -> str:
+    """What a mount or a clock is off by in all, where the robot file holds a part of it."""
+    if values == finding.values or find(finding.effect).stage != "reference":
+        return ""
+    units = {name: item.unit for name, item in find(finding.effect).parameters.items()}
+    total = ", ".join(f"{name} {value:.3g} {units[name]}" for name, value in values.items())
+    return f"; with what the robot file holds, {finding.effect} is {total}"
 
 
 def _with(robot: Robot, name: str, values: Mapping[str, float]) -> tuple[Robot, dict[str, float]]:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.inference import rules
@@ -74,19 +73,14 @@ class Wired:
 
     def names(self) -> tuple[str, ...]:
         """Names of the mistakes, including a mounting angle."""
-        return tuple(self._names())
-
-    def _names(self) -> Iterator[str]:
-        if self.swapped:
-            yield "wheels_swapped"
-        if self.mirrored:
-            yield "reference_mirrored"
-        if self.left_reversed:
-            yield "left_wheel_reversed"
-        if self.right_reversed:
-            yield "right_wheel_reversed"
-        if abs(self.yaw) > rules.ASKEW:
-            yield "reference_yaw_offset"
+        made = {
+            "wheels_swapped": self.swapped,
+            "reference_mirrored": self.mirrored,
+            "left_wheel_reversed": self.left_reversed,
+            "right_wheel_reversed": self.right_reversed,
+            "reference_yaw_offset": abs(self.yaw) > rules.ASKEW,
+        }
+        return tuple(name for name, there in made.items() if there)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
@@ -30,7 +31,6 @@ from werrimbi_odom.inference.set_up.records import (
     Cuts,
     SetUpRecord,
     cut,
-    effective_track,
     ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import errors, path_swept
@@ -111,7 +111,7 @@ def _settings(ticks: float = 1.0) -> Iterator[Setting]:
                     yaw=half_turn,
                 )
                 if half_turn and swapped:
-                    continue  # equals neither, by algebra
+                    continue  # equals both reversed, by algebra, where the wheels count alike
                 plain = replace(AS_ENTERED, wired=wired, ticks=ticks)
                 yield plain
                 for factor in FACTORS.values():

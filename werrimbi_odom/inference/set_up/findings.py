@@ -202,16 +202,24 @@ def _odd_side(left: float, right: float) -> tuple[str, float]:
     return side, known[side]
 
 
-def arm_finding(setting: Setting, misfit: Misfit, base: float) -> list[SetUpFinding]:
-    """A lever arm longer than the base: not an inexact mount, but another place than entered."""
-    arm = setting.arm
+def arm_finding(
+    setting: Setting, misfit: Misfit, base: float, entered: complex = 0j
+) -> list[SetUpFinding]:
+    """A lever arm longer than the base: not an inexact mount, but another place than entered.
+
+    `base`: wheel base [m]. `entered`: what `setting` has as its lever arm where the point is the
+    one that the robot file holds; the finding is what is beyond [m].
+    """
+    arm = setting.arm - entered
     if not base < abs(arm) or max(abs(arm.real), abs(arm.imag)) > rules.LONGEST_ARM:
         return []
-    without = replace(setting, arm=0j)
+    without = replace(setting, arm=entered)
     gain = misfit(without) / misfit(setting)
+    along = "ahead of" if arm.real >= 0.0 else "behind"
+    side = "left" if arm.imag >= 0.0 else "right"
     words = (
-        f"the reference measures a point {arm.real:.2f} m ahead of the axle's middle and "
-        f"{arm.imag:.2f} m to its left: its marker, laser or aerial is mounted there"
+        f"the reference measures a point {abs(arm.real):.2f} m {along} the axle's middle and "
+        f"{abs(arm.imag):.2f} m to its {side}: its marker, laser or aerial is mounted there"
     )
     values = {"x": arm.real, "y": arm.imag}
     if gain < rules.WIDE:

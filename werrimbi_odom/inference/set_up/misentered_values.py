@@ -87,8 +87,23 @@ def unit_of_positions(radius: float, base: float) -> str | None:
     return None
 
 
-def counts_words(counts: float, radius: float) -> str:
-    """What a counter gives that has so many counts in a turn of a wheel of this radius [m].
+def counts_words(left: float, right: float, radius: float) -> str:
+    """What counters give that have so many counts in a turn of a wheel of this radius [m]."""
+    shown, exact = _digits(left, 4), _exact_counts(left, radius)
+    if left == right:
+        has = f"the wheel has {shown} {'count' if shown == '1' else 'counts'}"
+        write = f"left_ticks_per_revolution: {exact}, and the same to the right"
+    else:
+        has = f"the left wheel has {shown} counts, of the right {_digits(right, 4)},"
+        write = (
+            f"left_ticks_per_revolution: {exact} and "
+            f"right_ticks_per_revolution: {_exact_counts(right, radius)}"
+        )
+    return f"a turn of {has} by these drives: if that is right, write {write}"
+
+
+def _exact_counts(counts: float, radius: float) -> str:
+    """The number to write for so many counts, and the unit that makes it, if one does.
 
     Angles differ from the expected count by the error of the radius, lengths do not.
     """
@@ -98,11 +113,12 @@ def counts_words(counts: float, radius: float) -> str:
     units |= {"millimetres": 1e3 * turn * radius}
     unit = min(units, key=lambda name: abs(math.log(counts / units[name])))
     near = abs(math.log(counts / units[unit])) <= math.log(rules.COUNTS_NEAR)
-    exact = f"{units[unit]:.6g} ({unit})" if near else f"{counts:.4g}"
-    return (
-        f"a turn of the wheel has {counts:.4g} counts by these drives: if that is right, write "
-        f"left_ticks_per_revolution: {exact}, and the same to the right"
-    )
+    return f"{units[unit]:.6g} ({unit})" if near else _digits(counts, 4)
+
+
+def _digits(value: float, digits: int) -> str:
+    """A number to so many digits, and no power of ten, which YAML may take for a word."""
+    return f"{float(f'{value:.{digits}g}'):.15g}"
 
 
 def is_ordinary(value: float) -> bool:
@@ -127,21 +143,21 @@ def skid_words(value: float) -> str:
 ENTERED = "what the robot file says"
 _OF_A_WHEEL = "the {0} encoder's counts of a turn or its gear were entered wrongly"
 _ENTERED: dict[str, tuple[str, Mapping[str, str], str]] = {
-    "radius": ("both wheels' radius", RADIUS, "look at radius, gear and encoder"),
-    "base": ("the wheel base", BASE, "measure it anew"),
+    "radius": ("both wheels' radius is", RADIUS, "look at radius, gear and encoder"),
+    "base": ("the wheel base is", BASE, "measure it anew"),
     "metre": (
-        "radius and base alike",
+        "radius and base alike are",
         METRE,
         "the reference's metre, or the robot file's, is not one",
     ),
-    "turning": ("radius over base", {}, "radius or base were entered wrongly"),
+    "turning": ("radius over base is", {}, "radius or base were entered wrongly"),
     **{
-        side: (f"the {side} wheel's travel alone", {}, _OF_A_WHEEL.format(side))
+        side: (f"the {side} wheel's travel alone is", {}, _OF_A_WHEEL.format(side))
         for side in ("left", "right")
     },
 }
-"""By what a factor is on: its name, known causes by factor, and what is said of other factors;
-"turning" is for a reference that measures yaw alone."""
+"""By what a factor is on: its name and verb, known causes by factor, and what is said of other
+factors; "turning" is for a reference that measures yaw alone."""
 
 
 def factor_words(on: str, value: float) -> str:
@@ -149,9 +165,9 @@ def factor_words(on: str, value: float) -> str:
     what, causes, else_ = _ENTERED[on]
     factor = simple_factor(value)
     near = f", near {factor}" if factor else ""
-    times = f"{value:.3g}" if value >= 1.0 else f"1/{1.0 / value:.3g}"
+    times = _digits(value, 3) if value >= 1.0 else f"1/{_digits(1.0 / value, 3)}"
     cause = causes.get(factor or "", else_)
-    words = f"{what} is {times} times {ENTERED}{near}: {cause}"
+    words = f"{what} {times} times {ENTERED}{near}: {cause}"
     base = {"base": value, "turning": 1.0 / value}.get(on, 1.0)
     words += f"; or {_SKID}" if skids(base) else ""
     tell = "; yaw alone cannot tell which: drive a taped distance" if on == "turning" else ""

@@ -13,8 +13,10 @@ from functools import partial
 import numpy as np
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
+from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Setting,
@@ -27,7 +29,6 @@ from werrimbi_odom.inference.set_up.records import (
     Cuts,
     SetUpRecord,
     cut,
-    effective_track,
     ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import (
@@ -93,12 +94,21 @@ def degrees_gain(records: Sequence[SetUpRecord], robot: Robot, measured: Measure
         if degrees > radians or _turns_in_degrees(records, robot):
             return math.inf
         return 1.0
-    given = regressed(records, robot)
-    mended = regressed([each.in_degrees() for each in records], robot)
-    if mended is None or given is None:
-        return 1.0
-    gain = given.moving.scatter / mended.moving.scatter
+    mended = [each.in_degrees() for each in records]
+    gain = _gain_over(records, mended, robot)
+    if gain <= rules.DEGREES_BETTER and (lag := lag_of(mended)[0]) != 0.0:
+        # While the clocks are seconds apart, poses fit in no unit.
+        given = [each.delayed(lag) for each in records]
+        gain = _gain_over(given, [each.delayed(lag) for each in mended], robot)
     return gain if gain > rules.DEGREES_BETTER else 1.0
+
+
+def _gain_over(given: Sequence[SetUpRecord], mended: Sequence[SetUpRecord], robot: Robot) -> float:
+    """How much less the poses scatter once mended; 1 where these drives do not tell."""
+    before, after = regressed(given, robot), regressed(mended, robot)
+    if before is None or after is None:
+        return 1.0
+    return before.moving.scatter / after.moving.scatter
 
 
 def _turns_in_degrees(records: Sequence[SetUpRecord], robot: Robot) -> bool:
@@ -146,5 +156,8 @@ def search_poses(
     if misfit(AS_ENTERED) < rules.WIDE * misfit(setting):
         return [], None
     found = findings_of(setting, ways, misfit)
-    found += arm_finding(setting, misfit, setting.base * track)
+    # The robot file's lever arm was undone in its own axes: where these are turned, a part is left.
+    view = mount_of(robot)
+    undone = (1.0 - cmath.exp(1j * setting.wired.yaw)) * complex(view.ahead, view.left)
+    found += arm_finding(setting, misfit, setting.base * track, undone)
     return found, setting if found else None

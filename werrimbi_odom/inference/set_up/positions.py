@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.records import (
@@ -25,7 +26,6 @@ from werrimbi_odom.inference.set_up.records import (
     Cuts,
     SetUpRecord,
     cut,
-    effective_track,
     ratio_of_ticks,
 )
 from werrimbi_odom.inference.set_up.regression import swept
@@ -116,8 +116,11 @@ def _scale(gone: Complexes, move: Complexes) -> float:
 
 def windows_of(cuts: Cuts, most: int = rules.FINE_WINDOWS) -> CutWindows | None:
     """Windows spread over all drives; None where there is none."""
-    starts = np.arange(0, cuts.count - rules.WINDOW + 1, rules.WINDOW // 2)
-    starts = starts[cuts.stretch[starts] == cuts.stretch[starts + rules.WINDOW - 1]]
+    _, first, count = np.unique(cuts.stretch, return_index=True, return_counts=True)
+    spans = zip(first.tolist(), (first + count - rules.WINDOW + 1).tolist(), strict=True)
+    starts = np.concatenate(
+        [np.empty(0, dtype=np.intp), *(np.arange(*span, rules.WINDOW // 2) for span in spans)]
+    )
     if starts.size == 0:
         return None
     if starts.size > most:
@@ -135,10 +138,8 @@ def windows_of(cuts: Cuts, most: int = rules.FINE_WINDOWS) -> CutWindows | None:
 def _compact(cuts: Cuts) -> Cuts:
     """Keep only the steps that some stretch uses."""
     needed = np.zeros(cuts.left.size + 1, dtype=np.intp)
-    np.add.at(needed, cuts.begin, 1)
     last: NDArray[np.intp] = cuts.end.reshape(-1, rules.WINDOW)[:, -1]
     first: NDArray[np.intp] = cuts.begin.reshape(-1, rules.WINDOW)[:, -1]
-    needed[:] = 0
     np.add.at(needed, first, 1)
     np.add.at(needed, last, -1)
     keep = np.cumsum(needed[:-1]) > 0

@@ -167,11 +167,6 @@ def measured_by(records: Sequence[SetUpRecord]) -> Measure | None:
     return "heading" if yaw > 1 else None
 
 
-def effective_track(robot: Robot) -> float:
-    """Wheel base by the robot file, including its effects [m]."""
-    return robot.wheel_separation * sizes_of(robot).base
-
-
 def ratio_of_ticks(robot: Robot) -> float:
     """Travel of a count of the right wheel by the robot file over that of the left."""
     sizes = sizes_of(robot)

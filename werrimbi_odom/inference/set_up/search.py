@@ -20,7 +20,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.mislabelled_columns import YAW_IN_DEGREES
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
+from werrimbi_odom.inference.calibration_parametrisation import effective_track, skids_in_turns
 from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
@@ -44,7 +44,6 @@ from werrimbi_odom.inference.set_up.positions import search_positions
 from werrimbi_odom.inference.set_up.records import (
     SetUpRecord,
     cut,
-    effective_track,
     measured_by,
     ratio_of_ticks,
     record_of,
@@ -56,6 +55,7 @@ from werrimbi_odom.model.robot import Robot
 
 DELAY, RADIUS = "reference_delay", "wheel_radius_scale"
 SWAPPED, MOUNT = "wheels_swapped", "reference_yaw_offset"
+BEYOND = "correct its stamps or positions, and diagnose again"
 IN_UNIT = (
     "the reference's positions are in {unit}, and x_m and y_m mean metres: convert these columns "
     "(divide by {size:.6g}) and diagnose again"
@@ -97,10 +97,13 @@ class SetUp:
 
     @property
     def to_convert(self) -> str | None:
-        """Sentence about a reference in the wrong unit, which no effect can correct."""
+        """Sentence about a reference in the wrong unit, or beyond what an effect can correct."""
         for finding in self.findings:
             if finding.effect == IN_DEGREES:
                 return finding.words
+            mends = find(finding.effect)
+            if mends.stage == "reference" and not mends.allows(finding.values):
+                return f"{finding.words}, more than {finding.effect} can hold: {BEYOND}"
         # Base and radii need not be right for that: half the base may be entered beside.
         larger = {each.effect: each.values.get("multiplier", 1.0) for each in self.findings}
         base, radius = (larger.get(name, 1.0) for name in ("track_width", RADIUS))
@@ -254,13 +257,14 @@ def _is_sure(fit: HeadingRegression | None) -> bool:
 
 def _with_counts(found: Sequence[SetUpFinding], robot: Robot) -> list[SetUpFinding]:
     """Say how many counts a turn has, where no simple factor explains both radii alone."""
-    if any(each.effect == "track_width" for each in found):
+    if any(each.effect in ("track_width", "unequal_wheel_radii") for each in found):
         return list(found)
     told = []
     for each in found:
         if each.effect == RADIUS and each.factor is None and not each.twins:
-            counts = robot.left_ticks_per_revolution / each.values["multiplier"]
-            words = f"{each.words}; {counts_words(counts, robot.wheel_radius)}"
+            ticks = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+            left, right = (side / each.values["multiplier"] for side in ticks)
+            words = f"{each.words}; {counts_words(left, right, robot.wheel_radius)}"
             each = replace(each, words=words)
         told.append(each)
     return told
@@ -271,8 +275,9 @@ def _in_degrees(gain: float) -> SetUpFinding:
 
 
 def _late(lag: float, gain: float) -> SetUpFinding:
+    more = " or more" if abs(lag) >= rules.DELAY_LONGEST else ""
     words = (
-        f"the reference's stamps are {abs(lag):.1f} s too {'late' if lag > 0.0 else 'early'} "
+        f"the reference's stamps are {abs(lag):.1f} s{more} too {'late' if lag > 0.0 else 'early'} "
         "against the encoders': by a driver, a network, or two computers' clocks"
     )
     return SetUpFinding(DELAY, {"delay": lag}, None, words, (), gain)
