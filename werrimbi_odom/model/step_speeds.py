@@ -25,8 +25,8 @@ from werrimbi_odom.model.pace import PAUSE, REMEMBERED
 from werrimbi_odom.model.pose import Floats
 
 EARLY = 0.2
-"""A step is much too early if it lasts less than this share of a usual one: timers of drivers jitter
-by less, and messages in a burst are closer."""
+"""A step is much too early if it lasts less than this share of a usual one: timers jitter by less,
+and messages in a burst are closer."""
 AT_FIRST = (0.01,) * 10
 """Assumed intervals before the first message [s]: those of a quick sender, whose speed must not be
 taken for less than it is; and so many that a record which begins in a burst does not pass for one
