@@ -139,6 +139,22 @@ def test_a_fault_of_the_odometry_stops_it_within_its_timeout(fault: str) -> None
     assert math.hypot(plant.pose.x - before.x, plant.pose.y - before.y) < 0.1
 
 
+def test_a_stamp_that_stands_is_told_without_a_sign() -> None:
+    one, plant = under_way()
+    last = one.last
+    assert last is not None
+    one.odometry(last, plant.time)
+    assert one.words == "the odometry's stamps go back or stand, by 0.000 s"
+
+
+def test_its_progress_counts_moves_and_no_rests() -> None:
+    one, plant = under_way()
+    assert one.progress == "0 of 8 moves"
+    while one.state == "driving":
+        plant.step(one)
+    assert one.progress == "8 of 8 moves"
+
+
 def test_what_came_while_a_recording_was_begun_is_neither_silent_nor_late() -> None:
     """A bag takes a busy machine a part of a second, in which messages queue."""
     one, plant = driver(), Plant()

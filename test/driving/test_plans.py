@@ -100,5 +100,27 @@ def test_what_cannot_be_driven_is_said(tmp_path: Path, told: dict[str, object], 
     found.write_text(json.dumps({"verdict": "named", "next_manoeuvre": None}))
     with pytest.raises(InputError, match="nothing needs to be driven next: the verdict is named"):
         proposed(found, LIMITS)
+    found.write_text(json.dumps({"verdict": "unknown", "next_manoeuvre": None}))
+    with pytest.raises(InputError, match="depend on nothing that was measured"):
+        proposed(found, LIMITS)
     with pytest.raises(InputError, match="cannot be read as JSON"):
         proposed(tmp_path / "none.json", LIMITS)
+
+
+@pytest.mark.parametrize(
+    ("ahead", "says"),
+    [
+        ("spins", "is no manoeuvre of werrimbi diagnose"),
+        ({"why": "no name"}, "is no manoeuvre of werrimbi diagnose"),
+        ({"name": 7}, "is no manoeuvre of werrimbi diagnose"),
+        ({"name": "spins", "minutes": "two"}, "minutes in .* must be a number, not 'two'"),
+        ({"name": "spins", "minutes": math.inf}, "minutes in .* must be a number, not inf"),
+    ],
+)
+def test_a_file_that_somebody_wrote_by_hand_is_refused_in_words(
+    tmp_path: Path, ahead: object, says: str
+) -> None:
+    file = tmp_path / "by_hand.json"
+    file.write_text(json.dumps({"verdict": "ambiguous", "next_manoeuvre": ahead}))
+    with pytest.raises(InputError, match=says):
+        proposed(file, LIMITS)

@@ -45,7 +45,9 @@ def straight(travel: Floats, duration: float) -> Drive[Floats]:
     return drive_of_run(*steps, flicker=1e-4, track=TRACK)
 
 
-def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> None:
+def both_ways(
+    left: Floats, right: Floats, duration: Floats, flicker: float, digits: float = 1e-12
+) -> None:
     raw = steps(left, right, duration)
     memory, pose, live = DriveMemory(flicker, TRACK, 0.3, -0.4), Pose(), []
     for step in raw:
@@ -58,7 +60,7 @@ def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> 
         track=TRACK,
         first_angles=(0.3, -0.4),
     )
-    np.testing.assert_allclose(np.array(live), flat(recorded), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(np.array(live), flat(recorded), rtol=digits, atol=digits)
 
 
 @settings(max_examples=50, deadline=None)
@@ -79,6 +81,79 @@ def test_live_memory_is_the_recorded_one(
         travel[:, i] += memory * travel[:, i - 1]
     travel[:, random.random(count) < 0.2] = 0.0
     both_ways(*travel, random.uniform(0.005, 0.1, count), flicker)
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(1, 1500),
+    intervals=st.lists(
+        st.sampled_from([2e-5, 3e-4, 1e-3, 4e-3, 0.019, 0.02, 0.5, 3.0]), min_size=1, max_size=40
+    ),
+)
+def test_live_memory_is_the_recorded_one_whatever_the_stamps(
+    seed: int, count: int, intervals: list[float]
+) -> None:
+    """Bursts, pauses and other rates; a fifth of the steps at rest.
+
+    Accelerations are divided by intervals of 20 microseconds, and lose five digits.
+    """
+    random = np.random.default_rng(seed)
+    travel = random.normal(0.005, 0.005, (2, count)) * (random.random(count) > 0.2)
+    jitter = random.uniform(0.9, 1.1, count)
+    both_ways(*travel, np.resize(intervals, count) * jitter, 1e-4, 1e-7)
+
+
+STAMPS = {
+    "two at a time": np.tile([0.04, 2e-5], 100),
+    "five at a time": np.tile([2e-5, 2e-5, 2e-5, 2e-5, 0.1], 40),
+    "a queue let go": np.repeat([0.02, 2.0, 2e-5, 0.02], [100, 1, 99, 100]),
+    "silent for long, then a queue": np.repeat([0.02, 30.0, 2e-5, 0.02], [100, 1, 20, 100]),
+    "from 50 Hz to 500": np.repeat([0.02, 0.002], [200, 600]),
+}
+
+
+@pytest.mark.parametrize("stamps", STAMPS)
+def test_no_stamp_makes_a_speed_that_nothing_had(stamps: str) -> None:
+    """At 0.5 m/s, read in time (or, at another rate, as stamped), and sent when the driver can.
+
+    To a factor of two, as a long queue may pass for a quicker sender.
+    """
+    duration = STAMPS[stamps]
+    travel = np.minimum(0.5 * duration, 0.01) if "Hz" in stamps else np.full(duration.size, 0.01)
+    angle, turn = travel / RADIUS, np.zeros_like(travel)
+    for message in (None, np.arange(travel.size)):
+        drive = drive_of_run(
+            duration, travel, travel, travel, turn, angle, angle,
+            flicker=1e-4, track=TRACK, message=message,
+        )  # fmt: skip
+        begun = 0 if message is None else 5  # the first may be a part of a message
+        for speed in (drive.speed, drive.left_speed, drive.right_smooth_speed):
+            assert np.abs(speed.end[begun:]).max() < 1.5
+        if "Hz" in stamps:
+            np.testing.assert_allclose(drive.speed.end, 0.5)
+
+
+def test_only_a_message_that_is_much_too_early_changes_the_speed_of_the_body() -> None:
+    """Parts of messages, split where a pose was measured, have their own, however short."""
+    random = np.random.default_rng(1)
+    message = np.repeat(np.arange(100), 2)
+    share = np.stack([random.uniform(0.001, 0.999, 100)] * 2, axis=-1)
+    share[:, 1] = 1.0 - share[:, 0]
+    whole = np.full(100, 0.02)
+    whole[50] = 2e-5
+    duration = (share * whole[:, None]).ravel()
+    left, right = random.normal(0.01, 0.001, (2, 200))
+    right, left = np.array([right, left]) * share.ravel()
+    along, turn = 0.5 * (left + right), (right - left) / TRACK
+    drive = drive_of_run(
+        duration, left, right, along, turn, left, right,
+        flicker=1e-4, track=TRACK, message=message,
+    )  # fmt: skip
+    usual = message != 50
+    np.testing.assert_array_equal(drive.speed.end[usual], (along / duration)[usual])
+    np.testing.assert_array_equal(drive.yaw_rate.end[usual], (turn / duration)[usual])
+    assert np.abs(drive.speed.end[~usual]).max() < 1.5
 
 
 def test_a_wheel_at_rest_has_no_direction() -> None:

@@ -221,6 +221,19 @@ def test_what_takes_longer_than_one_may_ask_for_is_begun_if_it_tells_as_likely_a
     assert quickest(("first", "other"), [weighed("spins", 1.5, 0.4)]) is None
 
 
+def test_what_rivals_differ_by_is_told_in_words_that_people_use() -> None:
+    legs = np.array([[0.012345, 0.0, np.radians(123.0)]])
+    pairs = {("first", "other"): 100.0}
+    told = quickest(
+        ("first", "other"), [Discrimination(BY_NAME["square"], 2.0, pairs, lambda _: legs)]
+    )
+    assert told is not None
+    assert told.why == (
+        "first and other look alike on these drives, but around squares in both senses they differ "
+        "by 12 mm and 120° on a short leg"
+    )
+
+
 def test_a_rival_that_no_drive_tells_keeps_none_from_telling_the_others() -> None:
     names = ("first", "other", "third")
     spins, arcs = weighed("spins", 1.5, 0.0, 0.0, 15.0), weighed("arcs", 5.0, 10.0, 0.0, 30.0)

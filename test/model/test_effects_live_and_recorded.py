@@ -75,6 +75,28 @@ def test_live_and_recorded_agree(effects: tuple[str, ...]) -> None:
     assert_alike(estimates(Odometer(robot), drive()), trajectory(robot, *drive()))
 
 
+@pytest.mark.parametrize("effects", [*((name,) for name in TYPICAL), TOGETHER], ids="+".join)
+def test_a_driver_that_sends_several_at_once_throws_no_robot(effects: tuple[str, ...]) -> None:
+    """Once two messages 20 microseconds apart, and once a queue of them: as the even drive."""
+    robot = replace(ROBOT, effects=tuple(TYPICAL[name] for name in effects))
+    even = drive()
+    time = even.time.copy()
+    time[100] = time[101] - 2e-5
+    time[200:230] = time[230] - 2e-5 * np.arange(30, 0, -1)
+    burst = even._replace(time=time)
+    live, recorded = estimates(Odometer(robot), burst), trajectory(robot, *burst)
+    assert_alike(live, recorded)
+    away = np.subtract(live[-1].pose, estimates(Odometer(robot), even)[-1].pose)
+    assert np.abs(away).max() < 0.02
+
+
+@pytest.mark.parametrize("name", TYPICAL)
+def test_a_record_of_one_row_has_its_start_alone(name: str) -> None:
+    one = Ticks(*(column[:1] for column in drive()))
+    found = trajectory(replace(ROBOT, effects=(TYPICAL[name],)), *one)
+    assert (found.x.size, found.x[0]) == (1, 0.0)
+
+
 @pytest.mark.parametrize(
     "name", [e.effect.name for e in TYPICAL.values() if e.effect.stage in ("wheels", "body")]
 )

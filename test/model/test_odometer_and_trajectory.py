@@ -24,6 +24,7 @@ from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.model.quick_odometer import QuickOdometer
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
@@ -281,6 +282,42 @@ def test_a_driver_that_sends_several_at_once_makes_no_speed(late: float) -> None
         if estimate is not None:
             speeds.append(estimate.twist.along)
             assert estimate.twist_covariance.speed < 1e-3
+    assert max(speeds) < 0.55
+    assert speeds[-1] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("quick", [False, True])
+@pytest.mark.parametrize(("silent", "period"), [(10.0, 0.02), (1.5, 0.02), (0.0, 0.004)])
+def test_after_a_pause_and_at_another_rate_the_twist_is_that_of_the_last_messages(
+    silent: float, period: float, quick: bool
+) -> None:
+    """At 0.5 m/s: 50 Hz, then silence at rest, then 50 Hz again; or at once five times as often."""
+    odometer = QuickOdometer(ROBOT) if quick else Odometer(ROBOT)
+    stamps = np.concatenate([0.02 * np.arange(500.0), 9.98 + silent + period * np.arange(1, 200)])
+    way = 0.5 * np.concatenate([0.02 * np.arange(500.0), 9.98 + period * np.arange(1, 200)])
+    counts = way / ROBOT.left_tick
+    late = []
+    for row, (time, count) in enumerate(zip(stamps.tolist(), counts.tolist(), strict=True)):
+        estimate = odometer.update(time, count, count)
+        if row > 500:  # the first after the pause has all of the pause
+            assert estimate is not None
+            assert estimate.twist.along == pytest.approx(0.5)
+            late.append(estimate.late.duration)
+    assert max(late) < 0.05
+
+
+def test_what_waited_over_a_pause_makes_no_speed() -> None:
+    """A driver is silent for two seconds, and then sends ten messages at once."""
+    odometer = Odometer(ROBOT)
+    counts = np.arange(300) * 0.01 / ROBOT.left_tick
+    stamps = 0.02 * np.arange(300.0)
+    stamps[100:] += 2.0
+    stamps[100:110] = stamps[110] - 2e-5 * np.arange(10, 0, -1)
+    speeds = [
+        estimate.twist.along
+        for row in zip(stamps.tolist(), counts.tolist(), counts.tolist(), strict=True)
+        if (estimate := odometer.update(*row)) is not None
+    ]
     assert max(speeds) < 0.55
     assert speeds[-1] == pytest.approx(0.5)
 

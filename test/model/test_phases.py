@@ -138,16 +138,22 @@ def test_learnable_is_what_lacks_its_phase_alone() -> None:
 
 
 def learner_after(
-    ticks: Ticks, readings: list[tuple[float, float]], *, late: int = 0, rate: bool = False
+    ticks: Ticks,
+    readings: list[tuple[float, float]],
+    *,
+    late: int = 0,
+    rate: bool = False,
+    times: int = 1,
 ) -> PhaseLearner:
-    """Feed steps and readings in the order of time, the readings some rows late."""
+    """Feed steps and readings in the order of time, the readings some rows late, or repeated."""
     odometer, learner = Odometer(UNKNOWN), PhaseLearner(UNKNOWN)
     see = learner.see_rate if rate else learner.see_yaw
     for row, message in enumerate(zip(*(column.tolist() for column in ticks), strict=True)):
         if odometer.update(*message) is not None and odometer.driven_step is not None:
             learner.step(message[0], odometer.driven_step)
         if row >= late:
-            see(*readings[row - late])
+            for _ in range(times):
+                see(*readings[row - late])
     return learner
 
 
@@ -178,6 +184,26 @@ def test_live_from_the_rates_of_a_gyro() -> None:
     (phase,) = learner.phases()
     assert phase.std < KNOWN_WELL_ENOUGH
     assert abs(off(phase, -1.3)) < 3.0 * phase.std
+
+
+def test_a_gyro_whose_messages_come_twice_tells_it_too() -> None:
+    ticks = drive()
+    rates = np.append(np.diff(trajectory(true_robot(-1.3), *ticks).yaw) * 20.0, 0.0)
+    told = list(zip((ticks.time + 0.025).tolist(), rates.tolist(), strict=True))
+    once, twice = (learner_after(ticks, told, rate=True, times=times) for times in (1, 2))
+    assert once.phases() == twice.phases()
+    assert once.phases()[0].std < KNOWN_WELL_ENOUGH
+
+
+@pytest.mark.filterwarnings("error")
+def test_nothing_is_learnt_of_a_wheel_that_stands_while_the_other_turns() -> None:
+    ticks = drive()
+    still = Ticks(ticks.time, np.zeros_like(ticks.left), ticks.right)
+    yaw = trajectory(UNKNOWN, *still).yaw + np.random.default_rng(3).normal(
+        0.0, 1e-3, still[0].size
+    )
+    (phase,) = learnt(still, yaw)
+    assert (phase.std, phase.amplitude) == (math.inf, 0.0)
 
 
 def test_a_gap_of_the_gyro_is_not_bridged() -> None:

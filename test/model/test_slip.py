@@ -40,6 +40,29 @@ def test_the_heading_is_unsure_by_all_that_was_missed(turned: float, body: float
     assert math.sqrt(total.along) == pytest.approx(0.5 * TRACK * away, rel=0.05)
 
 
+def test_a_gyro_whose_messages_come_twice_shows_the_slip_too() -> None:
+    guard = SlipGuard(TRACK, TICK)
+    for step in range(400):
+        time = 0.01 * step
+        for _ in range(2):
+            guard.gyro(time, 0.0)
+        guard.wheels(time, 0.4 * min(max(time - 1.0, 0.0), 1.0))
+    assert (guard.times, guard.missed) == (1, pytest.approx(0.4, rel=0.05))
+
+
+def test_a_slip_does_not_go_on_where_the_clock_is_set_back() -> None:
+    """Wheels that spin twice as fast as the robot turns, in a bag that is played again."""
+    guard, missed = SlipGuard(TRACK, TICK), 0.0
+    for begin in (5000.0, 0.0):
+        for step in range(200):
+            time = begin + 0.01 * step
+            guard.gyro(time, 0.5)
+            missed += guard.wheels(time, 0.01 * step).heading
+    assert guard.times == 2
+    assert guard.missed == pytest.approx(2.0, rel=0.05)
+    assert missed == pytest.approx(2.0, rel=0.1)
+
+
 def test_what_gyros_and_clocks_do_is_no_slip() -> None:
     """A bias, a scale, noise, and stamps that are apart, in a drive of hard turns."""
     rng = np.random.default_rng(1)

@@ -243,5 +243,6 @@ class Driver:
 
     @property
     def progress(self) -> str:
-        """Number of finished moves, in words."""
-        return f"{self._tracker.index} of {len(self.plan.moves)} moves"
+        """Number of finished moves, in words; a rest is none."""
+        moving = [bool(move.length or move.turn) for move in self.plan.moves]
+        return f"{sum(moving[: self._tracker.index])} of {sum(moving)} moves"

@@ -109,7 +109,7 @@ def fault_between(before: OdometryReading, now: OdometryReading, limits: Limits)
     """Fault of an odometry message relative to the one before it; "" if none."""
     step = now.stamp - before.stamp
     if step <= 0.0:
-        return f"the odometry's stamps go back or stand, by {-step:.3f} s"
+        return f"the odometry's stamps go back or stand, by {abs(step):.3f} s"
     gone = math.hypot(now.pose.x - before.pose.x, now.pose.y - before.pose.y)
     if gone > JUMP_FACTOR * limits.speed * step + JUMP:
         return f"the odometry jumped by {gone:.2f} m in {step:.3f} s"

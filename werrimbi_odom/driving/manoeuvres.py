@@ -96,13 +96,24 @@ def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> ManoeuvrePlan:
             raise InputError(
                 "diagnosis: no manoeuvre tells its rivals apart in reasonable time; a ruler may"
             )
+        if verdict == "unknown":
+            raise InputError(
+                "diagnosis: it proposes nothing to drive: the verdict is unknown, and the errors "
+                "depend on nothing that was measured"
+            )
         raise InputError(f"diagnosis: nothing needs to be driven next: the verdict is {verdict}")
+    if not isinstance(ahead, dict) or not isinstance(ahead.get("name"), str):
+        raise InputError(
+            f"diagnosis: next_manoeuvre in {path} is no manoeuvre of werrimbi diagnose"
+        )
     if ahead["name"] not in NAMES:
         raise InputError(
             f"diagnosis: {ahead['name']} is no drive, but work by hand: "
             f"{ahead.get('do') or ahead.get('why')}"
         )
-    once = plan_of(str(ahead["name"]), size=size)
-    minutes = float(ahead.get("minutes") or 0.0)
+    once = plan_of(ahead["name"], size=size)
+    minutes = ahead.get("minutes") or 0.0
+    if not isinstance(minutes, int | float) or not math.isfinite(minutes):
+        raise InputError(f"diagnosis: minutes in {path} must be a number, not {minutes!r}")
     times = max(math.ceil(60.0 * minutes / once.duration(limits)), 1)
     return plan_of(once.name, size=size, repetitions=times)

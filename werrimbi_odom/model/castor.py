@@ -60,18 +60,14 @@ def swing(angle: float, along: float, turn: float, track: float) -> float:
     steady = PLAY * abs(lag) - turn
     # da = steady + sway * cos(a) - lag * sin(a)
     growth = 0.25 * (sway * sway + lag * lag - steady * steady)
-    if growth > 0.0:
+    if growth > 0.0:  # not below: the pivot is farther from the axle than the contact from it
         rate = math.sqrt(growth)
-        grown, added = 1.0, math.tanh(rate) / rate
-    elif growth < 0.0:
-        rate = math.sqrt(-growth)
-        grown, added = math.cos(rate), math.sin(rate) / rate
+        half = 0.5 * math.tanh(rate) / rate
     else:
-        grown, added = 1.0, 1.0
-    half = 0.5 * added
+        half = 0.5
     cosine, sine = math.cos(angle), math.sin(angle)
     along_circle = half * (steady + sway * cosine - lag * sine)
-    return 2.0 * math.atan2(along_circle, grown + half * (lag * cosine + sway * sine))
+    return 2.0 * math.atan2(along_circle, 1.0 + half * (lag * cosine + sway * sine))
 
 
 def trailed(along: Steps, turn: Steps, track: float, swings: Floats) -> None:

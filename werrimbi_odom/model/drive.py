@@ -44,7 +44,10 @@ class Span(NamedTuple, Generic[Number]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive(Generic[Number]):
-    """One step, or all steps of a run (arrays of shape (n,)), before any effect."""
+    """One step, or all steps of a run (arrays of shape (n,)), before any effect.
+
+    Speeds of a message that comes much too early, as in a burst, are those of `step_speeds`.
+    """
 
     duration: Number
     """[s]"""

@@ -7,21 +7,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from werrimbi_odom.model.castor import swing
 from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, RawStep, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Pose
-
-
-class _Means(NamedTuple):
-    """Mean speeds over a step [m/s, rad/s, m/s, m/s]."""
-
-    speed: float
-    yaw_rate: float
-    left: float
-    right: float
+from werrimbi_odom.model.step_speeds import SpeedMemory, StepSpeeds
 
 
 def smoothed(before: float, speed: float, duration: float) -> float:
@@ -78,7 +69,8 @@ class DriveMemory:
     _time: float = 0.0
     _distance: float = 0.0
     _castor: float = 0.0
-    _means: _Means | None = None
+    _speeds: SpeedMemory = field(default_factory=SpeedMemory)
+    _means: StepSpeeds | None = None
     _smooth: tuple[float, float] = (0.0, 0.0)
     _left: _Shuttle = field(init=False)
     _right: _Shuttle = field(init=False)
@@ -94,12 +86,7 @@ class DriveMemory:
         """Add one step that begins at `pose`; return what an effect may read in it."""
         time = Span(self._time, self._time + raw.duration)
         distance = Span(self._distance, self._distance + abs(raw.along))
-        means = _Means(
-            raw.along / raw.duration,
-            raw.turn / raw.duration,
-            raw.left / raw.duration,
-            raw.right / raw.duration,
-        )
+        means = self._speeds.step(raw)
         speed, yaw_rate, left_speed, right_speed = map(Span, self._means or means, means)
         before = self._smooth if self._means else (means.left, means.right)
         after = (

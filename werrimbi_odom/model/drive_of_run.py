@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from functools import cache, partial
 from itertools import pairwise
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from werrimbi_odom.model.castor import castor_swings
 from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.step_speeds import EarlySteps, early_steps, mean_speeds
 
 QUANTITIES = tuple(item.name for item in fields(Drive))
 """Names of all quantities that effects may read."""
@@ -97,18 +98,62 @@ def drive_of_run(
     track: float,
     first_angles: tuple[float, float] = (0.0, 0.0),
     channels: Mapping[str, Span[Floats]] | None = None,
+    message: NDArray[np.intp] | None = None,
+    rims: WheelTravel[Floats] | None = None,
 ) -> DriveOfRun:
     """Compute all steps of a run at once; the same as passing them to a `drive_memory.DriveMemory`.
 
     Arrays have shape (n,), as in `RawStep`. The pose is that of the counters alone, starting at
     zero (see `Drive.with_heading`, `Drive.with_place`).
+
+    A message may be split into steps at a reference stamp. The mean speed over one part contains
+    the error of that stamp: a stamp that is off would make the robot both faster and farther ahead,
+    which looks like wheel slip. So both parts get the wheel speeds of the message. The speeds of
+    the body stay those of the steps, unless the message is much too early: they sum exactly to the
+    robot's path and turn.
+
+    Parameters
+    ----------
+    message : ndarray, shape (n,), optional
+        Index of the message in which each step ends, from 0 on, without gaps; by default, each step
+        is a message.
+    rims
+        Speeds of the wheels' rims over each message [m/s], where something better than the counts
+        tells them.
     """
     least = max(flicker, ROLLBACK)
     since = cache(partial(_shuttled, along, least))
     since_left, since_right = (cache(partial(_shuttled, side, least)) for side in (left, right))
-    left_smooth, right_smooth = (
-        cache(partial(_smooth, side / duration, duration)) for side in (left, right)
-    )
+    whole, of_step = _by_message(message)
+    lasted = cache(partial(whole, duration))
+
+    @cache
+    def early() -> EarlySteps:
+        rolled = whole(np.abs(left) + np.abs(right))
+        return early_steps(lasted(), rolled, cut=message is not None)
+
+    @cache
+    def rim(side: Literal["left", "right"]) -> Floats:
+        if rims is not None:
+            return rims.left if side == "left" else rims.right
+        return mean_speeds(whole(left if side == "left" else right), lasted(), early())
+
+    @cache
+    def smooth(side: Literal["left", "right"]) -> Span[Floats]:
+        return _smooth(rim(side), lasted())
+
+    def smooth_speed(side: Literal["left", "right"]) -> Span[Floats]:
+        return Span(*map(of_step, smooth(side)))
+
+    def of_body(travel: Floats) -> Span[Floats]:
+        if message is None:
+            return _lagged(mean_speeds(travel, duration, early()))
+        speeds, too_early = travel / duration, np.isin(message, early().rows)
+        if too_early.any():
+            means = mean_speeds(whole(travel), lasted(), early())
+            speeds[too_early] = means[message[too_early]]
+        return _lagged(speeds)
+
     heading = cache(partial(_grown, 0.0, turn))
 
     @cache
@@ -120,14 +165,14 @@ def drive_of_run(
         {
             "duration": lambda: duration,
             "time": lambda: _grown(0.0, duration),
-            "speed": lambda: _lagged(along / duration),
-            "yaw_rate": lambda: _lagged(turn / duration),
-            "left_speed": lambda: _lagged(left / duration),
-            "right_speed": lambda: _lagged(right / duration),
-            "left_smooth_speed": left_smooth,
-            "right_smooth_speed": right_smooth,
-            "left_acceleration": lambda: left_smooth().change / duration,
-            "right_acceleration": lambda: right_smooth().change / duration,
+            "speed": lambda: of_body(along),
+            "yaw_rate": lambda: of_body(turn),
+            "left_speed": lambda: _lagged(of_step(rim("left"))),
+            "right_speed": lambda: _lagged(of_step(rim("right"))),
+            "left_smooth_speed": lambda: smooth_speed("left"),
+            "right_smooth_speed": lambda: smooth_speed("right"),
+            "left_acceleration": lambda: of_step(smooth("left").change / lasted()),
+            "right_acceleration": lambda: of_step(smooth("right").change / lasted()),
             "left_angle": lambda: _grown(first_angles[0], left_angle),
             "right_angle": lambda: _grown(first_angles[1], right_angle),
             "distance": lambda: _grown(0.0, np.abs(along)),
@@ -149,45 +194,18 @@ def drive_of_run(
     )
 
 
-def with_wheels_of_messages(
-    drive: DriveOfRun, message: NDArray[np.intp], speeds: WheelTravel[Floats] | None = None
-) -> DriveOfRun:
-    """Return the same drive with wheel speeds averaged over whole messages instead of steps.
+Values = Callable[[Floats], Floats]
 
-    A message may be split into steps at a reference stamp. The mean speed over one part contains
-    the error of that stamp: a stamp that is off would make the robot both faster and farther ahead,
-    which looks like wheel slip. So both parts get the speed of the message. The speeds of the body
-    stay those of the steps: they sum exactly to the robot's path and turn. `message` (n,): index of
-    the message in which each step ends, from 0 on, without gaps. `speeds`: those of the rims over
-    each message [m/s], where something better than the counts tells them.
-    """
 
-    @cache
-    def lasted() -> Floats:
-        return np.asarray(np.bincount(message, drive.found("duration")), dtype=np.float64)
+def _by_message(message: NDArray[np.intp] | None) -> tuple[Values, Values]:
+    """Sums over messages of values of steps, and values of steps from those of their messages."""
+    if message is None:
+        return _itself, _itself
+    return partial(_summed, message), lambda values: values[message]
 
-    def mean(name: str) -> Floats:
-        if speeds is not None:
-            return speeds.left if name == "left_speed" else speeds.right
-        gone = drive.found(name).end * drive.found("duration")
-        return np.asarray(np.bincount(message, gone) / lasted())
 
-    @cache
-    def smooth(name: str) -> Span[Floats]:
-        return _smooth(mean(name), lasted())
-
-    def of_steps(span: Span[Floats]) -> Span[Floats]:
-        return Span(span.start[message], span.end[message])
-
-    works = {name: partial(drive.found, name) for name in QUANTITIES} | {
-        "left_speed": lambda: _lagged(mean("left_speed")[message]),
-        "right_speed": lambda: _lagged(mean("right_speed")[message]),
-        "left_smooth_speed": lambda: of_steps(smooth("left_speed")),
-        "right_smooth_speed": lambda: of_steps(smooth("right_speed")),
-        "left_acceleration": lambda: (smooth("left_speed").change / lasted())[message],
-        "right_acceleration": lambda: (smooth("right_speed").change / lasted())[message],
-    }
-    return DriveOfRun.by(works)
+def _summed(message: NDArray[np.intp], values: Floats) -> Floats:
+    return np.asarray(np.bincount(message, values), dtype=np.float64)
 
 
 class _Shuttled(NamedTuple):
@@ -222,7 +240,7 @@ def _smooth(means: Floats, duration: Floats) -> Span[Floats]:
         rest[steps:] += kept[steps:] * rest[:-steps]
         kept[steps:] = kept[steps:] * kept[:-steps]
         steps *= 2
-    after = rest + kept * means[0]
+    after = rest + kept * means[:1]
     return Span(np.concatenate([means[:1], after[:-1]]), after)
 
 
@@ -250,7 +268,7 @@ def _shuttled(travel: Floats, flicker: float) -> _Shuttled:
     since = direction * (position - np.repeat(turned_at, counts))
     for first, last in pairwise(bounds):
         np.maximum.accumulate(since[first:last], out=since[first:last])
-    before = np.concatenate([np.zeros(1), since[:-1]])
+    before = np.concatenate([[0.0], since])[:-1]
     before[begins] = 0.0
     return _Shuttled(Span(before, since), direction, reversals)
 

@@ -9,6 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.drive import Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
@@ -121,11 +124,14 @@ def features(
     raw: WheelTravel[Floats],
     first_counts: tuple[float, float],
     channels: Mapping[str, Span[Floats]] | None,
+    message: NDArray[np.intp] | None = None,
+    rims: WheelTravel[Floats] | None = None,
 ) -> DriveOfRun:
     """Compute what effects may read in a run.
 
     `first_counts`: counters at the first message. `channels`: extra measured channels at the start
-    and end of each step. InputError if an effect reads a channel that was not measured.
+    and end of each step. `message`, `rims`: as for `drive_of_run`. InputError if an effect reads a
+    channel that was not measured.
     """
     check_channels(robot, channels or {})
     motion = wheels_to_body(raw, robot.track)
@@ -142,6 +148,8 @@ def features(
         track=robot.track,
         first_angles=(first_counts[0] * per_left, first_counts[1] * per_right),
         channels=channels,
+        message=message,
+        rims=rims,
     )
 
 

@@ -109,7 +109,7 @@ def driven(
     """
     seen = watched(drive)
     first = AfterEffects(*after_effects(robot, raw, seen))
-    if not seen.asked & POSE:
+    if not seen.asked & POSE or raw.left.size == 0:
         return first
     # Few effects turn the robot depending on its heading, so a second pass with the heading of the
     # first is usually the solution.

@@ -102,6 +102,8 @@ class Encoder:
     pace: Pace = field(default_factory=Pace)
     lasted: float = USUAL_AT_FIRST
     """Interval for checking the latest step [s]: its own, unless it arrived much too early."""
+    usual: float = USUAL_AT_FIRST
+    """The usual interval, by which the latest step is much too early or is not [s]."""
     _left_speed: float = 0.0
     _right_speed: float = 0.0
     rule: CountRule = field(init=False)
@@ -158,7 +160,7 @@ class Encoder:
         left, right = reading.left - last.left, reading.right - last.right
         if bits:
             left, right = wrapped(left, bits), wrapped(right, bits)
-        lasted = lasted_over(duration, pace.usual)
+        lasted, self.usual = lasted_over(duration, pace.usual), pace.in_motion
         if was_reset(rule, reading, last, left, right, lasted, pace.usual, pace.fastest):
             self.tally.resets += 1
             return self._anchor_anew(reading, duration)

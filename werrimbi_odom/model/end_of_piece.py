@@ -50,7 +50,7 @@ class PieceRule(NamedTuple):
     """The conditions in metres of wheel travel, for one robot and tolerance."""
 
     quantum: float
-    """One count of each wheel [m], both taken as the coarser one's."""
+    """One count of the left wheel and one of the right [m], both taken as the coarser one's."""
     lead: float
     """Largest lead or lag of a wheel relative to its share of the travel, beyond the quantum."""
     path: float

@@ -25,6 +25,7 @@ from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, me
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.twist_interval import MovedStep, TwistInterval
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 _displacement = of_floats(displacement)
@@ -124,7 +125,7 @@ class Odometer:
         self._counts = (0.0, 0.0)
         self._pose = Pose()
         self._piece = OpenPiece(0.0, Pose(), known(robot.covariance_order))
-        self._late: tuple[WheelStep, BodyMotion[float]] | None = None
+        self._interval = TwistInterval()
 
     @property
     def tally(self) -> EncoderTally:
@@ -177,10 +178,7 @@ class Odometer:
         closed = self._cut(step, travel, motion, pose)
         self._time, self._counts, self._pose = time, (left, right), pose
         self.distance += abs(motion.along)
-        late = step, motion
-        if step.duration < self._encoder.lasted and self._late is not None:
-            late = joined(*self._late, *late)
-        self._late = late
+        late = self._interval.add(MovedStep(step, motion), self._encoder.usual)
         piece = self._piece
         return Estimate(
             step.time,
@@ -299,13 +297,3 @@ def with_lost_travel(
     """Errors of a pose with heading `yaw`, plus those of the travel lost in a counter reset."""
     noise = noise_of_wheel_variances(step.left_lost, step.right_lost, robot.track)
     return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), noise, yaw, 0.0, 0.0)
-
-
-def joined(
-    before: WheelStep, moved: BodyMotion[float], step: WheelStep, motion: BodyMotion[float]
-) -> tuple[WheelStep, BodyMotion[float]]:
-    """Combine two steps, and their motions, into one."""
-    _, *earlier = before
-    time, *later = step
-    sums = [a + b for a, b in zip(earlier, later, strict=True)]
-    return WheelStep(time, *sums), BodyMotion(*(a + b for a, b in zip(moved, motion, strict=True)))

@@ -9,6 +9,7 @@ usual interval: the mean over a thousand messages, in which late and early arriv
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass, field
 
@@ -56,6 +57,8 @@ class Pace:
     fastest: float = 0.0
     """Fastest recent turn rate of a wheel [turns/s]."""
     _newer: float = 0.0
+    _before: float = math.inf
+    """The shortest usual interval before a pause [s]."""
     _room: int = REMEMBERED
     """Number of speeds until only the `_newer` ones are remembered."""
 
@@ -68,11 +71,21 @@ class Pace:
         """Add the stamp of a message and the time since the last one [s]."""
         stamps = self._stamps
         if duration > PAUSE:
+            self._before = min(self._before, self.usual)
             self.usual = PAUSE
             self.begin(time)
         else:
             stamps.append(time)
             self.usual = (time - stamps[0]) / (len(stamps) - 1)
+
+    @property
+    def in_motion(self) -> float:
+        """The usual interval of messages that come again after a pause as they did before it [s].
+
+        The checks take a pause for usual at first, as a reset must not be missed. For a speed this
+        would be too long: of each message after a pause it would be the mean over the pause.
+        """
+        return min(self.usual, self._before)
 
     def see(self, rate: float) -> None:
         """Add the speed of the faster wheel [turns/s]."""

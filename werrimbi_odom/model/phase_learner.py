@@ -74,8 +74,13 @@ class PhaseLearner:
             self._meet()
 
     def see_rate(self, time: float, rate: float) -> None:
-        """Add a measured yaw rate [rad/s], integrated by the trapezoidal rule."""
+        """Add a measured yaw rate [rad/s], integrated by the trapezoidal rule.
+
+        One with the stamp of the last is the same, told again.
+        """
         if not (math.isfinite(time) and math.isfinite(rate)):
+            return
+        if self._rate is not None and time == self._rate[0]:
             return
         if self._rate is None or not 0.0 < time - self._rate[0] < 0.5:
             self.interrupt()

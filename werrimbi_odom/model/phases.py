@@ -191,6 +191,8 @@ def _phase(applied: AppliedEffect, index: int, solved: tuple[Floats, Floats] | N
     part = slice(2 * index, 2 * index + 2)
     cos, sin = solved[0][part].tolist()
     seen = math.hypot(cos, sin)
+    if seen == 0.0:  # its wheel stood still
+        return Phase(applied.name, name, 0.0, math.inf, 0.0)
     # Error perpendicular to the estimated vector. An estimated amplitude below the known one
     # increases the standard deviation in proportion.
     across = np.array([-sin, cos]) / seen

@@ -20,7 +20,7 @@ PieceKind = Literal["line", "arc", "spin"]
 LINE_TURN = 0.05
 """A line turns by at most this angle [rad] ..."""
 LINE_CURVATURE = 0.05
-"""... and its wheels differ by at most this share of their travel."""
+"""... and each wheel differs by at most this share from the mean travel of both."""
 SPIN_RADIUS = 0.05
 """Largest distance from the axle's midpoint to the centre of a spin, as a share of the track."""
 

@@ -26,6 +26,7 @@ from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reading_checks import Reading
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import Marching
+from werrimbi_odom.model.twist_interval import MovedStep
 from werrimbi_odom.model.uncertainty import Uncertainty
 from werrimbi_odom.model.wiring import Wiring
 
@@ -222,9 +223,10 @@ class QuickOdometer(Odometer):
         said, heard = self._said.tolist(), self._heard.tolist()
         self._piece = self._objects()
         self._time, self._counts, self._pose = heard[0], (heard[1], heard[2]), Pose(*said[7:10])
-        self._late = WheelStep(*said[:4]), BodyMotion(*said[4:7])
+        step = WheelStep(*said[:4])
+        self._interval.begin(MovedStep(step, BodyMotion(*said[4:7])))
         new = min(self._gone, int(heard[7]))
         stamps = np.roll(self._stamps, -int(heard[8]))[-new:]
-        self._encoder.have_stepped(self._late[0], Reading(*heard[:3]))
+        self._encoder.have_stepped(step, Reading(*heard[:3]))
         self._encoder.pace.have_seen(stamps, heard[3], heard[4], heard[5], int(heard[6]))
         self._gone = 0

@@ -68,8 +68,10 @@ class Turns:
 
 
 def _add(series: Series, stamp: float, value: float) -> None:
-    """Append a value; a stamp that goes back restarts the series."""
-    if series and stamp <= series[-1][0]:
+    """Append a value; a stamp that goes back restarts the series, one that stands adds nothing."""
+    if series and stamp == series[-1][0]:
+        return
+    if series and stamp < series[-1][0]:
         series.clear()
     series.append((stamp, value))
     while stamp - series[0][0] > KEPT:
@@ -148,7 +150,10 @@ class SlipGuard:
         """Add a heading by the wheels [rad]; return what to add to the pose's covariance."""
         self._turns.wheels(time, yaw)
         span = self._turns.span
-        if span is None or span[1] == self._seen:
+        if span is None:  # at first, and where a clock was set: what was apart before is not known
+            self._parted = None
+            return NOTHING
+        if span[1] == self._seen:
             return NOTHING
         begin, self._seen = span
         apart = self._turns.apart(self._seen)

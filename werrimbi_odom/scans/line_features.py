@@ -39,9 +39,9 @@ LEAST_REACH = 0.08
 """Least reach [m]: all cells that touch. With less an element chose echoes by their noise."""
 ENOUGH = 12.0
 """Echoes that are enough for half of that reach, if they make a line: an element then seldom takes
-in both sides of a cupboard's edge. Those that do turn as the robot passes, all in one sense. Along
-corridors paths were 1.3 mm/m too long for it (now 0.5), and legs of 1 m erred by 6.3 mm (now 4.1).
-With half of the reach throughout, a fast robot is lost among the far walls of a large room."""
+in both sides of a cupboard's edge. Those that do turn as the robot passes, all in one sense, and
+make paths along corridors too long. With half of the reach throughout, a fast robot is lost among
+the far walls of a large room."""
 FEWEST = 4
 """Least number of echoes of an element."""
 FLAT = 0.25

@@ -4,8 +4,8 @@
 
 The first pass deskews a scan by the lidar's own last motion, and so leans a little to it. The
 second deskews it by the smoothed path of the first, some scans before and after it, on a map of its
-own, and the third by that of the second: what is left of any guess is then gone. (By two passes
-poses were ahead of the truth by 0.4 ms where the robot turned; a fourth changes nothing.) Each
+own, and the third by that of the second: what is left of any guess is then gone. (Poses of two
+passes are still a little ahead of the truth where the robot turns; a fourth changes nothing.) Each
 follows the one before by some scans, so that neither scans nor maps are kept: memory does not grow
 with the drive.
 """

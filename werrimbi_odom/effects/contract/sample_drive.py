@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.drive import Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
-from werrimbi_odom.model.drive_of_run import drive_of_run, with_wheels_of_messages
+from werrimbi_odom.model.drive_of_run import drive_of_run
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats, Pose
 
@@ -95,9 +95,8 @@ class Rehearsal:
             track=TRACK,
             first_angles=FIRST_ANGLES,
             channels=self.measured,
+            message=self.message,
         )
-        if self.message is not None:
-            drive = with_wheels_of_messages(drive, self.message)
         x, y = self._places()
         moved = displacement(motion, drive.heading.start)
         return drive.with_place(x, y, moved)

@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
+from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
@@ -319,12 +319,12 @@ def _drive_of(run: MatchedRun, messages: _Messages, robot: Robot, wiring: Wiring
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    drive = features(robot, np.diff(run.time), raw, first_counts, run.channels)
-    speeds = None
+    rims = None
     if messages.rates is not None:
         left, right = wiring.wheels(*messages.rates)
-        speeds = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    return with_wheels_of_messages(drive, messages.of_step, speeds)
+        rims = WheelTravel(left * robot.left_tick, right * robot.right_tick)
+    duration, message = np.diff(run.time), messages.of_step
+    return features(robot, duration, raw, first_counts, run.channels, message, rims)
 
 
 def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:

@@ -18,7 +18,8 @@ class ProposedManoeuvre:
     """The next thing to do, to know more."""
 
     name: str
-    """A name in `werrimbi_odom.simulation`, `remount_reference`, `turn_by_hand` or `push`."""
+    """A manoeuvre of `library`; or a work by hand, as the twins declare it (`Twin.manoeuvre`), or
+    `push_by_hand`."""
     why: str
     """One plain sentence."""
     do: str

@@ -66,7 +66,7 @@ def pace_of(runs: Concatenated, robot: Robot) -> DrivingLimits:
 def rates_of(runs: Concatenated) -> tuple[float, float]:
     """Median time between two messages of the ticks, and between two poses of the reference [s].
 
-    Infinite for a reference with two or three poses in a drive.
+    Infinite for a reference with two to four poses in a drive (`TAPED_INTERVALS`).
     """
     ticks = np.concatenate([np.diff(run.counters.time) for run in runs.runs])
     poses = [

@@ -233,7 +233,7 @@ def _size(apart: Floats) -> str:
         millimetres = float(f"{1e3 * position:.2g}")
         parts.append(f"{millimetres:g} mm" if position < 0.1 else f"{position:.2g} m")
     if heading > rules.APART_HEADING:
-        parts.append(f"{heading:.2g}°")
+        parts.append(f"{float(f'{heading:.2g}'):g}°")
     return (" and ".join(parts) or "little, again and again") + " on a short leg"
 
 
