@@ -112,6 +112,7 @@ def test_odometry_is_that_of_the_command(drives: Path, tmp_path: Path) -> None:
     np.testing.assert_array_equal(found.covariance[:, 0, 0], table["xx"])
 
 
+@pytest.mark.evidence
 def test_sums_are_made_by_one_thread(drives: Path) -> None:
     """As on the command line; also in a process that has loaded no scipy yet."""
     looks = (

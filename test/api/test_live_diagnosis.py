@@ -25,6 +25,7 @@ def driven(robot: WhiteNoiseRobot, name: str, seed: int, seconds: float) -> Run:
     return replace(drive(robot, wandering(rng, seconds), rng), name=name, path=Path(name))
 
 
+@pytest.mark.evidence
 @pytest.mark.usefixtures("few_effects")
 def test_what_set_in_is_told_by_the_younger_half_alone(tmp_path: Path) -> None:
     """All of it is unknown, or a mean of two robots."""

@@ -134,6 +134,7 @@ def test_a_message_that_comes_twice_is_one_scan(tmp_path: Path, ros: Any, robot:
     assert "not matched" not in " ".join(read_run(bag, robot()).notes)
 
 
+@pytest.mark.evidence
 def test_a_pose_is_no_surer_along_a_corridor_than_it_is(
     tmp_path: Path, ros: Any, robot: Any
 ) -> None:
@@ -292,6 +293,7 @@ def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
     assert np.isnan(np.asarray(measured.x, dtype=float)).sum() == 1, "drawn in two pieces"
 
 
+@pytest.mark.evidence
 def test_a_gyros_headings_are_laid_upon_each_piece(tmp_path: Path, ros: Any, robot: Any) -> None:
     """The scans of 2 s are missing; the gyro drifts by 3 degrees a second all the time."""
     seen, kept = sweeps(), (sweeps().time < 4.0) | (sweeps().time > 6.0)
@@ -317,6 +319,7 @@ def test_a_gyros_headings_are_laid_upon_each_piece(tmp_path: Path, ros: Any, rob
     np.testing.assert_array_equal(both.x, run.reference.x)
 
 
+@pytest.mark.evidence
 def test_scans_are_taken_where_they_are_asked_for(tmp_path: Path, ros: Any, robot: Any) -> None:
     """A bag with a gyro is read as ever; who wants the scans says so."""
     held = entries(ros, sweeps())

@@ -70,6 +70,7 @@ def test_a_size_is_stated_no_finer_than_its_law() -> None:
         assert 0.028 * value < each.std < 0.06 * value
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("turning", [0.4, in_evidence(1.0)])
 def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(
     turning: float,

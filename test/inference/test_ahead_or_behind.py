@@ -56,6 +56,7 @@ def ahead(found: Diagnosis) -> float:
     return next(item.values["x"] for item in found.robot.effects)
 
 
+@pytest.mark.evidence
 def test_circles_tell_the_distance_and_not_the_side() -> None:
     """At a marker on the axle the score is blind: a base and a load were named, for certain."""
     found = diagnosed(CIRCLES)
@@ -67,6 +68,7 @@ def test_circles_tell_the_distance_and_not_the_side() -> None:
     assert json_of(found, None)["ahead_or_behind"] is True
 
 
+@pytest.mark.evidence
 def test_add_tells_that_the_side_is_open() -> None:
     """It wrote one sign, as certain as any."""
     runs = [driven(parts, seed) for seed, parts in enumerate(CIRCLES)]

@@ -128,6 +128,7 @@ def test_the_place_is_learnt_where_the_height_is_known(height: float) -> None:
     assert all(apart(a, b) < 0.2 for a, b in zip(places, PLACES, strict=True))
 
 
+@pytest.mark.evidence
 def test_a_bump_is_named_and_an_axle_off_its_centre_is_none() -> None:
     waves = [f"{kind}_{side}_wheel" for kind in ("eccentric", "oval") for side in ("left", "right")]
     effects = common("left_tread_bump", "right_tread_bump", *waves)
@@ -165,6 +166,7 @@ def test_it_is_named_and_lasts() -> None:
     assert homogeneity_of_effect(laid, best.tried[0], "reference_gyro_drift") < rules.SURE
 
 
+@pytest.mark.evidence
 def test_what_a_bias_that_settles_leaves_is_the_law_s_and_no_other_effect() -> None:
     """It was *unknown*, or a reference askew: the rates, each drive's own, counted as none."""
     runs = []

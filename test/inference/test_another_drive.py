@@ -188,6 +188,7 @@ LARGEST = 1e7
 """No number of the data above is larger: a reference of kilometres in mm."""
 
 
+@pytest.mark.evidence
 @settings(max_examples=3, deadline=None, phases=[Phase.generate])
 @given(st.integers(0, 10**6), ANYTHING.filter(lambda kind: kind != "huge"), ANYTHING,
        st.sampled_from([poses, headings, positions]))  # fmt: skip

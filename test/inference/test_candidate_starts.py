@@ -207,6 +207,7 @@ def coarsely_counted(seed: int) -> Run:
     return Run(f"coarse_{seed}", Path(f"coarse_{seed}"), ticks, reference)
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("first", [0, in_evidence(6)])
 def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
     """Twenty counts a turn: the score at null ended 4 ms from none, and slip was named instead."""
@@ -217,6 +218,7 @@ def test_steps_of_a_coarse_counter_do_not_hide_a_delay(first: int) -> None:
     assert late.values["delay"] == pytest.approx(0.02, abs=0.006)  # a message takes 10 ms
 
 
+@pytest.mark.evidence
 def test_what_extends_a_delay_costs_no_more_than_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a late reference the drift of its clock was fitted, in a minimum of its own, 48 dearer."""
     seen: list[Fitted] = []

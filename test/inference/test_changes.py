@@ -231,6 +231,7 @@ def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
     assert moved.p_value < 1e-6
 
 
+@pytest.mark.evidence
 def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
     """No heading tells the robot's scale: its levels were of no size, which physics refused."""
     runs = [parts(run, "yaw") for run in session(-0.01)]
@@ -250,6 +251,7 @@ def test_a_gyro_alone_tells_a_wheel_that_was_exchanged() -> None:
     assert ratio.level_std[-1] < 1e-3
 
 
+@pytest.mark.evidence
 def test_a_gyro_alone_does_not_tell_a_base_that_changed_from_both_wheels() -> None:
     random = np.random.default_rng(12)
     runs = []
@@ -265,6 +267,7 @@ def test_a_gyro_alone_does_not_tell_a_base_that_changed_from_both_wheels() -> No
     assert "both wheels, or the base, or the gyro's own scale" in words
 
 
+@pytest.mark.evidence
 def test_clocks_that_stand_otherwise_in_each_drive_are_told() -> None:
     """Recordings that were begun by hand: 0, 30 and 60 ms came out as slip or as *unknown*."""
     late = (0.0, 0.03, 0.06)
@@ -279,6 +282,7 @@ def test_clocks_that_stand_otherwise_in_each_drive_are_told() -> None:
     assert levels == pytest.approx(late, abs=0.004)
 
 
+@pytest.mark.evidence
 def test_an_askew_mount_that_changed_is_told_by_the_one_name_that_the_file_has() -> None:
     """Beside its twin its angle was 0.16 ± 0.13 rad before and 0.15 ± 0.13 rad after."""
     runs = session(0.0, count=4)

@@ -50,6 +50,7 @@ def rms(values: list[np.ndarray]) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
+@pytest.mark.evidence
 def test_where_the_model_holds_nothing_is_widened() -> None:
     fits = [calibrated(seed, nothing) for seed in range(100, 116)]
     assert all((fit.widening == 1.0).all() for fit in fits)

@@ -80,6 +80,7 @@ def driven(
     return robot, runs
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("counts", [20, in_evidence(40)])
 def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     """Legs that were cut at the steps of the counters told 9 mm of backlash, for certain."""
@@ -90,6 +91,7 @@ def test_a_late_clock_is_no_backlash(tmp_path: Path, counts: int) -> None:
     assert values_of(found, "reference_delay")["delay"].value == pytest.approx(LATE, rel=0.15)
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("counts", [100, in_evidence(60)])
 def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
     """Accelerations of single messages are of the counters' steps: a late clock explained more."""
@@ -184,6 +186,7 @@ def _speed(counters: Counters) -> Floats:
     return np.asarray(drive.found("left_smooth_speed").end)
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("counts", [60, 200])
 def test_counts_hide_no_noise_of_the_reference(tmp_path: Path, counts: int) -> None:
     """Half of it was told, and a sound robot's covariance said to be too small (NEES 1.6)."""

@@ -70,6 +70,7 @@ def test_95_percent_intervals_hold_in_93_to_97_percent_of_400_calibrations() -> 
     assert not outside
 
 
+@pytest.mark.evidence
 def test_intervals_hold_the_truth_of_a_few_additions() -> None:
     """Of 50 numbers or so chance leaves out more than 8 once in a thousand times."""
     found = [simulated_cases.deviations(seed) for seed in range(2000, 2008)]

@@ -40,6 +40,7 @@ EARLY, DRIFT = 0.07, 0.025
 """Of the headings [s], and of all positions along x, for each metre driven."""
 
 
+@pytest.mark.evidence
 def test_a_mount_a_clock_and_a_drift_are_found_in_one_short_drive(tmp_path: Path) -> None:
     """A student's robot under motion capture: 70 s, and nothing of its reference is right.
 
@@ -92,6 +93,7 @@ def test_the_more_important_is_told_first_though_half_of_its_law_is_not_determin
     assert found.final.importance["radius_by_channel"] > 1e3
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("after", [in_evidence(0.0), 1.0])
 def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_another(
     after: float,
@@ -132,6 +134,7 @@ def test_what_stood_in_for_another_is_dropped_when_that_is_found() -> None:
     assert [tried.names for tried in only.tried] == [("castor_swing",)]
 
 
+@pytest.mark.evidence
 def test_what_two_do_together_is_not_beyond_the_library() -> None:
     """Squares by a marker that is askew and ahead of the axle: sideways with the rate of turning.
 

@@ -162,6 +162,7 @@ def test_a_push_of_five_times_the_noise_is_told_and_left_out(
     assert "it was pushed" not in said
 
 
+@pytest.mark.evidence
 def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: Drives) -> None:
     """Fits leave an event out, and errors count it: who drove there by odometry was off by it."""
     runs, robot = sound

@@ -133,6 +133,7 @@ def test_a_length_that_they_do_not_hold_is_no_number(first: Diagnosis, kick: Add
     assert figures["value"] is figures["std"] is None
 
 
+@pytest.mark.evidence
 def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     runs: list[Run], first: Diagnosis
 ) -> None:
@@ -149,6 +150,7 @@ def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     assert json_of(later, None)["rivals_of_held"] == {first.rivals[0]: list(others)}
 
 
+@pytest.mark.evidence
 def test_what_is_found_beside_another_thing_has_its_rivals_too(
     runs: list[Run], first: Diagnosis
 ) -> None:

@@ -42,6 +42,7 @@ def test_what_happened_once_does_not_lead_away_from_a_file_that_is_right() -> No
     assert not fit.calibrated, "no size is news"
 
 
+@pytest.mark.evidence
 @with_recordings
 def test_of_a_file_whose_base_was_found_the_late_clock_comes_first() -> None:
     """The Labyrinth's robot after its own advice: its wheels exchanged, its base twice as wide.

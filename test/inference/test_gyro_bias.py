@@ -124,6 +124,7 @@ def test_a_robot_that_veers_at_one_speed_is_no_gyro_that_drifts() -> None:
     assert legs.figures.rmse_yaw_rad * legs.figures.count == pytest.approx(veered, rel=0.1)
 
 
+@pytest.mark.evidence
 def test_rests_at_the_ends_tell_which_wheel_is_larger() -> None:
     found = diagnose([veering(100)], ROBOT, LIBRARY, INCREMENTAL)
     assert found.found[:1] == ("unequal_wheel_radii",)

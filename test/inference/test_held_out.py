@@ -58,6 +58,7 @@ def plain(runs: list[Run]) -> Diagnosis:
     return diagnosed(runs[:3], runs[3:])
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("spoil", [late, in_evidence(swapped)])
 def test_held_out_drives_recorded_otherwise_change_nothing_that_is_found(
     runs: list[Run], plain: Diagnosis, spoil: Spoilt
@@ -123,6 +124,7 @@ def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
 FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("seed", [19, in_evidence(22)])
 def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     """A clock off by 0.6 s, exchanged wheels and half a base, in 22 s of positions of 3 cm.

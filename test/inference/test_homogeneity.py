@@ -114,6 +114,7 @@ def test_it_lasts_beside_a_reference_that_wanders() -> None:
     assert min(p_value for name, _, p_value in found if name == "warmth") < 1e-3
 
 
+@pytest.mark.evidence
 def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
     *train, held = [driven(seed, wanders, f"drive_{seed}") for seed in range(60, 64)]
     effects = common("floor_slope", "anisotropic_floor", "reference_gyro_drift", "oval_left_wheel")
@@ -122,6 +123,7 @@ def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
     assert (found.verdict, found.found) == ("none", ())
 
 
+@pytest.mark.evidence
 def test_what_one_drive_alone_shows_is_no_law_of_the_robot() -> None:
     hot = [driven(seed, nothing, f"drive_{seed}") for seed in range(71, 74)]
     hot.append(driven(74, nothing, "hot", hotter=0.02))
@@ -365,6 +367,7 @@ def test_a_law_of_the_turn_on_straight_drives_is_the_rounding_of_the_counts(
     assert told.p_value == 1.0, "and is nothing that a wheel does"
 
 
+@pytest.mark.evidence
 def test_axes_that_begin_anew_have_no_common_direction() -> None:
     """A path by scans begins at its first scan: a slope is none that two drives could show."""
 

@@ -188,6 +188,7 @@ def toy_drive(seed: int) -> Run:
     )
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("seed", [1, *(in_evidence(seed) for seed in (2, 3))])
 def test_a_toy_robot_s_sizes_are_found_whatever_its_messages_wait_for(seed: int) -> None:
     found = diagnose([toy_drive(seed)], TOY, LIBRARY)

@@ -117,6 +117,7 @@ def test_of_one_square_a_late_gyro_is_named(seed: int) -> None:
     assert values["reference_delay"]["delay"] == pytest.approx(0.06, abs=0.004)
 
 
+@pytest.mark.evidence
 def test_a_late_clock_that_drifts_is_one_effect() -> None:
     """The mean delay was told as a mistake, and the drift beside it: both were added."""
     starts, rates = (0.55, 0.6, 0.7), (1e-3, -5e-4, 2e-3)

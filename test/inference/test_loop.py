@@ -110,6 +110,7 @@ def test_what_is_found_is_added_and_nothing_more_is_named(
     assert loop.second.verdict == "none"
 
 
+@pytest.mark.evidence
 def test_what_does_not_earn_its_place_is_refused_by_name() -> None:
     truth = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.02),))
     runs = driven(truth, (1, 2, 3), seconds=60)
@@ -162,6 +163,7 @@ def _law(form: int) -> Effect:
     return soft_tyres
 
 
+@pytest.mark.evidence
 def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     truth = replace(PLAIN, effects=(_law(2).using(softness=0.2),))
     runs = driven(truth, (1, 2, 3), seconds=60)

@@ -91,7 +91,7 @@ def figures(statistics: LegStatistics) -> list[float]:
     return [statistics.rmse_position_m, statistics.median_position_m, statistics.rmse_yaw_rad]
 
 
-QUICK = ("headings alone", "jumps", "increments with gaps")
+QUICK = ("headings alone", "increments with gaps")
 """Of each unit and each cause of what is left out one; all of them in `make evidence`."""
 
 
@@ -202,6 +202,7 @@ def _written_robot(path: Path, base: float = 1.0, effect: Effect | None = None) 
     return path
 
 
+@pytest.mark.evidence
 def test_the_files_say_the_same_by_every_verb(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -257,6 +258,7 @@ def reeling(run: Run) -> Run:
     return replace(run, reference=replace(reference, x=place.real, y=place.imag, yaw=yaw))
 
 
+@pytest.mark.evidence
 def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

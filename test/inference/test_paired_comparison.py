@@ -44,6 +44,7 @@ def share_that_rises(legs: Legs, differing: np.ndarray | float) -> float:
     return rose / count
 
 
+@pytest.mark.evidence
 def test_two_models_that_err_alike_differ_beyond_chance_as_seldom_as_the_rule_says(
     legs: Legs,
 ) -> None:
@@ -51,6 +52,7 @@ def test_two_models_that_err_alike_differ_beyond_chance_as_seldom_as_the_rule_sa
     assert rules.SURE_WHEN_ASKED / 5 < share < 2.5 * rules.SURE_WHEN_ASKED
 
 
+@pytest.mark.evidence
 def test_two_models_that_differ_on_a_few_legs_alone_do_not_differ_beyond_chance_either(
     legs: Legs,
 ) -> None:

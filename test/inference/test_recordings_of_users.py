@@ -107,6 +107,7 @@ def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: f
     assert found.robot.wheel_separation_multiplier == pytest.approx(true, rel=0.003)
 
 
+@pytest.mark.evidence
 def test_the_rival_that_headings_alone_leave_is_told_with_the_inverse() -> None:
     """Of headings alone the radii are the base's rival: "multiplier 1 ± 6e-12" was printed."""
     runs = [

@@ -121,6 +121,7 @@ def test_the_rest_of_a_law_is_no_sign_of_an_effect_that_the_parts_do_not_show(
     assert diagnosis._chosen(this, RUNS) == (None, rest)
 
 
+@pytest.mark.evidence
 def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path: Path) -> None:
     """Ten messages a second know an acceleration half a message late: creep was named beside it."""
     pytest.importorskip("mujoco", reason="drives need the physics engine (pip install mujoco)")
@@ -141,6 +142,7 @@ def test_a_force_of_starts_that_rare_messages_blur_is_no_second_effect(tmp_path:
     assert found.robot.effects[-1].values["coefficient"] == pytest.approx(0.08, rel=0.15)
 
 
+@pytest.mark.evidence
 def test_a_law_of_both_tyres_alike_has_no_part_in_what_has_one_side(tmp_path: Path) -> None:
     """A counter that is read late was held for the form of a slip; errors stayed a fifth too high.
 

@@ -165,6 +165,7 @@ def test_two_mistakes_at_once_are_both_found(session: list[Run]) -> None:
     }
 
 
+@pytest.mark.evidence
 def test_millimetres_are_told_beside_half_a_base_and_swapped_wheels(session: list[Run]) -> None:
     mistakes = WIRING["swapped"], SIZES["base 2"], REFERENCE["millimetres"]
     found = both(*mistakes)([without_yaw(run) for run in session])
@@ -349,6 +350,7 @@ def test_two_poses_a_drive_name_the_commonest(session: list[Run], name: str) -> 
     assert found([two_poses(run) for run in session], NOMINAL, mistake).findings
 
 
+@pytest.mark.evidence
 def test_drives_there_and_back_make_no_set_up_likelier(session: list[Run]) -> None:
     """They end where they began with any wheels; one that spins was told of lost counts."""
     random = np.random.default_rng(1046)

@@ -70,6 +70,7 @@ def test_it_is_named_with_its_numbers_and_no_mistake_is_told() -> None:
     assert "nothing is entered wrongly" in words
 
 
+@pytest.mark.evidence
 def test_a_gyro_tells_its_multiplier_and_nothing_of_its_point() -> None:
     found = diagnosed(FOUR_WHEELS, headings_alone=True)
     assert (found.verdict, found.found) == ("named", ("skid_steer",))
@@ -96,6 +97,7 @@ def test_four_driven_wheels_have_no_castor() -> None:
     assert "castor_kick" not in of_four
 
 
+@pytest.mark.evidence
 def test_whoever_asks_for_it_gets_it_and_no_other_number_moves() -> None:
     runs = [drive(number) for number in (1, 2, 3)]
     added = add_effects([find("skid_steer")], runs[:2], ROBOT, holdout=runs[2:])

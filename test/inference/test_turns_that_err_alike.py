@@ -93,6 +93,7 @@ def test_three_arcs_are_too_few_to_name_an_effect(seed: int, effects: Sequence[E
     assert "reference_delay" in found.found
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("seed", [0, in_evidence(1)])
 def test_what_the_arcs_of_many_drives_have_in_common_is_named(seed: int) -> None:
     found = diagnosed(seed, 8, 0.07)

@@ -66,6 +66,7 @@ def covered(calibrations: int, runs: int, seed: int) -> dict[str, float]:
     return {name: count / calibrations for name, count in inside.items()}
 
 
+@pytest.mark.evidence
 def test_calibrations_hold_the_truth_in_their_error_bars() -> None:
     for share in covered(200, 5, seed=1).values():
         assert 0.90 <= share <= 0.99

@@ -56,6 +56,7 @@ def test_what_is_really_wrong_is_named_beside_it() -> None:
     assert wide.found == ("track_width",)
 
 
+@pytest.mark.evidence
 def test_a_mount_askew_is_not_taken_for_wander() -> None:
     """The wander, fitted without it, grows and lasts until it is most of that angle."""
     turned = [
@@ -70,6 +71,7 @@ def test_a_mount_askew_is_not_taken_for_wander() -> None:
     assert found.found
 
 
+@pytest.mark.evidence
 def test_motion_capture_that_errs_alike_is_no_unknown_law() -> None:
     """Here it was one of the distance: errors that are alike go with something by chance."""
     drives = [
@@ -81,6 +83,7 @@ def test_motion_capture_that_errs_alike_is_no_unknown_law() -> None:
     assert found.wander is not None
 
 
+@pytest.mark.evidence
 def test_motion_capture_that_errs_alike_for_seconds_is_told() -> None:
     """By a fifth of what a camera's map does, which is no more than the noise of its poses."""
     drives = [
@@ -95,6 +98,7 @@ def test_motion_capture_that_errs_alike_for_seconds_is_told() -> None:
     assert not found.left.not_white, "what was alike is told"
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("hotter", [0.0, 0.02])
 def test_independent_errors_stay_absolute_whatever_the_library_lacks(hotter: float) -> None:
     *drives, apart = [

@@ -99,6 +99,7 @@ def test_an_error_that_lasts_is_not_called_white() -> None:
     assert found.left.not_white
 
 
+@pytest.mark.evidence
 def test_with_a_wander_that_is_told_what_is_left_is_white() -> None:
     runs = with_headings_that_wander(0.7)
     found = diagnosed(runs[:2], runs[2:])

@@ -58,6 +58,7 @@ def found(robot: wo.RobotFile) -> Result[AdvisedDiagnosis]:
     return wo.diagnose(robot, on_a_circle())
 
 
+@pytest.mark.evidence
 def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(
     found: Result[AdvisedDiagnosis],
 ) -> None:
@@ -69,6 +70,7 @@ def test_a_bump_is_a_larger_wheel_until_legs_are_shorter_than_a_turn(
     assert size["value"] == pytest.approx(2.0e-3, abs=3.0 * size["std"])
 
 
+@pytest.mark.evidence
 def test_the_printed_command_keeps_those_legs_and_what_is_left_is_noise(
     found: Result[AdvisedDiagnosis], robot: wo.RobotFile, tmp_path: Path
 ) -> None:

@@ -124,6 +124,7 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
     return float(np.mean(found)), guard.times
 
 
+@pytest.mark.evidence
 def test_over_an_oil_stain_the_covariance_is_honest_again() -> None:
     plain, _ = nees(4, 0.1, watched=False)
     watched, times = nees(4, 0.1, watched=True)

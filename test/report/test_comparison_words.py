@@ -242,6 +242,7 @@ def test_the_longest_stretches_are_told_in_their_order() -> None:
     assert rest == "So are 3 more such stretches, 1.5 s in all."
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("name", "size"),
     [in_evidence("floor_slope", 0.005), ("lateral_slip", 0.004)],

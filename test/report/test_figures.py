@@ -157,6 +157,7 @@ def points_and_marks(figure: Any) -> tuple[int, int]:
     return points, marks
 
 
+@pytest.mark.evidence
 def test_every_leg_is_counted_and_few_are_drawn() -> None:
     """A quarter of an hour: more legs than a mark each is worth, all in the means."""
     found = compare([eccentric_run("long", 5, 15.0)], PLAIN, EvaluationOptions(leg=0.05))

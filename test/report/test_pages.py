@@ -82,6 +82,7 @@ def test_no_rule_of_axe_is_broken_and_one_that_were_would_be_seen(
     assert any(words.startswith("button-name") for words in broken), "the rules are really asked"
 
 
+@pytest.mark.evidence
 def test_no_rule_is_broken_by_a_diagnosis_in_the_dark_on_a_telephone(
     page: Page, look: Look
 ) -> None:

@@ -151,6 +151,7 @@ def test_a_perfect_reference_with_the_usual_sigmas_is_said_to_be_a_reason() -> N
     assert "or reference_sigma_xy and _yaw larger than the reference's noise" in words
 
 
+@pytest.mark.evidence
 def test_an_honest_window_is_seldom_called_dishonest() -> None:
     """Over 600 legs, a window of 20 that slides."""
     honest = 0

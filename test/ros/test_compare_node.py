@@ -195,6 +195,7 @@ def play(launched: Any, run: Any, compare: Comparing) -> None:
     compare.verdict()
 
 
+@pytest.mark.evidence
 def test_an_honest_covariance_is_said_to_be_so(launch: Any, compare: Any) -> None:
     launched = launch(robot_file())
     comparing = compare(launched)

@@ -151,6 +151,7 @@ def test_the_default_process_noise_drowns_everything() -> None:
     assert math.sqrt(covariance[0, 0]) > 100.0 * truth[:, 0].std()
 
 
+@pytest.mark.evidence
 def test_at_high_rates_quantisation_makes_the_filter_too_careful() -> None:
     estimates, truth = drive(200.0)
     assert nees(*filtered(estimates, our_noise()), truth) < 0.3

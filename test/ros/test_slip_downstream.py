@@ -147,6 +147,7 @@ FLOORS: dict[str, list[Peculiarity]] = {
 }
 
 
+@pytest.mark.evidence
 def test_a_filter_downstream_is_told_of_slip() -> None:
     floor = FLOORS["30 % on a stain"]
     plain, watched = (followed(floor, 4, watched=each, seconds=20.0) for each in (False, True))

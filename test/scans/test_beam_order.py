@@ -67,7 +67,7 @@ def matched(sweeps: Iterable[Sweep], matcher: AnyOrder | ScanMatcher) -> AnyOrde
     ("stated", "order"),
     [
         in_evidence(list, "stated"),
-        (backwards, "last to first"),
+        in_evidence(backwards, "last to first"),
         in_evidence(backwards_in_time, "stated"),
         (at_once, "first to last"),
     ],
@@ -85,6 +85,7 @@ def test_the_walls_tell_which_way(lidar: Lidar, stated: object, order: Order) ->
     assert max(rms(found.legs()[0])) < (2.5 if lidar is not POOR else 5.0)
 
 
+@pytest.mark.evidence
 def test_a_clockwise_lidar_of_no_times_is_found_too() -> None:
     _, given = driven(Lidar(), people=True)
     matcher = AnyOrder()
@@ -95,6 +96,7 @@ def test_a_clockwise_lidar_of_no_times_is_found_too() -> None:
     assert matcher.order == "last to first"
 
 
+@pytest.mark.evidence
 def test_one_short_turn_overrules_no_driver() -> None:
     """Its scans share one swing of the map; a carried robot's have reversed a correct lidar so."""
     _, given = driven(Lidar())
@@ -104,6 +106,7 @@ def test_one_short_turn_overrules_no_driver() -> None:
     assert matcher.order == "stated"
 
 
+@pytest.mark.evidence
 def test_deskewed_the_wrong_way_legs_are_several_times_as_far_off() -> None:
     """What is at stake: more than not to deskew at all."""
     sweeps, given = driven(Lidar())
@@ -112,6 +115,7 @@ def test_deskewed_the_wrong_way_legs_are_several_times_as_far_off() -> None:
     assert max(rms(Matched(path, sweeps.truth[rows], sweeps).legs()[0])) > 10.0
 
 
+@pytest.mark.evidence
 def test_where_all_beams_are_seen_at_once_so_it_stays() -> None:
     _, given = driven(Lidar(rotates=False))
     matcher = matched(given, AnyOrder())

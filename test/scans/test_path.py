@@ -42,6 +42,7 @@ def test_a_metre_in_a_room(beams: int) -> None:
     assert 0.8 < nees.mean() < 1.5
 
 
+@pytest.mark.evidence
 def test_what_all_echoes_of_a_scan_err_together_is_read_off_the_drive() -> None:
     """A lidar whose turns begin at an angle that jitters by 4 mrad: no match can see it.
 
@@ -59,6 +60,7 @@ def test_what_all_echoes_of_a_scan_err_together_is_read_off_the_drive() -> None:
     assert np.sqrt(np.median(found.covariances[:, 2, 2])) > 3e-3
 
 
+@pytest.mark.evidence
 def test_starts_and_stops_are_no_noise_of_the_lidar() -> None:
     """Its course has corners then; taken for noise they made poses half as sure as they are."""
     found = matched(hops(16.0), rooms.living_room(), Lidar())
@@ -66,6 +68,7 @@ def test_starts_and_stops_are_no_noise_of_the_lidar() -> None:
     assert 0.7 < found.steps()[1].mean() < 1.5
 
 
+@pytest.mark.evidence
 def test_walls_that_are_no_lines_leave_poses_as_sure_as_they_say() -> None:
     """Vertices every 6 cm, 4 mm beside the wall, and a fine lidar.
 
@@ -119,6 +122,7 @@ def turning_hard(path: TruePath, time: np.ndarray) -> np.ndarray:
     return changing > 0.0
 
 
+@pytest.mark.evidence
 def test_a_brisk_robot_is_as_sure_as_it_says() -> None:
     """Starts of up to 6 rad/s^2 have no course that is smooth for longer than half a second."""
     path = brisk(30.0, seed=4)
@@ -127,6 +131,7 @@ def test_a_brisk_robot_is_as_sure_as_it_says() -> None:
     assert 0.8 < found.legs(0.25)[1].mean() < 1.25
 
 
+@pytest.mark.evidence
 def test_where_turning_begins_and_ends_a_scan_is_deskewed_by_its_own_course() -> None:
     """With a parabola through five poses steps erred by more than stated (NEES 1.5 and more)."""
     path = brisk(30.0, seed=9)
@@ -134,6 +139,7 @@ def test_where_turning_begins_and_ends_a_scan_is_deskewed_by_its_own_course() ->
     assert np.mean(found.steps()[1][turning_hard(path, found.path.time)]) < 1.35
 
 
+@pytest.mark.evidence
 def test_in_turning_poses_are_not_ahead_of_the_truth() -> None:
     """Where the first pass deskewed by the motion before alone, by 0.45 ms over three scans."""
     clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0)
@@ -150,6 +156,7 @@ def test_in_turning_poses_are_not_ahead_of_the_truth() -> None:
     assert abs(ahead) < 0.15e-3
 
 
+@pytest.mark.evidence
 def test_far_walls_with_cupboards_before_them_do_not_let_the_path_walk() -> None:
     """Elements of 1.2 m took in wall and cupboard: 5.5 mm in 2 m, in place of 3.6 mm."""
     path = brisk(30.0, seed=6)
@@ -159,6 +166,7 @@ def test_far_walls_with_cupboards_before_them_do_not_let_the_path_walk() -> None
     assert heading < 1.1
 
 
+@pytest.mark.evidence
 def test_cupboards_edges_do_not_pull_the_map() -> None:
     """Their elements take in both sides. Counted as all others: 1.9 mm in 5 m, in place of 1.0."""
     fine = Lidar(noise=3e-3, noise_share=2e-3)
@@ -166,6 +174,7 @@ def test_cupboards_edges_do_not_pull_the_map() -> None:
     assert rms(found.legs(5.0)[0])[0] < 1.4
 
 
+@pytest.mark.evidence
 def test_cupboards_hold_the_robot_along_a_corridor() -> None:
     """By the ratio to the direction across, a limit of 0.03 rejected 12 matches of 299."""
     found = matched(ahead(30.0), rooms.corridor_with_cupboards(seed=5), Lidar(), seed=5)
@@ -187,6 +196,7 @@ def test_along_a_corridor_poses_are_as_sure_as_they_say() -> None:
     assert 0.6 < np.mean(np.square(error) / variance) < 1.5
 
 
+@pytest.mark.evidence
 def test_a_robot_that_turns_while_the_lidar_turns_is_deskewed() -> None:
     """Lines of a room are bent by 0.1 rad a turn; without deskewing legs are 9 to 17 mrad off."""
     turning = matched(in_circles(15.0), rooms.living_room(), Lidar())
@@ -213,6 +223,7 @@ def test_where_scans_do_not_hold_the_robot_there_are_no_poses(room: Room, why: s
     assert max(found.path.flags, key=lambda each: found.path.flags[each]) == why
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("beams", [360, in_evidence(720)])
 def test_a_lidar_of_poor_ranges_and_close_beams_sees_lines_too(beams: int) -> None:
     """As a TurtleBot3's LDS-01. A line between three beams to each side would be noise alone."""
@@ -261,6 +272,7 @@ def test_a_path_is_cut_where_the_robot_is_carried_and_never_bridged() -> None:
     assert heading < 2.5
 
 
+@pytest.mark.evidence
 def test_a_door_that_opens_and_a_pane_of_glass_cost_little() -> None:
     """2 m of a wall are a door that opens, or a pane that three beams of ten see."""
     lidar, path, glass = Lidar(), in_circles(12.0), rooms.living_room_with_glass()

@@ -19,6 +19,7 @@ from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.reference_remarks import transform_to_mend
 
 
+@pytest.mark.evidence
 def test_of_a_wrong_transform_it_is_said_what_it_should_be(tmp_path: Path) -> None:
     """The lidar of `LIDAR`, by a transform that is off by 20 mm and 30 mrad."""
     true = LIDAR.mount

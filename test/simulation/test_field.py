@@ -126,6 +126,7 @@ def test_the_bag_holds_what_was_seen(bag: Path) -> None:
     assert frames == {("map", "odom"), ("odom", "base_link")}
 
 
+@pytest.mark.evidence
 def test_its_scans_tell_by_their_receipt_that_their_clock_is_that_of_the_wheels(
     tmp_path: Path,
 ) -> None:
