@@ -140,7 +140,8 @@ def test_wheels_that_stand_are_told_before_any_work() -> None:
         diagnosed(replace(run, ticks=stood))
     # To a reference that is exact to the last digit, no leg has any variance.
     assert run.reference is not None
-    still = replace(run.reference, x=0 * run.reference.x, y=0 * run.reference.y)
+    nowhere = 0 * run.reference.x
+    still = replace(run.reference, x=nowhere, y=nowhere, yaw=nowhere)
     with pytest.raises(InputError, match="the wheels stood all the time"):
         compare([replace(run, ticks=stood, reference=still)], ROBOT)
 

@@ -45,7 +45,7 @@ def test_a_spin_that_the_gyro_denies_makes_the_heading_unsure(
     assert values["slip"] == "0 times, 0.0 deg missed"
     assert spin(0.0) == pytest.approx(0.36, rel=0.1)
     _, _, values = node.report()
-    assert values["slip"].startswith("1 times, 3")
+    assert values["slip"].startswith("1 time, 3")
 
 
 def test_a_gyro_without_stamps_is_taken_as_it_comes(launch: Any, robot: dict[str, Any]) -> None:
@@ -58,6 +58,6 @@ def test_a_gyro_without_stamps_is_taken_as_it_comes(launch: Any, robot: dict[str
         node.rest(0.02)
     node.rest(1.0)
     _, _, values = node.report()
-    times, _, missed = values["slip"].partition(" times, ")
+    times, _, missed = values["slip"].partition(" time, ")
     assert times == "1"
     assert float(missed.split()[0]) == pytest.approx(34.5, abs=6.0)

@@ -147,10 +147,10 @@ def compare(
     `runs`: recorded runs. `robot`: a `Model` has its own per-run values (phases, start headings).
     Those missing from a robot file are estimated in each run. `options`: leg length and what is
     known of the reference. `show`: progress callback. InputError if a run has no usable reference
-    or no ticks, or if the wheels stood still in all of them.
+    or no ticks, or if neither it nor the wheels ever move.
     """
     own = robot.robot if isinstance(robot, Model) else robot
-    refuse_standing(runs)
+    refuse_standing(runs, carried=True)
     prepared = prepare(runs, own, options, show=lambda share, words: show(0.5 * share, words))
     return judged(prepared, robot, show=lambda share, words: show(0.5 + 0.5 * share, words))
 

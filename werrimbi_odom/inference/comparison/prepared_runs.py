@@ -130,11 +130,17 @@ def prepare(
     return PreparedRuns(robot, options, tuple(runs), groups, cuts, parts)
 
 
-def refuse_standing(runs: Sequence[Run]) -> None:
-    """Check that a wheel of some drive turned; InputError if none did."""
+def refuse_standing(runs: Sequence[Run], *, carried: bool = False) -> None:
+    """Check that a wheel of some drive turned; InputError if none did.
+
+    `carried`: a reference that moved will do, of a robot that was carried.
+    """
     for run in runs:
-        counts = np.stack([run.ticks.left, run.ticks.right])
-        if np.any(np.nanmax(counts, axis=1) > np.nanmin(counts, axis=1)):
+        moved = [run.ticks.left, run.ticks.right]
+        if carried and run.reference is not None:
+            moved += [run.reference.x, run.reference.y, run.reference.yaw]
+        known = [values[np.isfinite(values)] for values in moved]
+        if any(values.size > 0 and values.max() > values.min() for values in known):
             return
     names = ", ".join(str(run.path) for run in runs)
     raise InputError(
