@@ -26,6 +26,7 @@ from scipy.ndimage import (
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import fisher_survival
+from werrimbi_odom.inference.legs.lost_messages import lost_messages
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -53,7 +54,7 @@ def with_even_stamps(
         return time
     number = np.arange(float(stamps.size))
     number[1:] += np.cumsum(
-        _lost_messages(stamps, left[first], right[first]) if lost is None else lost[first[1:]]
+        lost_messages(stamps, left[first], right[first]) if lost is None else lost[first[1:]]
     )
     if not _by_timer(stamps, number, left[first], right[first]):
         return time
@@ -161,43 +162,6 @@ def _steps(left: Counts, right: Counts) -> tuple[Floats, Floats]:
     step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
     wide = np.pad(step, 2, mode="edge")
     return step, 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
-
-
-def _lost_messages(stamps: Floats, left: Counts, right: Counts) -> NDArray[np.intp]:
-    """Count messages of a timer that are missing between neighbours, (n - 1,).
-
-    However many are missing, the rest come at whole periods of the timer. Without those that are
-    lost, an even timer would seem to err by half a period beside each hole. A message that waited
-    is a period late by itself, whereas all that follow a lost one are. A timer that loses its pace
-    now and then seems to lose messages too, but no travel is more in these intervals.
-    """
-    rows = np.arange(stamps.size)
-    usual = _numbered(stamps, rows.astype(np.float64))[1]
-    none = np.zeros(stamps.size - 1, dtype=np.intp)
-    count = stamps.size // rules.EVEN_WINDOW
-    if count < rules.EVEN_WINDOWS or usual <= 0.0:
-        return none
-    windows = stamps[: count * rules.EVEN_WINDOW].reshape(count, -1)
-    since = windows - windows[:, :1]
-    finely = 0.25 / rules.EVEN_WINDOW
-    rates = np.arange(1.0 - 4.0 * finely, 1.0 + rules.EVEN_MOST_LOST, finely) / usual
-    # Mean resultant length of the stamps as angles of the timer: 1 if even, 0 if anywhere.
-    angle, further = (np.exp(2j * np.pi * rate * since) for rate in (rates[0], finely / usual))
-    even = []
-    for _ in rates:
-        even.append(np.abs(angle.mean(axis=1)).mean())
-        angle *= further
-    if max(even) < rules.EVEN_KNOWN:
-        return none
-    turns = rates[np.argmax(even)] * (stamps - stamps[0])
-    phase = uniform_filter1d(np.exp(2j * np.pi * turns), rules.EVEN_WINDOW, mode="reflect")
-    number = np.rint(turns - np.unwrap(np.angle(phase)) / (2.0 * np.pi)).astype(np.intp)
-    missed = median_filter(number - rows, rules.EVEN_BESIDE, mode="nearest")
-    lost = np.asarray(np.diff(np.maximum.accumulate(missed)))
-    step, beside = _steps(left, right)
-    seen = (lost > 0) & np.isfinite(step) & np.isfinite(beside)
-    expected = float(np.sum((beside * (1 + lost))[seen]))
-    return none if float(np.sum(step[seen])) < rules.EVEN_TRAVEL * expected else lost
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
