@@ -58,14 +58,22 @@ def with_even_stamps(
     )
     if not _by_timer(stamps, number, left[first], right[first]):
         return time
-    even, period = _numbered(stamps, number)
-    if float(np.std(stamps - even)) > rules.EVEN_SPREAD * period:
+    queued = _queued(stamps, number)
+    if not _read_before(stamps, left[first], right[first], queued > 0.0):
+        queued = np.zeros_like(stamps)
+    even, period = _numbered(stamps - queued, number)
+    off = stamps - queued - even
+    if float(np.std(off)) > rules.EVEN_SPREAD * period:
         return time
-    queued = _queued(even - period * number, period)
-    if _read_before(stamps, left[first], right[first], queued > 0.0, period):
-        even = even - queued
+    # Delays of their own scatter intervals by root 2 as much. If what is put right is more, the
+    # numbers have errors that are larger than the delays.
+    if np.std(off) > np.std(np.diff(off)):
+        return time
     tenth = 0.1 * period * number  # keeps readings in order
-    read = (np.maximum.accumulate(even - tenth) + tenth)[row]
+    read = np.maximum.accumulate(even - tenth) + tenth
+    if not _by_timer(stamps, read, left[first], right[first]):
+        return time
+    read = read[row]
     return np.asarray(read) if np.std(read - time) > least * period else time
 
 
@@ -80,8 +88,8 @@ def stamped_together(run: Run) -> bool:
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     number = np.arange(float(seen.size))
-    even, period = _numbered(seen, number)
-    own = seen - even + _queued(even - period * number, period)
+    queued = _queued(seen, number)
+    own = seen - _numbered(seen - queued, number)[0]
     seldom, often = (time, seen) if seen.size > time.size else (seen, time)
     # What has nothing in common is a quarter of an interval from the nearest.
     chance = min(np.std(late), 0.25 * np.median(np.diff(often)))
@@ -179,8 +187,7 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
 
 def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
     """Send times of messages that a timer sends, from their numbers [s], and the timer's period."""
-    apart = number[rules.EVEN_WINDOW :] - number[: -rules.EVEN_WINDOW]
-    period = float(np.median((stamps[rules.EVEN_WINDOW :] - stamps[: -rules.EVEN_WINDOW]) / apart))
+    period = _period(stamps, number)
     even = period * number
     late = median_filter(
         stamps - even, rules.EVEN_WINDOW, mode="reflect"
@@ -209,29 +216,56 @@ def _keeps_pace(off: Floats) -> bool:
     return chance > rules.SURE_WHEN_ASKED
 
 
-def _queued(late: Floats, period: float) -> Floats:
+def _period(stamps: Floats, number: Floats) -> float:
+    """Period of a timer that sends numbered messages [s]."""
+    apart = number[rules.EVEN_WINDOW :] - number[: -rules.EVEN_WINDOW]
+    return float(np.median((stamps[rules.EVEN_WINDOW :] - stamps[: -rules.EVEN_WINDOW]) / apart))
+
+
+def _queued(stamps: Floats, number: Floats) -> Floats:
     """How long messages waited in a queue, (n,), from what they are late by a timer's pace [s].
 
     A timer that pauses is late ever after. What is made up for later was a queue, and the timer is
-    as late as the least late of the messages that follow.
+    as late as the least late of the messages that follow. They are so because the queue was sent at
+    once: what ends by a number that is left out was counted wrong.
     """
+    period = _period(stamps, number)
+    late = stamps - period * number
+    usual = median_filter(late, rules.EVEN_WINDOW, mode="nearest")
     behind = -(rules.EVEN_QUEUE // 2)
-    soonest = minimum_filter1d(late, rules.EVEN_QUEUE, mode="nearest", origin=behind)
-    wait = late - np.minimum(soonest, late)
+    soonest = minimum_filter1d(usual, rules.EVEN_QUEUE, mode="nearest", origin=behind)
+    wait = np.maximum(late - soonest, 0.0)
     clear = wait > period
-    return np.where(binary_propagation(clear, mask=wait > rules.EVEN_QUEUED * period), wait, 0.0)
+    inside = binary_propagation(clear, mask=wait > rules.EVEN_QUEUED * period)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], inside])))
+    if edges.size % 2:  # where the record ends, nothing is made up for
+        inside[edges[-1] :] = False
+        edges = edges[:-1]
+    if not edges.size:
+        return np.zeros_like(late)
+    begin, end = edges[::2], edges[1::2]
+    most = np.repeat(np.maximum.reduceat(wait, edges)[::2], end - begin)
+    rows = np.flatnonzero(inside)
+    long = np.zeros(late.size, dtype=np.intp)
+    long[rows] = np.where(wait[rows] > 0.5 * most, rows, 0)
+    last = np.maximum.reduceat(long, edges)[::2]
+    at_once = stamps[end] - stamps[last] < rules.EVEN_AT_ONCE * period * (end - last)
+    waits = np.zeros_like(late)
+    waits[rows] = np.where(np.repeat(at_once, end - begin), wait[rows], 0.0)
+    return waits
 
 
 def _read_before(
-    stamps: Floats, left: Counts, right: Counts, queued: NDArray[np.bool_], period: float
+    stamps: Floats, left: Counts, right: Counts, queued: NDArray[np.bool_]
 ) -> bool:
     """Whether messages of a queue were read before they came, each a period after the last.
 
-    Then they tell as much travel where they come at once as where they queue up. A program that
-    reads late, and often to catch up, finds next to none.
+    Then they tell as much travel where they come at once as where they queue up, or where nothing
+    came. A program that reads late, and often to catch up, finds next to none.
     """
-    inside = queued[1:] & queued[:-1]
-    quick = np.diff(stamps) < rules.EVEN_AT_ONCE * period
+    inside = queued[1:] | queued[:-1]
+    interval = np.diff(stamps)
+    quick = interval < rules.EVEN_AT_ONCE * np.median(interval)
     step = np.nan_to_num(_steps(left, right)[0])
     at_once, usual = (step[inside & part] for part in (quick, ~quick))
     if not at_once.size or not usual.any():

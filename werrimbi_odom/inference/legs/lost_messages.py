@@ -112,30 +112,31 @@ def _likeliest(late: Floats, rough: Floats, ways: Floats) -> NDArray[np.intp]:
     parts = -(-late.size // length)
     late = late - np.median(late - np.rint(late))
 
-    def side_by_side(values: Floats) -> Floats:
+    def side_by_side(values: Floats) -> NDArray[np.float32]:
         wide = np.concatenate([values, np.zeros(parts * length - values.size)])
-        return np.ascontiguousarray(wide.reshape(parts, length).T)
+        return np.ascontiguousarray(wide.reshape(parts, length).T, dtype=np.float32)
 
-    tried = np.arange(-_SIDE, _SIDE + 1)
-    shift = tried[None, :] - tried[:, None]
+    tried = np.arange(-_SIDE, _SIDE + 1, dtype=np.float32)
+    shift = (tried[None, :] - tried[:, None])[:, :, None]
     places = side_by_side(late)
     holes = side_by_side(np.append(0.0, np.diff(rough)))
     gone, least, most = (side_by_side(np.append(0.0, way)) for way in ways)
-    path = np.where(np.eye(tried.size) > 0, 0.0, np.full((parts, tried.size, tried.size), np.inf))
-    back = np.empty((length, parts, tried.size, tried.size), dtype=np.int8)
+    # Axes: number at the begin of a part, number before a row, number at it, part.
+    path = np.full((tried.size, tried.size, parts), np.inf, dtype=np.float32)
+    path[np.arange(tried.size), np.arange(tried.size)] = 0.0
+    back = np.empty((length, tried.size, tried.size, parts), dtype=np.int8)
     for row in range(length):
-        lost = holes[row][:, None, None] + shift
-        step, low, high = (way[row][:, None, None] for way in (gone, least, most))
-        off = np.maximum((1.0 + lost) * low - step, step - (1.0 + lost) * high)
+        lost = holes[row] + shift
+        off = np.maximum((1.0 + lost) * least[row] - gone[row], gone[row] - (1.0 + lost) * most[row])
         price = np.clip(off, 0.0, rules.EVEN_UNLIKELY) + rules.EVEN_LOSS * (lost > 0.0)
         price[lost < 0.0] = np.inf
-        total = path[:, :, :, None] + price[:, None, :, :]
-        back[row] = total.argmin(axis=2)
-        off = np.abs(places[row][:, None] - tried) / scale
-        path = total.min(axis=2) + np.minimum(off, rules.EVEN_UNLIKELY)[:, None, :]
+        total = path[:, :, None, :] + price
+        back[row] = total.argmin(axis=1)
+        off = np.abs(places[row] - tried[:, None]) / scale
+        path = total.min(axis=1) + np.minimum(off, rules.EVEN_UNLIKELY)
     best, begins = np.zeros(tried.size), np.empty((parts, tried.size), dtype=np.intp)
     for part in range(parts):
-        total = best[:, None] + path[part]
+        total = best[:, None] + path[:, :, part]
         begins[part], best = total.argmin(axis=0), total.min(axis=0)
     begin, end = (np.empty(parts, dtype=np.intp) for _ in range(2))
     last = int(best.argmin())
@@ -146,5 +147,5 @@ def _likeliest(late: Floats, rough: Floats, ways: Floats) -> NDArray[np.intp]:
     every = np.arange(parts)
     for row in range(length)[::-1]:
         found[row] = tried[end]
-        end = back[row, every, begin, end].astype(np.intp)
+        end = back[row, begin, end, every].astype(np.intp)
     return np.asarray(np.rint(rough).astype(np.intp) + found.T.ravel()[: late.size])
