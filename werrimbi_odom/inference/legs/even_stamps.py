@@ -16,17 +16,18 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import (
-    binary_propagation,
-    median_filter,
-    minimum_filter1d,
-    uniform_filter1d,
-)
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.inference.legs.lost_messages import lost_messages
+from werrimbi_odom.inference.legs.queued_messages import (
+    period_of,
+    queued_messages,
+    read_before,
+    steps_and_beside,
+)
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -58,15 +59,16 @@ def with_even_stamps(
     )
     if not _by_timer(stamps, number, left[first], right[first]):
         return time
-    queued = _queued(stamps, number)
-    if not _read_before(stamps, left[first], right[first], queued > 0.0):
+    queued = queued_messages(stamps, number)
+    if not read_before(stamps, left[first], right[first], queued > 0.0):
         queued = np.zeros_like(stamps)
     even, period = _numbered(stamps - queued, number)
     off = stamps - queued - even
     if float(np.std(off)) > rules.EVEN_SPREAD * period:
         return time
-    # Delays of their own scatter intervals by root 2 as much. If what is put right is more, the
-    # numbers have errors that are larger than the delays.
+    # Delays of their own scatter intervals by root 2 as much. If what is put right is more, numbers
+    # are wrong by more than the delays. A queue that does not end is no more than a wrong number.
+    off = np.clip(off, -period, period)
     if np.std(off) > np.std(np.diff(off)):
         return time
     tenth = 0.1 * period * number  # keeps readings in order
@@ -88,7 +90,7 @@ def stamped_together(run: Run) -> bool:
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     number = np.arange(float(seen.size))
-    queued = _queued(seen, number)
+    queued = queued_messages(seen, number)
     own = seen - _numbered(seen - queued, number)[0]
     seldom, often = (time, seen) if seen.size > time.size else (seen, time)
     # What has nothing in common is a quarter of an interval from the nearest.
@@ -158,18 +160,11 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
 def _lost_scans(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     """Count missing scans: holes in which the robot moves several times a neighbouring step."""
     interval = np.diff(time)
-    step, beside = _steps(left, right)
+    step, beside = steps_and_beside(left, right)
     drives = beside > 0.5 * float(np.median(step))
     times = np.divide(step, beside, out=np.ones_like(step), where=drives)
     holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
     return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
-
-
-def _steps(left: Counts, right: Counts) -> tuple[Floats, Floats]:
-    """Travel of each step, and that of the steps beside it, (n - 1,) each."""
-    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
-    wide = np.pad(step, 2, mode="edge")
-    return step, 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
@@ -187,7 +182,7 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
 
 def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
     """Send times of messages that a timer sends, from their numbers [s], and the timer's period."""
-    period = _period(stamps, number)
+    period = period_of(stamps, number)
     even = period * number
     late = median_filter(
         stamps - even, rules.EVEN_WINDOW, mode="reflect"
@@ -214,63 +209,6 @@ def _keeps_pace(off: Floats) -> bool:
     spare = count * (rules.EVEN_WINDOW - 1)
     chance = fisher_survival(between / max(within, 1e-30), count - 2, spare)
     return chance > rules.SURE_WHEN_ASKED
-
-
-def _period(stamps: Floats, number: Floats) -> float:
-    """Period of a timer that sends numbered messages [s]."""
-    apart = number[rules.EVEN_WINDOW :] - number[: -rules.EVEN_WINDOW]
-    return float(np.median((stamps[rules.EVEN_WINDOW :] - stamps[: -rules.EVEN_WINDOW]) / apart))
-
-
-def _queued(stamps: Floats, number: Floats) -> Floats:
-    """How long messages waited in a queue, (n,), from what they are late by a timer's pace [s].
-
-    A timer that pauses is late ever after. What is made up for later was a queue, and the timer is
-    as late as the least late of the messages that follow. They are so because the queue was sent at
-    once: what ends by a number that is left out was counted wrong.
-    """
-    period = _period(stamps, number)
-    late = stamps - period * number
-    usual = median_filter(late, rules.EVEN_WINDOW, mode="nearest")
-    behind = -(rules.EVEN_QUEUE // 2)
-    soonest = minimum_filter1d(usual, rules.EVEN_QUEUE, mode="nearest", origin=behind)
-    wait = np.maximum(late - soonest, 0.0)
-    clear = wait > period
-    inside = binary_propagation(clear, mask=wait > rules.EVEN_QUEUED * period)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], inside])))
-    if edges.size % 2:  # where the record ends, nothing is made up for
-        inside[edges[-1] :] = False
-        edges = edges[:-1]
-    if not edges.size:
-        return np.zeros_like(late)
-    begin, end = edges[::2], edges[1::2]
-    most = np.repeat(np.maximum.reduceat(wait, edges)[::2], end - begin)
-    rows = np.flatnonzero(inside)
-    long = np.zeros(late.size, dtype=np.intp)
-    long[rows] = np.where(wait[rows] > 0.5 * most, rows, 0)
-    last = np.maximum.reduceat(long, edges)[::2]
-    at_once = stamps[end] - stamps[last] < rules.EVEN_AT_ONCE * period * (end - last)
-    waits = np.zeros_like(late)
-    waits[rows] = np.where(np.repeat(at_once, end - begin), wait[rows], 0.0)
-    return waits
-
-
-def _read_before(
-    stamps: Floats, left: Counts, right: Counts, queued: NDArray[np.bool_]
-) -> bool:
-    """Whether messages of a queue were read before they came, each a period after the last.
-
-    Then they tell as much travel where they come at once as where they queue up, or where nothing
-    came. A program that reads late, and often to catch up, finds next to none.
-    """
-    inside = queued[1:] | queued[:-1]
-    interval = np.diff(stamps)
-    quick = interval < rules.EVEN_AT_ONCE * np.median(interval)
-    step = np.nan_to_num(_steps(left, right)[0])
-    at_once, usual = (step[inside & part] for part in (quick, ~quick))
-    if not at_once.size or not usual.any():
-        return False
-    return bool(np.mean(at_once) > (1.0 - rules.EVEN_SHARE) * np.mean(usual))
 
 
 def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool:

@@ -18,9 +18,6 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
-_SIDE = 2
-"""Numbers on either side of the rough one that are tried: a band, as time must stay linear."""
-
 
 def lost_messages(stamps: Floats, left: Counts, right: Counts) -> NDArray[np.intp]:
     """Count messages of a timer that are missing between neighbours, (n - 1,).
@@ -43,8 +40,8 @@ def lost_messages(stamps: Floats, left: Counts, right: Counts) -> NDArray[np.int
     lost = np.asarray(np.diff(_likeliest(more - rough, rough, ways)))
     step, least, most = ways
     # In a pause of the timer all seem lost, beyond the band in which travel has a say.
-    in_band = lost <= 2 * _SIDE
-    lost[~in_band & (step < 2.0 * most)] = 0
+    in_band = lost <= 2 * rules.EVEN_BAND
+    lost[~in_band & (step < rules.EVEN_HOLE * most)] = 0
     counted = in_band & (lost > 0)
     expected = float(np.sum((0.5 * (least + most) * (1 + lost))[counted]))
     return none if float(np.sum(step[counted])) < rules.EVEN_TRAVEL * expected else lost
@@ -116,7 +113,7 @@ def _likeliest(late: Floats, rough: Floats, ways: Floats) -> NDArray[np.intp]:
         wide = np.concatenate([values, np.zeros(parts * length - values.size)])
         return np.ascontiguousarray(wide.reshape(parts, length).T, dtype=np.float32)
 
-    tried = np.arange(-_SIDE, _SIDE + 1, dtype=np.float32)
+    tried = np.arange(-rules.EVEN_BAND, rules.EVEN_BAND + 1, dtype=np.float32)
     shift = (tried[None, :] - tried[:, None])[:, :, None]
     places = side_by_side(late)
     holes = side_by_side(np.append(0.0, np.diff(rough)))
@@ -127,7 +124,9 @@ def _likeliest(late: Floats, rough: Floats, ways: Floats) -> NDArray[np.intp]:
     back = np.empty((length, tried.size, tried.size, parts), dtype=np.int8)
     for row in range(length):
         lost = holes[row] + shift
-        off = np.maximum((1.0 + lost) * least[row] - gone[row], gone[row] - (1.0 + lost) * most[row])
+        off = np.maximum(
+            (1.0 + lost) * least[row] - gone[row], gone[row] - (1.0 + lost) * most[row]
+        )
         price = np.clip(off, 0.0, rules.EVEN_UNLIKELY) + rules.EVEN_LOSS * (lost > 0.0)
         price[lost < 0.0] = np.inf
         total = path[:, :, None, :] + price
