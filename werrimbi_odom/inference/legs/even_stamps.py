@@ -67,7 +67,7 @@ def with_even_stamps(
     if float(np.std(off)) > rules.EVEN_SPREAD * period:
         return time
     # Delays of their own scatter intervals by root 2 as much. If what is put right is more, numbers
-    # are wrong by more than the delays. A queue that does not end is no more than a wrong number.
+    # are wrong by more than the delays; each by a period, whereas a queue without an end is longer.
     off = np.clip(off, -period, period)
     if np.std(off) > np.std(np.diff(off)):
         return time

@@ -78,8 +78,9 @@ def _place(stamps: Floats) -> Floats | None:
 def _ways(left: Counts, right: Counts) -> Floats:
     """Travel of each step, and the least and most that one period has by the steps beside it.
 
-    They are those before and after: wheels may speed up or brake meanwhile. In multiples of what
-    steps are off by, (3, n - 1); zeros where nothing is known.
+    They are those before and after, each the median of three, of which one may have a loss itself:
+    wheels may speed up or brake meanwhile. In multiples of what steps are off by, (3, n - 1); zeros
+    where nothing is known.
     """
     step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right))).astype(np.float64)
     known = np.isfinite(step)

@@ -199,8 +199,8 @@ EVEN_KNOWN, EVEN_WINDOWS, EVEN_BESIDE = 0.25, 4, 5
 """Mean resultant length of the stamps, as angles of the timer, from which on lost messages are
 counted by them: of stamps anywhere 51 make 0.12, of a normal scatter of a quarter of a period 0.3,
 and one such stamp in twenty is nearer to another period. Windows of stamps for which it is a mean:
-of four, chance does not reach 0.25. And messages of which the median roughly tells the period, and
-steps of which it tells the travel: two that waited, or were lost, do not matter."""
+of four, chance does not reach 0.25. And messages of which the median roughly tells the period: two
+that waited do not matter."""
 
 EVEN_LOSS, EVEN_UNLIKELY = 5.0, 7.0
 """Minus the logarithm of the chance that messages are lost before a given one: one in 150, between
