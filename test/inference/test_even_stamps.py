@@ -14,7 +14,7 @@ from test.inference.driven import of_headings
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.even_stamps import (
-    _lost_messages,
+    lost_messages,
     stamped_together,
     with_even_scan_stamps,
     with_even_stamps,
@@ -191,7 +191,7 @@ def test_a_timer_that_loses_its_pace_loses_no_messages() -> None:
     random = np.random.default_rng(8)
     waits = np.where(np.arange(4000) % 60 == 0, 0.6, 0.0)
     came = PERIOD * (np.arange(4000) + np.cumsum(waits) + random.normal(0.0, 0.1, 4000))
-    assert not _lost_messages(came, *driven(PERIOD * np.arange(4000))).any()
+    assert not lost_messages(came, *driven(PERIOD * np.arange(4000))).any()
 
 
 def test_a_gyro_that_comes_twice_as_often_in_the_same_packets_is_seen_to() -> None:

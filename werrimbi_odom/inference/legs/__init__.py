@@ -4,5 +4,6 @@
 
 Reading order: `cutting` (the legs) with `aligned_run` and `matched_run`, `gaps`, `held_or_carried`
 (held and carried robots) with `agreement`, `displacement_agreement` and `measured_motion`,
-`even_stamps` (stamps of arrival put right), `counter_jumps` (counters that leap).
+`even_stamps` (stamps of arrival put right) with `lost_messages` and `queued_messages`,
+`counter_jumps` (counters that leap).
 """

@@ -16,16 +16,18 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import (
-    binary_propagation,
-    median_filter,
-    minimum_filter1d,
-    uniform_filter1d,
-)
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import fisher_survival
+from werrimbi_odom.inference.legs.lost_messages import lost_messages
+from werrimbi_odom.inference.legs.queued_messages import (
+    period_of,
+    queued_messages,
+    read_before,
+    steps_and_beside,
+)
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -53,18 +55,27 @@ def with_even_stamps(
         return time
     number = np.arange(float(stamps.size))
     number[1:] += np.cumsum(
-        _lost_messages(stamps, left[first], right[first]) if lost is None else lost[first[1:]]
+        lost_messages(stamps, left[first], right[first]) if lost is None else lost[first[1:]]
     )
     if not _by_timer(stamps, number, left[first], right[first]):
         return time
-    even, period = _numbered(stamps, number)
-    if float(np.std(stamps - even)) > rules.EVEN_SPREAD * period:
+    queued = queued_messages(stamps, number)
+    if not read_before(stamps, left[first], right[first], queued > 0.0):
+        queued = np.zeros_like(stamps)
+    even, period = _numbered(stamps - queued, number)
+    off = stamps - queued - even
+    if float(np.std(off)) > rules.EVEN_SPREAD * period:
         return time
-    queued = _queued(even - period * number, period)
-    if _read_before(stamps, left[first], right[first], queued > 0.0, period):
-        even = even - queued
+    # Delays of their own scatter intervals by root 2 as much. If what is put right is more, numbers
+    # are wrong by more than the delays; each by a period, whereas a queue without an end is longer.
+    off = np.clip(off, -period, period)
+    if np.std(off) > np.std(np.diff(off)):
+        return time
     tenth = 0.1 * period * number  # keeps readings in order
-    read = (np.maximum.accumulate(even - tenth) + tenth)[row]
+    read = np.maximum.accumulate(even - tenth) + tenth
+    if not _by_timer(stamps, read, left[first], right[first]):
+        return time
+    read = read[row]
     return np.asarray(read) if np.std(read - time) > least * period else time
 
 
@@ -79,8 +90,8 @@ def stamped_together(run: Run) -> bool:
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     number = np.arange(float(seen.size))
-    even, period = _numbered(seen, number)
-    own = seen - even + _queued(even - period * number, period)
+    queued = queued_messages(seen, number)
+    own = seen - _numbered(seen - queued, number)[0]
     seldom, often = (time, seen) if seen.size > time.size else (seen, time)
     # What has nothing in common is a quarter of an interval from the nearest.
     chance = min(np.std(late), 0.25 * np.median(np.diff(often)))
@@ -149,55 +160,11 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
 def _lost_scans(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     """Count missing scans: holes in which the robot moves several times a neighbouring step."""
     interval = np.diff(time)
-    step, beside = _steps(left, right)
+    step, beside = steps_and_beside(left, right)
     drives = beside > 0.5 * float(np.median(step))
     times = np.divide(step, beside, out=np.ones_like(step), where=drives)
     holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))
     return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
-
-
-def _steps(left: Counts, right: Counts) -> tuple[Floats, Floats]:
-    """Travel of each step, and that of the steps beside it, (n - 1,) each."""
-    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
-    wide = np.pad(step, 2, mode="edge")
-    return step, 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
-
-
-def _lost_messages(stamps: Floats, left: Counts, right: Counts) -> NDArray[np.intp]:
-    """Count messages of a timer that are missing between neighbours, (n - 1,).
-
-    However many are missing, the rest come at whole periods of the timer. Without those that are
-    lost, an even timer would seem to err by half a period beside each hole. A message that waited
-    is a period late by itself, whereas all that follow a lost one are. A timer that loses its pace
-    now and then seems to lose messages too, but no travel is more in these intervals.
-    """
-    rows = np.arange(stamps.size)
-    usual = _numbered(stamps, rows.astype(np.float64))[1]
-    none = np.zeros(stamps.size - 1, dtype=np.intp)
-    count = stamps.size // rules.EVEN_WINDOW
-    if count < rules.EVEN_WINDOWS or usual <= 0.0:
-        return none
-    windows = stamps[: count * rules.EVEN_WINDOW].reshape(count, -1)
-    since = windows - windows[:, :1]
-    finely = 0.25 / rules.EVEN_WINDOW
-    rates = np.arange(1.0 - 4.0 * finely, 1.0 + rules.EVEN_MOST_LOST, finely) / usual
-    # Mean resultant length of the stamps as angles of the timer: 1 if even, 0 if anywhere.
-    angle, further = (np.exp(2j * np.pi * rate * since) for rate in (rates[0], finely / usual))
-    even = []
-    for _ in rates:
-        even.append(np.abs(angle.mean(axis=1)).mean())
-        angle *= further
-    if max(even) < rules.EVEN_KNOWN:
-        return none
-    turns = rates[np.argmax(even)] * (stamps - stamps[0])
-    phase = uniform_filter1d(np.exp(2j * np.pi * turns), rules.EVEN_WINDOW, mode="reflect")
-    number = np.rint(turns - np.unwrap(np.angle(phase)) / (2.0 * np.pi)).astype(np.intp)
-    missed = median_filter(number - rows, rules.EVEN_BESIDE, mode="nearest")
-    lost = np.asarray(np.diff(np.maximum.accumulate(missed)))
-    step, beside = _steps(left, right)
-    seen = (lost > 0) & np.isfinite(step) & np.isfinite(beside)
-    expected = float(np.sum((beside * (1 + lost))[seen]))
-    return none if float(np.sum(step[seen])) < rules.EVEN_TRAVEL * expected else lost
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
@@ -215,8 +182,7 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
 
 def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
     """Send times of messages that a timer sends, from their numbers [s], and the timer's period."""
-    apart = number[rules.EVEN_WINDOW :] - number[: -rules.EVEN_WINDOW]
-    period = float(np.median((stamps[rules.EVEN_WINDOW :] - stamps[: -rules.EVEN_WINDOW]) / apart))
+    period = period_of(stamps, number)
     even = period * number
     late = median_filter(
         stamps - even, rules.EVEN_WINDOW, mode="reflect"
@@ -243,36 +209,6 @@ def _keeps_pace(off: Floats) -> bool:
     spare = count * (rules.EVEN_WINDOW - 1)
     chance = fisher_survival(between / max(within, 1e-30), count - 2, spare)
     return chance > rules.SURE_WHEN_ASKED
-
-
-def _queued(late: Floats, period: float) -> Floats:
-    """How long messages waited in a queue, (n,), from what they are late by a timer's pace [s].
-
-    A timer that pauses is late ever after. What is made up for later was a queue, and the timer is
-    as late as the least late of the messages that follow.
-    """
-    behind = -(rules.EVEN_QUEUE // 2)
-    soonest = minimum_filter1d(late, rules.EVEN_QUEUE, mode="nearest", origin=behind)
-    wait = late - np.minimum(soonest, late)
-    clear = wait > period
-    return np.where(binary_propagation(clear, mask=wait > rules.EVEN_QUEUED * period), wait, 0.0)
-
-
-def _read_before(
-    stamps: Floats, left: Counts, right: Counts, queued: NDArray[np.bool_], period: float
-) -> bool:
-    """Whether messages of a queue were read before they came, each a period after the last.
-
-    Then they tell as much travel where they come at once as where they queue up. A program that
-    reads late, and often to catch up, finds next to none.
-    """
-    inside = queued[1:] & queued[:-1]
-    quick = np.diff(stamps) < rules.EVEN_AT_ONCE * period
-    step = np.nan_to_num(_steps(left, right)[0])
-    at_once, usual = (step[inside & part] for part in (quick, ~quick))
-    if not at_once.size or not usual.any():
-        return False
-    return bool(np.mean(at_once) > (1.0 - rules.EVEN_SHARE) * np.mean(usual))
 
 
 def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool:

@@ -164,12 +164,13 @@ all messages tell it, and stamps are right to 2 / root n of the jitter: 0.2 ms o
 Hz. By windows alone they wandered by 0.75 ms, at each start and stop another: a reference whose
 stamps were even seemed to be of a clock that drifts (0.9 ms, 14 millionths), at 1e-4."""
 
-EVEN_QUEUE, EVEN_QUEUED, EVEN_AT_ONCE = 400, 0.25, 0.5
+EVEN_QUEUE, EVEN_QUEUED, EVEN_AT_ONCE, EVEN_IN_TIME = 400, 0.25, 0.5, 0.5
 """Most messages that wait in a queue, and still are put back. Chosen: some ten seconds of a busy
 computer; a period that is wrong by a thousandth is off by less than a half of itself over them. The
 wait from which one is in a queue that is a period long somewhere, in periods: less is the jitter of
-single stamps, which is evened as such. And the interval in which a queue empties, in periods: half
-way between messages at their own pace and at once."""
+single stamps, which is evened as such. The interval in which a queue empties, in periods: half way
+between messages at their own pace and at once. And what the message before a queue is late by those
+that follow it, in periods: half way between in time and a wrong number, by which all are late."""
 
 EVEN_SHARE, EVEN_SURE = 0.5, 3.0
 """Slope of the counts on the jitter of the stamps, up to which the timer is trusted in place of the
@@ -198,8 +199,18 @@ EVEN_KNOWN, EVEN_WINDOWS, EVEN_BESIDE = 0.25, 4, 5
 """Mean resultant length of the stamps, as angles of the timer, from which on lost messages are
 counted by them: of stamps anywhere 51 make 0.12, of a normal scatter of a quarter of a period 0.3,
 and one such stamp in twenty is nearer to another period. Windows of stamps for which it is a mean:
-of four, chance does not reach 0.25. And messages of which the median tells the period: two that
-waited do not matter."""
+of four, chance does not reach 0.25. And messages of which the median roughly tells the period: two
+that waited do not matter."""
+
+EVEN_LOSS, EVEN_UNLIKELY = 5.0, 7.0
+"""Minus the logarithm of the chance that messages are lost before a given one: one in 150, between
+good radios and bad ones. Delays and travel must tell more. And the most that a single message or
+step tells: one in a thousand (e^-7) waits in a queue, however long, or is counted across a stop or
+a wrap, of which the distribution of the others knows nothing."""
+
+EVEN_BAND = 2
+"""Numbers on either side of the rough one (a running median) among which the likeliest is looked
+for. Three late messages of five raise the median by one, at two places at once by two."""
 
 EVEN_MOST = 0.4
 """Largest correction of scan stamps (rms), as a share of a turn of the lidar. A delay that is
