@@ -107,7 +107,9 @@ def diagnose(
             found.runs, found.final, again.final, competing, of_a_law=law
         )
         if explained and (again.verdict == "none" or not nothing_left):
-            return replace(again, wander=wander_of(again.final.point.variances))
+            alone = again.runs.positions_alone
+            wander = wander_of(again.final.point.variances, positions_alone=alone)
+            return replace(again, wander=wander)
     return replace(found, happened=happened)
 
 

@@ -41,13 +41,18 @@ def wandering(diagnosis: Diagnosis) -> list[str]:
         return []
     return [
         "But: the reference is not absolute. Its error wanders, by "
-        f"{error_words(wander.place_in_a_second, 'm')} and "
-        f"{error_words(wander.heading_in_a_second, 'rad')} in a second, and by "
-        f"{error_words(wander.place, 'm')} and {error_words(wander.heading, 'rad')} in the long "
-        f"run (some {two_digits(wander.seconds)} s), as a localiser's does. That explains these "
-        "drives far better than poses that err one by one. So all of this is reckoned with it, as "
-        "by --reference-kind local_map; compare and add want that option too."
+        f"{_of_both(wander.place_in_a_second, wander.heading_in_a_second)} in a second, and by "
+        f"{_of_both(wander.place, wander.heading)} in the long run (some "
+        f"{two_digits(wander.seconds)} s), as a localiser's does. That explains these drives far "
+        "better than poses that err one by one. So all of this is reckoned with it, as by "
+        "--reference-kind local_map; compare and add want that option too."
     ]
+
+
+def _of_both(place: float, heading: float | None) -> str:
+    """Sizes of the errors of positions [m] and, where they were measured, of headings [rad]."""
+    sizes = [error_words(place, "m")]
+    return listed(sizes if heading is None else [*sizes, error_words(heading, "rad")])
 
 
 def not_shown(advised: AdvisedDiagnosis) -> list[str]:
