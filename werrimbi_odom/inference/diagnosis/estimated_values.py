@@ -233,8 +233,8 @@ def one_wheel(diagnosis: Diagnosis) -> str | None:
 def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
     """Effects that would help, but only at a value outside the physical bounds.
 
-    By name: the parameter at its bound, its value, its unit. Of the last round alone: an effect that
-    helps beside nothing may stand in for what is found later, and no more is asked of it then.
+    By name: the parameter at its bound, its value, its unit. Of the last round alone: an effect
+    that helps beside less may stand in for what is found later.
     """
     found: dict[str, tuple[str, float, str]] = {}
     this = diagnosis.rounds[-1]
