@@ -172,7 +172,7 @@ def _searched(
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, effects, set_up.robot)
-    old = outdated(fit, robot) if found.verdict == "none" else ()
+    old = outdated(fit, robot) if found.verdict == "none" and found.holdout.fell_much else ()
     either = ahead_or_behind(laid, fit, set_up.robot)
     found = replace(found, misfit=misfit, rivals_of_held=held, outdated=old, ahead_or_behind=either)
     return found, judge
