@@ -351,3 +351,11 @@ def test_what_helped_at_its_bound_before_the_arm_was_found_is_no_objection_to_th
     found.rounds = (last, first)
     [told] = at_bounds_told(found)
     assert "creep = -0.1 s" in told
+
+
+def test_of_twins_the_example_leaves_what_the_node_publishes() -> None:
+    """A marker askew and a robot that crabs are one to the reference."""
+    told: Any = SimpleNamespace(effect_named=find)
+    twins = ["sideways_drift", "reference_yaw_offset"]
+    assert words._to_try(told, twins) == words._to_try(told, twins[::-1]) == "reference_yaw_offset"
+    assert words._to_try(told, ["track_width"]) == "track_width"

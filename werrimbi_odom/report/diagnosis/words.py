@@ -238,7 +238,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
         )
     rest = [other for other in diagnosis.found if other not in rivals]
-    command = steps.add([rivals[0], *rest])
+    command = steps.add([_to_try(diagnosis, [rivals[0], *twins]), *rest])
     lines += ["Or, if you know which it is, add it, for example:", f"    {command}"]
     for name in rivals[:3]:
         lines += phrases.ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
@@ -246,6 +246,13 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += phrases.also(advised, other)
     return [*lines, *_remainder(advised)]
+
+
+def _to_try(diagnosis: Diagnosis, twins: Sequence[str]) -> str:
+    """The one of twins that leaves what the node publishes as it is; the first if none does."""
+    effects = map(diagnosis.effect_named, twins)
+    kept = [each.name for each in effects if each is not None and each.stage == "reference"]
+    return next(iter(kept), twins[0])
 
 
 def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
