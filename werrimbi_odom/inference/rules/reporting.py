@@ -27,6 +27,11 @@ UNUSUAL_PROMISE = 25.0
 """Variance of a leg in multiples of the median, five of its deviation, above which it is left out
 of the predicted error: it begins with an unknown heading (`UNKNOWN_HEADING`)."""
 
+MOVED_BY_ODOMETRY = 0.02
+"""Relative error of the base from which on a localiser, moved by this odometry, is told to err by
+it: AMCL turns by odometry for 0.2 rad until a scan corrects it, and 2 % of that are 4 mrad, twice
+the noise of a match (`TYPICAL_MATCH`)."""
+
 # ---------------------------------------------------------------------------- what is drafted
 
 DRAFTED_TOO = 0.8

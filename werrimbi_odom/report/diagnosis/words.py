@@ -195,6 +195,7 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
         *reference_remarks.or_the_reference_s_scale(diagnosis),
+        *reference_remarks.moved_by_its_odometry(diagnosis),
         *reference_remarks.transform_to_mend(diagnosis),
         *reference_remarks.not_shown(advised),
     ]
@@ -228,6 +229,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
     lines += reference_remarks.or_the_reference_s_scale(diagnosis)
+    lines += reference_remarks.moved_by_its_odometry(diagnosis)
     lines += reference_remarks.transform_to_mend(diagnosis)
     lines += phrases.cost(advised, rivals[0])
     if (move := advised.manoeuvre) is not None:
