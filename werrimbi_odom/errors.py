@@ -12,6 +12,10 @@ class InputError(ValueError):
     """An input is not usable; the message names the place and the remedy."""
 
 
+class TooFewLegsError(InputError):
+    """Drives that were measured at too few places for a diagnosis."""
+
+
 def nearest(name: str, known: Sequence[str]) -> str:
     """Suggest the closest known name, as the end of a message; "" if none is close."""
     within = [item for item in known if name in item]

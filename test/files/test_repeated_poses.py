@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -148,3 +149,33 @@ def test_it_is_said_once_for_all_runs() -> None:
     told = words_about_held([run, lost, lost])
     assert told is not None
     assert told.startswith(f"drive and 1 more: 20 of {2 * run.reference.time.size} reference poses")
+
+
+@pytest.mark.parametrize("lacking", [(), ("x", "y"), ("yaw",)])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_counter_that_counts_backwards_makes_no_spin_of_a_line(
+    side: str, lacking: tuple[str, ...]
+) -> None:
+    """A heading that repeats while the robot drives straight on: "held, not measured"."""
+    run = straight()
+    nothing = np.full(run.reference.time.size, np.nan)
+    run = replace(run, reference=replace(run.reference, **dict.fromkeys(lacking, nothing)))
+    wrong = replace(run, ticks=replace(run.ticks, **{side: -getattr(run.ticks, side)}))
+    assert not held_poses(wrong, ROBOT).any()
+    lost = replace(wrong, reference=held(wrong.reference, 60, 80))
+    np.testing.assert_array_equal(
+        held_poses(lost, ROBOT), held_poses(replace(lost, ticks=run.ticks), ROBOT)
+    )
+
+
+def straight() -> Run:
+    """Lines of 10 s, by a simulator that knows no noise, with spins and curves between."""
+    time = np.arange(0.0, 60.0, 0.1)
+    spins = time % 15.0 >= 10.0
+    way = np.cumsum(np.where(spins & (time % 15.0 < 14.0), 0.0, 0.03))
+    yaw = np.cumsum(np.where(spins, 0.05, 0.0))
+    step = np.diff(way, prepend=0.0) * np.exp(1j * yaw)
+    place = np.cumsum(step)
+    left, right = way - 0.5 * ROBOT.track * yaw, way + 0.5 * ROBOT.track * yaw
+    counts = Ticks(time, left / ROBOT.left_tick, right / ROBOT.right_tick)
+    return Run("lines", Path("lines"), counts, Reference(time, place.real, place.imag, yaw))

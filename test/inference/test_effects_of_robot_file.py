@@ -15,6 +15,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.diagnosis.effects_of_robot_file import outdated
 from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
@@ -59,6 +60,17 @@ def test_a_wrong_value_is_told_and_mended_by_the_printed_command(runs: list[Run]
     assert told["parameters"]["creep"]["value"] == pytest.approx(0.04, abs=3e-3)
     mended = add_effects([SLIP], runs[:2], holding(0.02), holdout=runs[2:]).robot
     assert diagnosed(runs, mended).outdated == ()
+
+
+def test_a_value_that_is_known_better_now_is_not_off(runs: list[Run]) -> None:
+    """Just written by `add`, and told to be off: from 1.5 mm to 1.5 mm."""
+    near = holding(0.04, 0.0192)
+    found = diagnosed(runs, near)
+    assert outdated(found.final, near) == ("sideways_drift",), "significantly"
+    assert found.holdout.after > 0.99 * found.holdout.before
+    assert found.outdated == ()
+    assert "nothing to add" in words(found)
+    assert replace(found.holdout, before=math.nan, after=math.nan).fell_much, "no legs to tell"
 
 
 def test_right_values_and_those_within_their_noise_are_left_alone(runs: list[Run]) -> None:

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from test.inference.driven import parts
 from test.inference.test_homogeneity import ROBOT, driven, nothing, wanders
 from test.inference.test_local_map_errors import MEMORY, TRUE, WALK, session
 from werrimbi_odom.api.compare_diagnose_add import as_judged
@@ -18,6 +19,7 @@ from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.reference_remarks import wandering
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
 NAMES = ("floor_slope", "anisotropic_floor", "reference_delay", "track_width", "sideways_drift")
@@ -48,6 +50,19 @@ def test_it_is_said_and_what_follows_reckons_with_it(sound: Diagnosis) -> None:
     given = Recordings(SimpleNamespace(), SimpleNamespace(), (), (), DriveOptions())  # type: ignore[arg-type]
     assert as_judged(given, sound).how.reference_kind == "local_map"
     assert as_judged(given, replace(sound, wander=None)) is given
+
+
+def test_an_antenna_has_no_heading_that_wanders() -> None:
+    """Its size was the prior's: two degrees, said of positions alone."""
+    drives = [parts(run, "positions") for run in session(range(50, 53), jumps=0, seconds=45.0)]
+    found = diagnose(drives, TRUE.entered(), [find("track_width")])
+    assert found.wander is not None
+    assert (found.wander.heading, found.wander.heading_in_a_second) == (None, None)
+    assert found.wander.place_in_a_second == pytest.approx(WALK[0], rel=0.2)
+    [said] = wandering(found)
+    assert "mm in a second" in said
+    assert "°" not in said
+    assert "rad" not in said
 
 
 def test_what_is_really_wrong_is_named_beside_it() -> None:

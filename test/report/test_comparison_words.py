@@ -193,7 +193,8 @@ def test_where_two_poses_are_all_no_shorter_leg_is_advised() -> None:
     """Four drives with a pose at either end: "4 legs of 1 m ... try a shorter --leg"."""
     found = compare([measured_at_the_ends(number) for number in range(4)], ROBOT)
     words = " ".join(printed(document_of(found)).split())
-    assert "4 legs of 2 m, 10 are the least. Drive more, or measure the robot more often" in words
+    assert "4 legs of 2 m, 10 are the least. Drive more (6 more drives like these), or" in words
+    assert "measure the robot more often" in words
     assert "Errors of legs of 2 m (rms)" in words
     assert "shorter --leg" not in words
 

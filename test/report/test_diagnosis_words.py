@@ -17,6 +17,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference.changes.between_drives import changes_between
+from werrimbi_odom.inference.diagnosis import estimated_values
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
@@ -27,7 +28,13 @@ from werrimbi_odom.report.adding.words import _headline
 from werrimbi_odom.report.diagnosis import as_json, phrases, tables, words
 from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
-from werrimbi_odom.report.diagnosis.remarks import drowned, instead_of_held, like_noise, nearest
+from werrimbi_odom.report.diagnosis.remarks import (
+    at_bounds_told,
+    drowned,
+    instead_of_held,
+    like_noise,
+    nearest,
+)
 from werrimbi_odom.report.diagnosis.words import NextSteps, how_long, words_of
 from werrimbi_odom.report.terminal import as_text
 
@@ -323,3 +330,32 @@ def test_a_row_of_the_table_has_one_unit(
 ) -> None:
     or_else = None if other is None else (other, 1e-3)
     assert tables._told(Value(value, 1e-3, "m", "ahead", 0.0, or_else=or_else)) == told
+
+
+def test_what_helped_at_its_bound_before_the_arm_was_found_is_no_objection_to_the_arm(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A creep of -0.1 s stood in for a marker beside the axle; beside the arm it was not asked."""
+    monkeypatch.setattr(estimated_values, "chance", lambda *_: 0.0)
+    creep = find("lateral_slip").using(creep=-0.1)
+    wild: Any = SimpleNamespace(
+        names=("lateral_slip",),
+        total=1.0,
+        at_bound=("lateral_slip.creep",),
+        point=SimpleNamespace(model=SimpleNamespace(robot=replace(ROBOT, effects=(creep,)))),
+    )
+    first = SimpleNamespace(tried=(wild,), before=SimpleNamespace(total=2.0), number=1)
+    last = SimpleNamespace(tried=(), before=SimpleNamespace(total=0.5), number=1)
+    found: Any = SimpleNamespace(found=("reference_lever_arm",), rounds=(first, last))
+    assert at_bounds_told(found) == []
+    found.rounds = (last, first)
+    [told] = at_bounds_told(found)
+    assert "creep = -0.1 s" in told
+
+
+def test_of_twins_the_example_leaves_what_the_node_publishes() -> None:
+    """A marker askew and a robot that crabs are one to the reference."""
+    told: Any = SimpleNamespace(effect_named=find)
+    twins = ["sideways_drift", "reference_yaw_offset"]
+    assert words._to_try(told, twins) == words._to_try(told, twins[::-1]) == "reference_yaw_offset"
+    assert words._to_try(told, ["track_width"]) == "track_width"

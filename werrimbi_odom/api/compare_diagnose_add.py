@@ -12,10 +12,11 @@ from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.next_command import beside, next_command
 from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import NewRobot, Result
-from werrimbi_odom.errors import InputError
+from werrimbi_odom.errors import InputError, TooFewLegsError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.progress import Show, silent
+from werrimbi_odom.report.number_format import counted
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -72,7 +73,9 @@ def compared(
         found = judged(over, given.robot, show=show)
     return Result(
         found=found,
-        document=lambda: document_of(found, next_command(["diagnose"], given)),
+        document=lambda: document_of(
+            found, next_command(["diagnose"], given), _fit_command(given, one_line=False)
+        ),
         figures_of_json=lambda: json_of(found),
     )
 
@@ -104,7 +107,10 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
     from werrimbi_odom.report.diagnosis.document import document_of
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
-    advised = advised_diagnosis(given, show)
+    try:
+        advised = advised_diagnosis(given, show)
+    except TooFewLegsError as few:
+        raise InputError(f"{few}{_instead(given)}") from None
     given = as_judged(with_leg(given, advised.leg), advised.diagnosis)
 
     def steps() -> NextSteps:
@@ -123,6 +129,28 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
             "leg_m": advised.leg,
         },
     )
+
+
+def _instead(given: Recordings) -> str:
+    """Words for drives that are too few to diagnose: how many more are needed, and what they tell.
+
+    The end of a sentence.
+    """
+    from werrimbi_odom.inference.seldom_measured import more_to_diagnose, tell_sizes
+
+    more = more_to_diagnose(given.runs, all_fitted=bool(given.holdout))
+    words = ""
+    if more is not None:
+        of_those = "" if given.holdout else ", a quarter of all being put aside for judging"
+        words = f" ({counted(more, 'more drive')} like these{of_those})"
+    if not tell_sizes(given.runs):
+        return f"{words}; `werrimbi compare` shows the errors of these"
+    return f"{words}; base and radii alone are told by: {_fit_command(given, one_line=True)}"
+
+
+def _fit_command(given: Recordings, *, one_line: bool) -> str:
+    out = beside(given.source.path, "fitted")
+    return next_command(["calibrate", "fit"], given, out=out, one_line=one_line)
 
 
 def as_judged(given: Recordings, diagnosis: Diagnosis) -> Recordings:

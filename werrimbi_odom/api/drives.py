@@ -31,8 +31,8 @@ class Options(TypedDict, total=False):
 
     reference_kind: ReferenceKind | None
     """"absolute": independent noise per pose of the reference; "incremental": it accumulates;
-    "local_map": it also drifts slowly. Default: incremental for a gyro, local_map for a localiser
-    (map -> odom -> base_link, AMCL) in a bag."""
+    "local_map": it also drifts slowly. Default: incremental for a gyro and for headings alone,
+    local_map for a localiser (map -> odom -> base_link, AMCL) in a bag, else absolute."""
     leg: float
     """Length of a leg [m]; default 1."""
     reference_sigma_xy: float | None

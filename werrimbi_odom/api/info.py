@@ -25,6 +25,7 @@ from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps, with_wraps
+from werrimbi_odom.files.gyro_headings import as_of_a_gyro
 from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.merged_reference import SCALE_MOST
 from werrimbi_odom.files.mislabelled_columns import without_zeros
@@ -326,7 +327,7 @@ def robot_file_of(first: FirstRobot) -> RobotFile:
 def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     """When the robot stood, drove, was held and carried, and what will be excluded."""
     assert held.run is not None
-    recorded = without_zeros(held.run)
+    (recorded,) = as_of_a_gyro([without_zeros(held.run)])
     robot_file = source or robot_file_of(first)
     robot, limits = robot_file.robot, robot_file.limits
     try:

@@ -109,6 +109,7 @@ def add_recording_arguments(
         help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
         "along the way (each scan matched with the last one); local_map: it also wanders slowly "
         "about the truth (a localiser, SLAM, satellites). If not given: incremental for a gyro, "
+        "and for headings alone in a reference.csv (20 or more a drive, without sigma_yaw_rad), "
         "local_map for a localiser (map -> odom -> base_link, AMCL) and satellites, else absolute",
     )
     for part, unit, what in (
@@ -140,6 +141,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.api.drives import refuse_circles, told_apart
     from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.files.gyro_headings import WORDS
     from werrimbi_odom.files.recordings import Asked, read
     from werrimbi_odom.files.run_checks import words_about
 
@@ -158,6 +160,13 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
             "the reference is a localiser (or satellites), whose errors wander: it is taken as "
             "--reference-kind local_map (absolute takes each pose's error as new)"
         )
+    of_columns = not any(run.of_bag for run in (*found.runs, *found.holdout))
+    if (
+        arguments.reference_kind is None
+        and of_columns
+        and found.how.reference_kind == "incremental"
+    ):
+        circles.append(WORDS)
     remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)
     return found
 

@@ -13,6 +13,7 @@ from typing import get_args
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.files.gyro_headings import as_of_a_gyro
 from werrimbi_odom.files.merged_reference import with_one_scale
 from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import read_run
@@ -36,7 +37,8 @@ class DriveOptions:
     """How drives are read and evaluated: from Python, on the command line, and in a worker."""
 
     reference_kind: ReferenceKind | None = None
-    """Noise of the reference; None: as known to the reader of the drives, otherwise absolute."""
+    """Noise of the reference; None: as known to the reader of the drives, incremental for headings
+    alone, otherwise absolute."""
     leg: float = 1.0
     """Length of a leg [m]."""
     reference_sigma_xy: float | None = None
@@ -159,6 +161,7 @@ def gathered(
         refuse_unjudgeable(run, source.robot)
         found.append(run)
     found = _with_one_scale(found, len(runs))
+    found = as_of_a_gyro(found, noise_known=how.reference_sigma_yaw is not None)
     if how.reference_kind is None:
         how = replace(how, reference_kind=_kind_of(found))
     if how.reference_kind != "incremental":

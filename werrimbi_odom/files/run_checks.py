@@ -16,7 +16,7 @@ from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns, words_
 from werrimbi_odom.files.row_order import FEW_STEPS_BACK, began_anew, clock_was_set_back
 from werrimbi_odom.files.run import WORKED_OUT, Reference, Run, Ticks
 from werrimbi_odom.model.encoder_online import CLOCK_JUMP
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 REVERSED = 0.9
@@ -262,7 +262,32 @@ def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:
         np.interp(time, stamps, counts.astype(np.float64) * size, left=np.nan, right=np.nan)
         for counts, size in ((ticks.left, robot.left_tick), (ticks.right, robot.right_tick))
     )
+    if _one_is_reversed(run.reference, left, right):
+        left = -left
     return 0.5 * (left + right), (right - left) / robot.track
+
+
+def _one_is_reversed(reference: Reference | None, left: Floats, right: Floats) -> bool:
+    """Whether one counter has the wrong sign: by headings, else by ways. A line looks like a spin.
+
+    `left`, `right` (m,): travel at the poses.
+    """
+    if reference is None:
+        return False
+    turn, along = np.diff(right - left), np.diff(right + left)
+    if reference.has_yaw.any():
+        seen, of_turn, of_way = wrap_all(np.diff(reference.yaw)), turn, along
+    else:
+        seen = np.hypot(np.diff(reference.x), np.diff(reference.y))
+        of_turn, of_way = np.abs(along), np.abs(turn)
+    known = np.isfinite(seen) & np.isfinite(turn) & (seen != 0.0)
+    if known.sum() < FEWEST:
+        return False
+    right_so, wrong_so = (
+        abs(seen[known] @ part[known]) / max(float(np.linalg.norm(part[known])), 1e-12)
+        for part in (of_turn, of_way)
+    )
+    return bool(wrong_so > right_so)
 
 
 def _equal(one: Floats, other: Floats) -> NDArray[np.bool_]:

@@ -21,6 +21,7 @@ from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
+from werrimbi_odom.inference.seldom_measured import tell_sizes
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 
 
@@ -112,10 +113,14 @@ class Info:
         )
 
     @property
+    def runs(self) -> list[Run]:
+        """The drives that can be used."""
+        return [each.run for each in self.held if each.run is not None and not each.problem]
+
+    @property
     def intervals(self) -> int:
         """From pose to pose of all references: no leg is shorter than one."""
-        runs = [each.run for each in self.held if each.run is not None]
-        references = [run.reference for run in runs if run.reference is not None]
+        references = [run.reference for run in self.runs if run.reference is not None]
         return sum(max(0, each.time.size - 1) for each in references)
 
     @property
@@ -184,6 +189,9 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
             cannot.append(f"{what}: {lacking}")
 
     far = measures in ("poses", "positions")
+    few = ""
+    if measured_seldom(held):
+        few = "alone it was measured at too few places for more than base and radii"
     if sizes:  # without it neither distance nor a wheel counting backwards is known
         while_so = _while_measured(held)
         turned = drive.turned >= rules.TURN_SHOWS
@@ -203,15 +211,15 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
             else "no heading tells a distance; tape one",
         )
     told(
-        far,
+        far and not few,
         "what goes sideways (slip, slope, how the reference is mounted)",
-        "no heading shows it; a localiser or motion capture does",
+        few if far else "no heading shows it; a localiser or motion capture does",
     )
     seldom = "turned back only once" if drive.reversals else "never drove to and fro"
     told(
-        drive.reversals > 1,
+        drive.reversals > 1 and not few,
         "what happens at reversals (a castor's kick, backlash)",
-        f"the robot {seldom}{_while_measured(held)}",
+        few or f"the robot {seldom}{_while_measured(held)}",
     )
     if (
         sizes
@@ -219,6 +227,11 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
     ):
         cannot.append(f"much of anything: too little was driven{_while_measured(held)}")
     return can, cannot
+
+
+def measured_seldom(held: Held) -> bool:
+    """Whether a drive has no more measured numbers than base and radii are."""
+    return held.run is not None and not tell_sizes([held.run])
 
 
 def unseen_much(held: Held) -> bool:

@@ -15,6 +15,7 @@ from werrimbi_odom.files.first_robot import PLACEHOLDER_TICKS
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
+from werrimbi_odom.inference.seldom_measured import more_to_judge, tell_sizes
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, wheels_to_try
 from werrimbi_odom.report.info_words import words_of
@@ -157,10 +158,15 @@ def _before_command(found: Info) -> str:
             "hides what the robot does. Next:"
         )
     if found.intervals < rules.FEWEST_LEGS:
+        more = more_to_judge(found.runs)
+        these = f" ({counted(more, 'more drive')} like these)" if more else ""
+        shown = "what these show is printed by"
+        if _wants_fit(found):
+            shown = "base and radii alone are told by these drives together"
         return (
             f"Too seldom measured to judge by: no leg is shorter than from pose to pose, which is "
             f"{counted(found.intervals, 'leg')} at most, and {rules.FEWEST_LEGS} are the least. "
-            "Measure more often on the way, or drive more; what these show is printed by:"
+            f"Measure more often on the way, or drive more{these}; {shown}:"
         )
     most = math.floor(found.legs_of(found.leg))
     if found.leg < 1.0 and most < rules.FEWEST_LEGS:
@@ -176,6 +182,15 @@ def _before_command(found: Info) -> str:
             f"only {legs}, too few to judge by. Next:"
         )
     return "Next:"
+
+
+def _wants_fit(found: Info) -> bool:
+    """Whether the next command is a calibration: nothing else works on drives so seldom measured.
+
+    With placeholders in the robot file it would be of no use.
+    """
+    whole = found.leg <= 1.0 and not (found.written is not None and found.first.lacks_ticks)
+    return whole and found.intervals < rules.FEWEST_LEGS and tell_sizes(found.runs)
 
 
 def _otherwise(found: Info) -> tuple[str, str]:
@@ -261,8 +276,9 @@ def command_of(found: Info) -> str:
                 *(*_others(usable), "--out", "robot.yaml"),
             ]
         )
-    words = ["werrimbi", "compare", "--robot", str(robot)]
-    if found.leg != 1.0:
+    fit = _wants_fit(found)
+    words = ["werrimbi", *(["calibrate", "fit"] if fit else ["compare"]), "--robot", str(robot)]
+    if found.leg != 1.0 and not fit:
         words += ["--leg", f"{found.leg:g}"]
     usable = _of_one_command(usable)
     paths = [str(each.path) for each in usable]
@@ -272,4 +288,5 @@ def command_of(found: Info) -> str:
     if held.reference is not None:
         topics = held.topics if all(each.beside for each in usable) else held.topics[:1]
         words += [word for topic in topics for word in ("--reference-topic", topic)]
-    return shlex.join([*words, *_others(usable), *paths])
+    out = ["--out", str(robot.with_name(f"{robot.stem}_fitted{robot.suffix}"))] if fit else []
+    return shlex.join([*words, *_others(usable), *paths, *out])

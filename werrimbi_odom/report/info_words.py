@@ -18,7 +18,14 @@ from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
-from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of, unseen_much
+from werrimbi_odom.inference.recording_info import (
+    Held,
+    Info,
+    can_tell,
+    measured_seldom,
+    measures_of,
+    unseen_much,
+)
 from werrimbi_odom.inference.set_up.findings import WIRING_WORDS
 from werrimbi_odom.inference.set_up.search import SWAPPED
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -89,7 +96,8 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield f"{repeated}."
     can, cannot = can_tell(held, found.sizes)
     if can:
-        yield f"It can show {listed(can)}."
+        together = "Together with other drives it" if measured_seldom(held) else "It"
+        yield f"{together} can show {listed(can)}."
     yield from (f"It cannot show {each}." for each in cannot)
     if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
         counts = " and the counts of a turn" if found.first.lacks_ticks else ""

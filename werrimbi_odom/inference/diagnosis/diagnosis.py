@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from werrimbi_odom.errors import InputError
+from werrimbi_odom.errors import TooFewLegsError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
@@ -107,7 +107,9 @@ def diagnose(
             found.runs, found.final, again.final, competing, of_a_law=law
         )
         if explained and (again.verdict == "none" or not nothing_left):
-            return replace(again, wander=wander_of(again.final.point.variances))
+            alone = again.runs.positions_alone
+            wander = wander_of(again.final.point.variances, positions_alone=alone)
+            return replace(again, wander=wander)
     return replace(found, happened=happened)
 
 
@@ -170,7 +172,7 @@ def _searched(
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, effects, set_up.robot)
-    old = outdated(fit, robot) if found.verdict == "none" else ()
+    old = outdated(fit, robot) if found.verdict == "none" and found.holdout.fell_much else ()
     either = ahead_or_behind(laid, fit, set_up.robot)
     found = replace(found, misfit=misfit, rivals_of_held=held, outdated=old, ahead_or_behind=either)
     return found, judge
@@ -180,11 +182,11 @@ def _refuse_few(laid: Concatenated, set_up: SetUp, judge: Judge) -> None:
     """Raise where legs are so few that no cause but a set-up mistake could ever be significant."""
     if laid.begin.size >= rules.LEGS_OF_A_PART or set_up.findings:
         return
-    raise InputError(
+    legs = f"{laid.begin.size} leg{'' if laid.begin.size == 1 else 's'}"
+    raise TooFewLegsError(
         f"{', '.join(str(run.path) for run in judge.fitted_on)}: too little to diagnose: from pose "
-        f"to pose the drives have {laid.begin.size} legs to fit, and {rules.LEGS_OF_A_PART} are "
-        "the least. Measure the robot more often on its way, or drive more; `werrimbi compare` "
-        "shows the errors of these"
+        f"to pose the drives have {legs} to fit, and {rules.LEGS_OF_A_PART} are "
+        "the least. Measure the robot more often on its way, or drive more"
     )
 
 

@@ -80,7 +80,9 @@ def _rivals(
 def outdated(fit: Fitted, given: Robot) -> tuple[str, ...]:
     """Names of the effects of the given robot whose values are not those of its drives.
 
-    As certain as a missing effect, and worth as much as a size that is reported.
+    As certain as a missing effect, and worth as much as a size that is reported. Legs of a better
+    model are shorter, so that a fit beside it knows more than the one that was written: where the
+    held-out error does not fall, such a value is not told (`Sides.fell_much`).
     """
     held = [item for item in given.effects if not base_name(item.effect)]
     found = []

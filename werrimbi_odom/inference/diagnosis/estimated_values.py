@@ -233,27 +233,26 @@ def one_wheel(diagnosis: Diagnosis) -> str | None:
 def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
     """Effects that would help, but only at a value outside the physical bounds.
 
-    By name: the parameter at its bound, its value, its unit.
+    By name: the parameter at its bound, its value, its unit. Of the last round alone: an effect
+    that helps beside less may stand in for what is found later.
     """
     found: dict[str, tuple[str, float, str]] = {}
-    for this in diagnosis.rounds:
-        for fit in this.tried:
-            name = fit.names[-1]
-            helps = (
-                fit.total < this.before.total and chance(fit, this.before, this.number) < rules.SURE
-            )
-            wild = [number for number in fit.at_bound if number.startswith(f"{name}.")]
-            if not helps or name in diagnosis.found:
-                continue
-            if wild:
-                parameter = wild[0].rpartition(".")[2]
-                applied = fit.point.model.robot.effects[-1]
-                unit = applied.effect.parameters[parameter].unit
-                found.setdefault(name, (parameter, applied.values[parameter], unit))
-            elif RATIO in fit.at_bound:
-                sizes = sizes_of(fit.point.model.robot).over(sizes_of(diagnosis.given))
-                ratio = sizes.as_effects["unequal_wheel_radii"]
-                found.setdefault(name, (RATIO, ratio, ""))
+    this = diagnosis.rounds[-1]
+    for fit in this.tried:
+        name = fit.names[-1]
+        helps = fit.total < this.before.total and chance(fit, this.before, this.number) < rules.SURE
+        wild = [number for number in fit.at_bound if number.startswith(f"{name}.")]
+        if not helps or name in diagnosis.found:
+            continue
+        if wild:
+            parameter = wild[0].rpartition(".")[2]
+            applied = fit.point.model.robot.effects[-1]
+            unit = applied.effect.parameters[parameter].unit
+            found.setdefault(name, (parameter, applied.values[parameter], unit))
+        elif RATIO in fit.at_bound:
+            sizes = sizes_of(fit.point.model.robot).over(sizes_of(diagnosis.given))
+            ratio = sizes.as_effects["unequal_wheel_radii"]
+            found.setdefault(name, (RATIO, ratio, ""))
     return found
 
 

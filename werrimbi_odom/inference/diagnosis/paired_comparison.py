@@ -52,6 +52,11 @@ class Sides:
         return self.after < self.before * (1.0 - rules.HELD_OUT_FALL)
 
     @property
+    def fell_much(self) -> bool:
+        """Whether it fell by what a user sees; true where there are no legs to tell."""
+        return not self.after > self.before * (1.0 - rules.OUTDATED_FALL)
+
+    @property
     def rose(self) -> bool:
         """Whether the error rose, significantly."""
         return self.chance < rules.SURE_WHEN_ASKED

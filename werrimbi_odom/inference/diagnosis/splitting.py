@@ -25,7 +25,7 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
     the drives that have too few poses for that, a quarter is held out whole; of a single such
     drive, the last quarter of its poses.
     """
-    poses = [_rows(run) for run in runs]
+    poses = [poses_of(run) for run in runs]
     few = [number for number, count in enumerate(poses) if count < rules.SET_ASIDE_ROWS]
     if len(runs) > 1 or not few:
         whole = _held_whole(few, poses)
@@ -52,9 +52,7 @@ def _held_whole(few: Sequence[int], poses: Sequence[int]) -> set[int]:
     They are evenly spaced among them as given. Where these would have most of the poses, so that
     next to nothing were left to fit, they are so in the order of their numbers of poses.
     """
-    count = round(len(few) * len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS)
-    if len(few) == len(poses):
-        count = max(1, count)
+    count = held_of_few(len(few), least=1 if len(few) == len(poses) else 0)
     if count == 0:
         return set()
     every = len(few) / count
@@ -65,7 +63,13 @@ def _held_whole(few: Sequence[int], poses: Sequence[int]) -> set[int]:
     return chosen
 
 
-def _rows(run: Run) -> int:
+def held_of_few(drives: int, least: int = 1) -> int:
+    """How many of so many drives with few poses are held out whole."""
+    return max(least, round(drives * len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS))
+
+
+def poses_of(run: Run) -> int:
+    """Number of poses of a drive that were measured, in position or in heading."""
     if run.reference is None:
         return 0
     return int(_measured(run.reference).sum())

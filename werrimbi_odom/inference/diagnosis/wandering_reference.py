@@ -44,22 +44,26 @@ class Wander:
 
     place_in_a_second: float
     """[m]"""
-    heading_in_a_second: float
-    """[rad]"""
+    heading_in_a_second: float | None
+    """[rad]; None where no heading was measured, as of `heading`."""
     place: float
     """In the long run [m]."""
-    heading: float
+    heading: float | None
     seconds: float
     """For how long it stays alike (correlation time) [s]. Short drives tell it, and the size in the
     long run, much less well than the change in a second."""
 
 
-def wander_of(variances: Variances) -> Wander:
-    """The wander of a reference on a local map."""
+def wander_of(variances: Variances, *, positions_alone: bool = False) -> Wander:
+    """The wander of a reference on a local map.
+
+    `positions_alone`: whether no heading was measured. The variances of one are then the prior's.
+    """
     place, _, heading = np.sqrt(variances.wandered()[0])
     walk = np.sqrt([variances.walk_xy[0], variances.walk_yaw[0]])
     seconds = 1.0 / np.sqrt(variances.reversion[0])
-    return Wander(*map(float, (*walk, place, heading, seconds)))
+    found = Wander(*map(float, (*walk, place, heading, seconds)))
+    return replace(found, heading_in_a_second=None, heading=None) if positions_alone else found
 
 
 def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
@@ -85,8 +89,7 @@ def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float(posterior_cost(costs, found)[0])
-    size = wander_of(found)
-    if small and max(size.place, size.heading) > rules.SMALL_WANDER:
+    if small and found.wandered()[0].max() > rules.SMALL_WANDER**2:
         return False
     return chi2_survival(gain, len(WALK)) < rules.VERY_SURE
 

@@ -14,6 +14,11 @@ HELD_OUT_FALL = 1e-4
 """Relative fall of the held-out error that counts as a fall: fits that stop a little earlier differ
 by as much. Whether a rise is significant is tested leg by leg (`SURE_WHEN_ASKED`)."""
 
+OUTDATED_FALL = 0.01
+"""Relative fall of the held-out error from which on values of the robot file are told to be off.
+With less, what they are off by is below a seventh (the square root of 1 - 0.99²) of what a leg errs
+by."""
+
 SHAPES_FITTED = 3
 """Trial shapes of an effect (threshold, length of a lag) that are fitted in full when it is added.
 Chosen: of neighbours on the grid of shapes the best by score is among the first."""
@@ -21,6 +26,11 @@ Chosen: of neighbours on the grid of shapes the best by score is among the first
 UNUSUAL_PROMISE = 25.0
 """Variance of a leg in multiples of the median, five of its deviation, above which it is left out
 of the predicted error: it begins with an unknown heading (`UNKNOWN_HEADING`)."""
+
+MOVED_BY_ODOMETRY = 0.02
+"""Relative error of the base from which on a localiser, moved by this odometry, is told to err by
+it: AMCL turns by odometry for 0.2 rad until a scan corrects it, and 2 % of that are 4 mrad, twice
+the noise of a match (`TYPICAL_MATCH`)."""
 
 # ---------------------------------------------------------------------------- what is drafted
 

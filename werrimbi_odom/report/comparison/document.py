@@ -28,12 +28,16 @@ from werrimbi_odom.report.style import Figure
 _RUNS = 40  # runs with a figure of their own; more would make the file too large to mail
 
 
-def document_of(comparison: Comparison, command: str = "") -> Document:
-    """The complete report; `command` is the full command of the next step."""
+def document_of(comparison: Comparison, command: str = "", fit: str = "") -> Document:
+    """The complete report.
+
+    `command` is the full command of the next step, `fit` that of a calibration, where the drives
+    are measured too seldom to be judged.
+    """
     verdict = verdict_of(comparison)
     return Document(
         title="Model against measurement",
-        words=words_of(comparison, verdict=verdict, command=command),
+        words=words_of(comparison, verdict=verdict, command=command, fit=fit),
         tables=tables_of(comparison, verdict),
         draw=lambda: _figures(comparison),
     )

@@ -14,6 +14,7 @@ from werrimbi_odom.inference.comparison.consistency import judged_lengths
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.recording_info import leg_of_positions
+from werrimbi_odom.inference.seldom_measured import more_to_judge, tell_sizes
 from werrimbi_odom.report.comparison.phrases import (
     NAMES,
     covariance_words,
@@ -38,11 +39,12 @@ def words_of(
     next_step: str = "`werrimbi diagnose`",
     verdict: Verdict | None = None,
     command: str = "",
+    fit: str = "",
 ) -> tuple[Paragraph, ...]:
     """Summary of a comparison.
 
-    `next_step` is the command that searches for a missing effect, "" to omit it, and `command` the
-    full command of the next step.
+    `next_step` is the command that searches for a missing effect, "" to omit it, `command` the full
+    command of the next step, and `fit` that of a calibration by drives too seldom measured for it.
     """
     verdict = verdict or verdict_of(comparison)
     said = [headline(comparison, verdict)]
@@ -54,7 +56,15 @@ def words_of(
             said += covariance_words(verdict, comparison.main.all.figures.nees)
     said += _reference(comparison)
     step = _next(verdict, next_step)
+    if fit and _is_seldom(comparison, verdict) and tell_sizes(comparison.prepared.runs):
+        step, command = "Base and radii alone are told by these drives together:", fit
     return paragraphs([*said, step, command if step and not verdict.good else ""])
+
+
+def _is_seldom(comparison: Comparison, verdict: Verdict) -> bool:
+    """Whether legs are few because no leg is shorter than from pose to pose."""
+    rare = rarer_than_asked(comparison.median_length, comparison.main.leg)
+    return rare and not verdict.enough and not verdict.too_short
 
 
 def headline(comparison: Comparison, verdict: Verdict) -> str:
@@ -69,11 +79,14 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
         )
     if not verdict.enough:
         median, asked = comparison.median_length, comparison.main.leg
-        rare = rarer_than_asked(median, asked)  # then no leg is shorter
-        other = "measure the robot more often on its way" if rare else "try a shorter --leg"
+        more = "Drive more, or try a shorter --leg"
+        if _is_seldom(comparison, verdict):
+            drives = more_to_judge(comparison.prepared.runs)
+            these = f" ({counted(drives, 'more drive')} like these)" if drives else ""
+            more = f"Drive more{these}, or measure the robot more often on its way"
         return (
             f"Too little to judge: {counted(count, 'leg')} of {leg_words(median, asked)} m, "
-            f"{rules.FEWEST_LEGS} are the least. Drive more, or {other}."
+            f"{rules.FEWEST_LEGS} are the least. {more}."
         )
     if verdict.good:
         shortest, longest = length_of(comparison.lengths[0]), length_of(comparison.lengths[-1])

@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 
 import numpy as np
 
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.estimated_values import values_of
+from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
@@ -41,13 +42,18 @@ def wandering(diagnosis: Diagnosis) -> list[str]:
         return []
     return [
         "But: the reference is not absolute. Its error wanders, by "
-        f"{error_words(wander.place_in_a_second, 'm')} and "
-        f"{error_words(wander.heading_in_a_second, 'rad')} in a second, and by "
-        f"{error_words(wander.place, 'm')} and {error_words(wander.heading, 'rad')} in the long "
-        f"run (some {two_digits(wander.seconds)} s), as a localiser's does. That explains these "
-        "drives far better than poses that err one by one. So all of this is reckoned with it, as "
-        "by --reference-kind local_map; compare and add want that option too."
+        f"{_of_both(wander.place_in_a_second, wander.heading_in_a_second)} in a second, and by "
+        f"{_of_both(wander.place, wander.heading)} in the long run (some "
+        f"{two_digits(wander.seconds)} s), as a localiser's does. That explains these drives far "
+        "better than poses that err one by one. So all of this is reckoned with it, as by "
+        "--reference-kind local_map; compare and add want that option too."
     ]
+
+
+def _of_both(place: float, heading: float | None) -> str:
+    """Sizes of the errors of positions [m] and, where they were measured, of headings [rad]."""
+    sizes = [error_words(place, "m")]
+    return listed(sizes if heading is None else [*sizes, error_words(heading, "rad")])
 
 
 def not_shown(advised: AdvisedDiagnosis) -> list[str]:
@@ -110,7 +116,7 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     runs, found = diagnosis.runs, diagnosis.found
     by_headings = runs.headings_alone and "track_width" in found
     if not by_headings and not (runs.own_axes and "wheel_radius_scale" in found):
-        return []
+        return _or_its_metre(diagnosis)
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
     share = f"{100.0 * abs(size - 1.0):.2g} %"
     if by_headings:
@@ -125,6 +131,55 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     return [
         f"A lidar whose ranges are {share} too {'long' if size > 1.0 else 'short'} shows the same: "
         "a wall at a taped distance, or a straight line of 10 m beside a tape, tells."
+    ]
+
+
+def _or_its_metre(diagnosis: Diagnosis) -> list[str]:
+    """That one number explains base and radii that are off by one factor within their deviations.
+
+    Where positions are measured, a wrong metre of theirs shows just that.
+    """
+    if not {"wheel_radius_scale", "track_width"} <= set(diagnosis.found):
+        return []
+    sizes = best_sizes(diagnosis)
+    shares = [
+        (value / getattr(diagnosis.given, name), (std or 0.0) / getattr(diagnosis.given, name))
+        for name, (value, std) in sizes.items()
+    ]
+    apart = [
+        abs(one - other) > rules.SIGNIFICANT * math.hypot(std, its)
+        for (one, std), (other, its) in combinations(shares, 2)
+    ]
+    size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
+    if any(apart) or not is_ordinary(size):
+        return []
+    less = "little" if size < 1.0 else "much"
+    return [
+        f"Base and radii are off by one factor, {size:.3f}, within their ±. A reference that shows "
+        f"{100.0 * abs(size - 1.0):.2g} % too {less} of every way shows the same (reference_scale: "
+        "a camera's or a map's metre). Drive a straight line of 10 m beside a tape: if the wheels, "
+        "with the robot file as it is, count 10 m, it is the reference; then add reference_scale "
+        "in place of both."
+    ]
+
+
+def moved_by_its_odometry(diagnosis: Diagnosis) -> list[str]:
+    """That a localiser errs by the base that was found, as this odometry moves it."""
+    localised = any(
+        run.measured.kind == "local_map" and run.measured.has_yaw.any()
+        for run in diagnosis.runs.runs
+    )
+    named = next((name for name in ("track_width", "skid_steer") if name in diagnosis.found), "")
+    if not localised or not named:
+        return []
+    base = values_of(diagnosis, named)["multiplier"].value
+    if abs(base - 1.0) < rules.MOVED_BY_ODOMETRY:
+        return []
+    return [
+        "The localiser was moved by this odometry, if it is the robot's own, and so turns by "
+        f"{100.0 * abs(base - 1.0):.2g} % too {'much' if base > 1.0 else 'little'} until each scan "
+        "corrects it: delays and small sizes found beside the base may be those of its "
+        "corrections. Drive once more with the new file on the robot, and diagnose that drive."
     ]
 
 

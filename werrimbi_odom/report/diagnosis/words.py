@@ -195,6 +195,7 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
         *reference_remarks.or_the_reference_s_scale(diagnosis),
+        *reference_remarks.moved_by_its_odometry(diagnosis),
         *reference_remarks.transform_to_mend(diagnosis),
         *reference_remarks.not_shown(advised),
     ]
@@ -228,6 +229,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
     lines += reference_remarks.or_the_reference_s_scale(diagnosis)
+    lines += reference_remarks.moved_by_its_odometry(diagnosis)
     lines += reference_remarks.transform_to_mend(diagnosis)
     lines += phrases.cost(advised, rivals[0])
     if (move := advised.manoeuvre) is not None:
@@ -238,7 +240,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
         )
     rest = [other for other in diagnosis.found if other not in rivals]
-    command = steps.add([rivals[0], *rest])
+    command = steps.add([_to_try(diagnosis, [rivals[0], *twins]), *rest])
     lines += ["Or, if you know which it is, add it, for example:", f"    {command}"]
     for name in rivals[:3]:
         lines += phrases.ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
@@ -246,6 +248,13 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += phrases.also(advised, other)
     return [*lines, *_remainder(advised)]
+
+
+def _to_try(diagnosis: Diagnosis, twins: Sequence[str]) -> str:
+    """The one of twins that leaves what the node publishes as it is; the first if none does."""
+    effects = map(diagnosis.effect_named, twins)
+    kept = [each.name for each in effects if each is not None and each.stage == "reference"]
+    return next(iter(kept), twins[0])
 
 
 def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
