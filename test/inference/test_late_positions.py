@@ -7,14 +7,16 @@ In a turn about the antenna it hardly moves, so how it goes with the wheels must
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from test.model.drives import ROBOT
-from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.files.run import NoDriving, Reference, Run, Ticks
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
+from werrimbi_odom.inference.legs.held_or_carried import HELD, with_no_driving
 
 RATE = 20
 NOISE = 6e-3
@@ -62,3 +64,18 @@ def test_who_holds_a_robot_with_a_late_antenna_is_found(seed: int) -> None:
     (found,) = (part for part in run.no_driving if part.why == "held" and "wall" in part.words)
     assert found.begin == pytest.approx(101.0, abs=0.5)
     assert found.end == pytest.approx(107.0, abs=0.5)
+
+
+def test_what_is_left_out_of_a_drive_does_not_make_the_noise_of_the_rest_jump() -> None:
+    """Most of a drive without headings is left out if it was held: then nothing scattered."""
+    run = along_lines_and_arcs(1, 0.15, 0.2)
+    end = float(run.ticks.time[-1])
+    left_out = (NoDriving(0.0, 0.6 * end, "held", HELD),)
+    for kept in (run, replace(run, no_driving=left_out)):
+        assert not [part for part in prepare([kept], ROBOT).left_out if part.why == "reference"]
+    seen = run.reference
+    assert seen is not None
+    leap = replace(seen, x=seen.x + np.where(seen.time > 0.8 * end, 0.5, 0.0))
+    jumped = replace(run, reference=leap, no_driving=left_out)
+    (found,) = (part for part in prepare([jumped], ROBOT).left_out if part.why == "reference")
+    assert found.begin < 0.8 * end < found.end
