@@ -18,7 +18,7 @@ from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
-from werrimbi_odom.inference.diagnosis.told_sizes import as_told, doubted_effect
+from werrimbi_odom.inference.diagnosis.told_sizes import as_told, doubted_effects, goes_without
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.cutting import match_for_fit
@@ -64,15 +64,22 @@ def test_a_name_whose_size_is_smaller_than_twice_its_uncertainty_is_taken_back()
     """One wheel was called larger, beyond any chance, by 0.036 +- 0.042 %."""
     wider = told(RIGHT, "track_width")
     assert 0.0 < deviations_from(GIVEN, wider, "track_width") < rules.SIGNIFICANT
-    assert doubted_effect(wider, GIVEN, ("reference_delay", "track_width")) == "track_width"
-    assert doubted_effect(wider, GIVEN, ("reference_delay",)) is None
+    assert doubted_effects(wider, GIVEN, ("reference_delay", "track_width")) == ["track_width"]
+    assert goes_without(told(RIGHT), GIVEN, "track_width")
+    assert doubted_effects(wider, GIVEN, ("reference_delay",)) == []
 
 
 def test_a_name_whose_size_is_sure_stays() -> None:
     found = ("reference_delay", "track_width", "unequal_wheel_radii")
-    assert doubted_effect(told(ALL_OFF, *found[1:]), GIVEN, found) is None
+    assert doubted_effects(told(ALL_OFF, *found[1:]), GIVEN, found) == []
+
+
+def test_a_size_that_the_drives_need_is_not_gone_without() -> None:
+    """On a circle seen from beside the axle another size would do as well, but one must."""
+    assert not goes_without(told(ALL_OFF), GIVEN, "track_width")
+    assert not goes_without(told(ALL_OFF), GIVEN, "unequal_wheel_radii")
 
 
 def test_what_is_not_determined_is_no_matter_of_size() -> None:
     wider = replace(told(RIGHT, "track_width"), held=("track_width",))
-    assert doubted_effect(wider, GIVEN, ("track_width",)) is None
+    assert doubted_effects(wider, GIVEN, ("track_width",)) == []

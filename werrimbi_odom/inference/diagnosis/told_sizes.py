@@ -45,35 +45,53 @@ def as_told(
 ) -> Fitted:
     """A fit with only the reported sizes changed, and the standard deviations that are stated.
 
-    Sizes that no effect in `found` stands for stay as in the file if they are not significant.
+    Sizes that no effect in `found` stands for stay as in the file if they are not significant, and
+    if the fit, its penalty paid, is as good without them.
     """
     if not (fit.calibrated or fit.names):
         return replace(fit, point=replace(fit.point, model=plain(fit, given)))
     wanted = sizes_among(found, fit)
-    at_file: tuple[str, ...] = ()
-    while True:
+
+    def with_those(at_file: tuple[str, ...]) -> tuple[float, Fitted]:
         sizes = sizes_needed(fit, given, wanted, at_file)
         told = with_sizes(laid, fit, given, sizes)
+        total = told.cost + fit.penalty_of_one * fit.scatter * sizes.free
         if not found:
-            return told
-        told = _with_spread(told, sizes, given, wanted, laid, rounds)
-        doubted = _doubted_sizes(told, given, wanted)
-        if not set(doubted) - set(at_file):
-            return told
-        at_file = (*at_file, next(name for name in doubted if name not in at_file))
+            return total, told
+        return total, _with_spread(told, sizes, given, wanted, laid, rounds)
+
+    at_file: tuple[str, ...] = ()
+    best, told = with_those(at_file)
+    unsure = _doubted_sizes(told, given, wanted) if found else []
+    while unsure:
+        fewer = (*at_file, unsure.pop(0))
+        total, without = with_those(fewer)
+        as_good = total < best + rules.RIVAL * fit.scatter
+        if as_good and _as_in(given, without, fewer):
+            told, at_file = without, fewer
+            unsure = _doubted_sizes(told, given, wanted)
+    return told
 
 
-def doubted_effect(told: Fitted, given: Robot, found: Collection[str]) -> str | None:
-    """The calibration effect in `found` that is the least sure by what is stated, if it is unsure.
+def doubted_effects(told: Fitted, given: Robot, found: Collection[str]) -> list[str]:
+    """Calibration effects in `found` that are unsure by what is stated of them, least sure first.
 
     `told`: the fit as told. `given`: the robot as its file has it.
     """
     names = sizes_among(found, told) - set(told.held)
     away = {name: deviations_from(given, told, name) for name in sorted(names)}
-    least = min(away, key=lambda name: away[name], default=None)
-    if least is None or away[least] > rules.SIGNIFICANT:
-        return None
-    return name_of_base(told.point.model.robot) if least == "track_width" else least
+    unsure = [name for name in away if away[name] <= rules.SIGNIFICANT]
+    base = name_of_base(told.point.model.robot)
+    ordered = sorted(unsure, key=lambda name: away[name])
+    return [base if name == "track_width" else name for name in ordered]
+
+
+def goes_without(told: Fitted, given: Robot, name: str) -> bool:
+    """Whether a fit leaves the size that a name stands for as in the file.
+
+    A size may also be little known because another one would do as well. Then some size is needed.
+    """
+    return all(deviations_from(given, told, size) == 0.0 for size in sizes_among([name], told))
 
 
 def sizes_among(found: Collection[str], fit: Fitted) -> set[str]:
@@ -89,6 +107,11 @@ def plain(fit: Fitted, given: Robot) -> Model:
     model = fit.point.model
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     return Model(changed(model.robot, back), model.own)
+
+
+def _as_in(given: Robot, told: Fitted, names: Collection[str]) -> bool:
+    robot = told.point.model.robot
+    return all(getattr(robot, name) == getattr(given, name) for name in names)
 
 
 def _doubted_sizes(told: Fitted, given: Robot, wanted: Collection[str]) -> list[str]:

@@ -34,7 +34,12 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     rivals_of_others,
     torn_by_halves,
 )
-from werrimbi_odom.inference.diagnosis.told_sizes import as_told, doubted_effect, plain
+from werrimbi_odom.inference.diagnosis.told_sizes import (
+    as_told,
+    doubted_effects,
+    goes_without,
+    plain,
+)
 from werrimbi_odom.inference.diagnosis.what_is_left import what_is_left
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -82,10 +87,14 @@ def diagnosis_of(
     before = judge.of(as_given)
     told = as_told(final, mended, answer.found, laid, rounds)
     doubted: tuple[str, ...] = ()
-    while (doubtful := doubted_effect(told, given, answer.found)) is not None:
-        doubted = (*doubted, doubtful)
-        answer = _answer(begun, given, rounds, final, beyond, laid, instead, doubted)
-        told = as_told(final, mended, answer.found, laid, rounds)
+    unsure = doubted_effects(told, given, answer.found)
+    while unsure:
+        fewer = (*doubted, unsure.pop(0))
+        shorter = _answer(begun, given, rounds, final, beyond, laid, instead, fewer)
+        without = as_told(final, mended, shorter.found, laid, rounds)
+        if goes_without(without, mended, fewer[-1]):
+            answer, told, doubted = shorter, without, fewer
+            unsure = doubted_effects(told, given, answer.found)
     after = judge.of(told.point.model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)
