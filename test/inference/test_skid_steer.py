@@ -16,7 +16,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, weakest
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.diagnosis.verdict import sizes_among
+from werrimbi_odom.inference.diagnosis.told_sizes import sizes_among
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of

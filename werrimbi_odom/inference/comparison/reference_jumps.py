@@ -27,8 +27,9 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     not tested. A spike is recorded with its neighbours: the poses before and after it err as well,
     so it comes and goes in several steps.
     """
-    errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
-    if errors.shape[0] < rules.JUMP_FEWEST:
+    tested = ~gap & np.isfinite(item.intervals).any(axis=1)
+    errors = np.where(np.isfinite(item.intervals) & tested[:, None], item.intervals, 0.0)
+    if errors.shape[0] < rules.JUMP_FEWEST or not tested.any():
         return np.zeros_like(errors)
     interval = max(float(np.median(np.diff(item.time))), 1e-9)
     usual = np.median(_windows(errors, rules.JUMP_NEIGHBOURS), axis=-1)
@@ -39,7 +40,9 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     # In a turn, what is measured may go as far as a wheel that turns about the other.
     driven[:, :2] = np.maximum(driven[:, :2].max(axis=1), robot.track * driven[:, 2])[:, None]
     # A pose may be noisier under way than at rest (an antenna that shakes), hardly the reverse.
-    under_way = driven.any(axis=1) if driven.any() else np.ones(driven.shape[0], dtype=np.bool_)
+    # What is left out of a drive, and may be most of it, tells no scatter.
+    moves = tested & driven.any(axis=1)
+    under_way = moves if moves.any() else tested
     scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left[under_way]), axis=0)
     share = np.full(3, rules.JUMP_SHARE)
     if not np.isfinite(item.measured).any():
@@ -54,10 +57,9 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     least = np.maximum(least, 1e-9)
     # Where most intervals err by nothing, as the headings of a robot that goes straight, the median
     # is no scatter: everything else is beyond it. What many of them do is no jump.
-    often = (np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least)).mean(
-        axis=0
-    ) > rules.JUMP_RARE
-    many = np.quantile(np.abs(left), 1.0 - rules.JUMP_RARE, axis=0) / rules.JUMP_RARE_SIGMAS
+    beyond = np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least)
+    often = beyond[tested].mean(axis=0) > rules.JUMP_RARE
+    many = np.quantile(np.abs(left[tested]), 1.0 - rules.JUMP_RARE, axis=0) / rules.JUMP_RARE_SIGMAS
     scatter = np.where(often, np.maximum(many, scatter), scatter)
     # A reference's noise has the axes of its room, the robot's turn: of two, the larger is of both.
     scatter[:2] = scatter[:2].max()

@@ -64,16 +64,21 @@ class FreeSizes:
         return int(self.directions.shape[1])
 
 
-def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> FreeSizes:
+def sizes_needed(
+    fit: Fitted, given: Robot, wanted: Collection[str], at_file: Collection[str] = ()
+) -> FreeSizes:
     """The cheapest set of sizes that may differ from the given file's.
 
     To first order, with everything else fitted again. The penalty of a parameter is that of all
     model selection (`Fitted.penalty_of_one`). `wanted`: calibration effects that are free
-    regardless of their gain.
+    regardless of their gain. `at_file`: multipliers that stay as given.
     """
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
+    stay = [MULTIPLIERS.index(name) for name in at_file]
     weighed = []
     for sizes in choices(wanted):
+        if sizes.directions[stay].any():
+            continue
         away = _solved(marks, sizes, rest)
         gained = float(np.sum((marks @ sizes.directions @ away) ** 2))
         penalty = fit.penalty_of_one * sizes.free + _surprise(sizes.directions @ away)

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -19,13 +18,9 @@ from werrimbi_odom.inference.comparison.another_drive import (
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
-from werrimbi_odom.inference.diagnosis.calibration_selection import (
-    FreeSizes,
-    sizes_needed,
-    with_sizes,
-)
+from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round, tried_with
+from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
@@ -39,18 +34,16 @@ from werrimbi_odom.inference.diagnosis.rivals import (
     rivals_of_others,
     torn_by_halves,
 )
-from werrimbi_odom.inference.diagnosis.uncertainty import (
-    as_written,
-    noises_of,
-    variances_by_sign,
-    with_spread,
+from werrimbi_odom.inference.diagnosis.told_sizes import (
+    as_told,
+    doubted_effects,
+    goes_without,
+    plain,
 )
 from werrimbi_odom.inference.diagnosis.what_is_left import what_is_left
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
-from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
-from werrimbi_odom.model.effect import applied_of
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.model.robot import Robot
 
 
@@ -86,13 +79,22 @@ def diagnosis_of(
     as_given = Model(given, judge.nothing_of_own)
     another = all(
         of_another_drive(judge.train, model)
-        for model in (_plain(final, mended), as_given)  # a fit of few poses may be far off
+        for model in (plain(final, mended), as_given)  # a fit of few poses may be far off
     )
     answer = _Answer("unknown")
     if not another:
         answer = _answer(begun, given, rounds, final, beyond, laid, instead)
     before = judge.of(as_given)
-    told, sizes = _as_told(final, mended, answer.found, laid)
+    told = as_told(final, mended, answer.found, laid, rounds)
+    doubted: tuple[str, ...] = ()
+    unsure = doubted_effects(told, given, answer.found)
+    while unsure:
+        fewer = (*doubted, unsure.pop(0))
+        shorter = _answer(begun, given, rounds, final, beyond, laid, instead, fewer)
+        without = as_told(final, mended, shorter.found, laid, rounds)
+        if goes_without(without, mended, fewer[-1]):
+            answer, told, doubted = shorter, without, fewer
+            unsure = doubted_effects(told, given, answer.found)
     after = judge.of(told.point.model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)
@@ -101,7 +103,7 @@ def diagnosis_of(
         # It suits a part of the drives alone, and what is left there is no noise.
         answer = answer._replace(found=mistakes) if mistakes else _Answer("unknown")
         at = rounds[0].before if mistakes else final
-        told, sizes = _as_told(at, mended, answer.found, laid)
+        told = as_told(at, mended, answer.found, laid, rounds)
         after = judge.of(told.point.model)
     return Diagnosis(
         verdict=answer.verdict,
@@ -119,7 +121,7 @@ def diagnosis_of(
         given=given,
         rounds=rounds,
         final=final,
-        told=_with_spread(told, sizes, mended, answer.found, laid, rounds),
+        told=told,
         runs=laid,
         train=Sides(before.train, after.train, before.unit),
         holdout=before.to(after),
@@ -156,8 +158,12 @@ def _answer(
     beyond: Dependence | None,
     laid: Concatenated,
     instead: tuple[Instead, ...],
+    doubted: tuple[str, ...] = (),
 ) -> _Answer:
-    """What the fitted drives say: set-up mistakes first, then effects and sizes by importance."""
+    """What the fitted drives say: set-up mistakes first, then effects and sizes by importance.
+
+    `doubted`: names of sizes that are within what is stated as their uncertainty.
+    """
     set_up = begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
     sizes = [
@@ -169,11 +175,10 @@ def _answer(
         sizes = _without_needless_base(sizes, final, set_up.robot)
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     names = {"track_width": name_of_base(final.point.model.robot)}
-    found = tuple(dict.fromkeys([*mistakes, *(names.get(name, name) for name in effects)]))
+    told = [names.get(name, name) for name in effects]
+    found = tuple(dict.fromkeys([*mistakes, *(name for name in told if name not in doubted)]))
     if not found:
-        wrong = beyond is not None or far_above_noise(
-            begun.judge.train, _plain(final, set_up.robot)
-        )
+        wrong = beyond is not None or far_above_noise(begun.judge.train, plain(final, set_up.robot))
         return _Answer("unknown" if wrong else "none")
     if beyond is not None and not mistakes and len(rounds) == 1:
         return _Answer("unknown")
@@ -221,47 +226,3 @@ def _without_needless_base(sizes: list[str], final: Fitted, given: Robot) -> lis
     base, ratio = _OF_ONE_WHEEL
     alone = sizes_needed(final, given, (ratio,)).parts in (("", "left"), ("", "right"))
     return [name for name in sizes if name != base or not alone]
-
-
-def _plain(fit: Fitted, given: Robot) -> Model:
-    """A fitted model, with multipliers that it does not need as given."""
-    if fit.calibrated or fit.names:
-        return fit.point.model
-    model = fit.point.model
-    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
-    return Model(changed(model.robot, back), model.own)
-
-
-def _as_told(
-    fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated
-) -> tuple[Fitted, FreeSizes]:
-    """A fit, with only the reported sizes changed, and which these are."""
-    sizes = sizes_needed(fit, given, sizes_among(found, fit))
-    if not (fit.calibrated or fit.names):
-        return replace(fit, point=replace(fit.point, model=_plain(fit, given))), sizes
-    return with_sizes(laid, fit, given, sizes), sizes
-
-
-def sizes_among(found: Collection[str], fit: Fitted) -> set[str]:
-    """Calibration effects among what was found; of a base that skids, its own name counts too."""
-    base = name_of_base(fit.point.model.robot)
-    return {"track_width" if name == base else name for name in found} & set(CALIBRATED)
-
-
-def _with_spread(
-    told: Fitted,
-    sizes: FreeSizes,
-    given: Robot,
-    found: Collection[str],
-    laid: Concatenated,
-    rounds: tuple[Round, ...],
-) -> Fitted:
-    """The reported fit with the standard deviations that are stated of what was found."""
-    if not (found and (told.calibrated or told.names)):
-        return told
-    effects = [applied_of(told.point.model.robot.effects, name).effect for name in told.names]
-    noises = noises_of(laid, as_written(laid, told, given))
-    wanted = sizes_among(found, told)
-    either = [fit for name in told.names for fit in tried_with(rounds, name)[-1:]]
-    by_sign = variances_by_sign(laid, either, given, wanted)
-    return with_spread(effects, laid, told, given, wanted, sizes, noises, by_sign)

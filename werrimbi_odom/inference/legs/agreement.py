@@ -164,10 +164,24 @@ def inlier_weight(windows: Windows, shown: Floats, gross: Floats) -> tuple[Float
     A window weighs more the more of its travel goes into the measurement. A straight drive without
     turning, for example, agrees with any base.
     """
-    share = np.abs(shown) / np.maximum(gross, TINY)
     keeps = np.abs(windows.measured[:, None] - shown) <= rules.AGREE_WITHIN * gross
-    said = share + 0.02
+    said = _evidence(shown, gross)
     return np.where(keeps, said, 0.0).sum(axis=0), said.sum(axis=0)
+
+
+def inlier_nearness(windows: Windows, shown: Floats, gross: Floats) -> tuple[Floats, Floats]:
+    """`inlier_weight` with a truncated square instead of a count: how near the windows are, too.
+
+    MSAC (Torr and Zisserman, Comput. Vis. Image Underst. 78, 2000). Within a limit that is wide
+    enough for slips as many windows agree with one lever arm, or lag, as with half of it.
+    """
+    off = np.abs(windows.measured[:, None] - shown) / np.maximum(rules.AGREE_WITHIN * gross, TINY)
+    said = _evidence(shown, gross)
+    return (said * np.maximum(1.0 - off**2, 0.0)).sum(axis=0), said.sum(axis=0)
+
+
+def _evidence(shown: Floats, gross: Floats) -> Floats:
+    return np.asarray(np.abs(shown) / np.maximum(gross, TINY) + 0.02)
 
 
 def accepted(found: Agreement, near: bool, least: float) -> Agreement | None:

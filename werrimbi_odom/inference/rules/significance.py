@@ -25,8 +25,8 @@ false one in 500 sound robots. Dependences on a variable or a place have a Bonfe
 
 SIGNIFICANT = 2.0
 """Standard deviations from null above which a parameter is reported as different: chance exceeds
-that for a normal estimate in 4.6 % of cases. It decides words, and which of two hardly
-distinguishable parameters is dropped first; no verdict."""
+that for a normal estimate in 4.6 % of cases. It decides words, which of two hardly distinguishable
+parameters is dropped first, and whether a size is told at all; it names nothing."""
 
 PENALTY_FLOOR = 6.0
 """Floor of the penalty of a free parameter, in minus two log-likelihood. BIC has ln n, which is
