@@ -94,7 +94,10 @@ def diagnosis_of(
         without = as_told(final, mended, shorter.found, laid, rounds)
         if goes_without(without, mended, fewer[-1]):
             answer, told, doubted = shorter, without, fewer
-            unsure = doubted_effects(told, given, answer.found)
+            # Among them may be a mistake of set-up, which stays found.
+            unsure = [
+                name for name in doubted_effects(told, given, answer.found) if name not in doubted
+            ]
     after = judge.of(told.point.model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)
