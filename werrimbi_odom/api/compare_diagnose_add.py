@@ -9,14 +9,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
-from werrimbi_odom.api.next_command import beside, next_command
+from werrimbi_odom.api.next_command import next_command
 from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError, TooFewLegsError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.text_files import beside
 from werrimbi_odom.progress import Show, silent
-from werrimbi_odom.report.number_format import counted
+from werrimbi_odom.report.number_format import more_like_these
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -139,10 +140,8 @@ def _instead(given: Recordings) -> str:
     from werrimbi_odom.inference.seldom_measured import more_to_diagnose, tell_sizes
 
     more = more_to_diagnose(given.runs, all_fitted=bool(given.holdout))
-    words = ""
-    if more is not None:
-        of_those = "" if given.holdout else ", a quarter of all being put aside for judging"
-        words = f" ({counted(more, 'more drive')} like these{of_those})"
+    apart = "" if given.holdout else ", a quarter of all being put aside for judging"
+    words = more_like_these(more, apart)
     if not tell_sizes(given.runs):
         return f"{words}; `werrimbi compare` shows the errors of these"
     return f"{words}; base and radii alone are told by: {_fit_command(given, one_line=True)}"

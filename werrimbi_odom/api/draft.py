@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.compare_diagnose_add import as_judged
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
-from werrimbi_odom.api.next_command import beside, next_command
+from werrimbi_odom.api.next_command import next_command
 from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.files.text_files import beside, replacing
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis

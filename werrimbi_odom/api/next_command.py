@@ -44,11 +44,6 @@ def next_command(
     return " ".join(lines) if one_line else "    " + " \\\n      ".join(lines)
 
 
-def beside(robot: Path, word: str) -> str:
-    """Name for a new robot file, beside the given one."""
-    return str(robot.with_name(f"{robot.stem}_{word}{robot.suffix}"))
-
-
 def _needs_force(given: Recordings) -> bool:
     """Whether a reference is computed from the wheels, and taken because that was asked for."""
     if not given.how.force_reference:

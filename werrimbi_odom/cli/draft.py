@@ -56,7 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _next(folder: Path, given: Recordings, name: str) -> str:
     """Commands to test and to install the draft."""
-    from werrimbi_odom.api.next_command import beside, next_command
+    from werrimbi_odom.api.next_command import next_command
+    from werrimbi_odom.files.text_files import beside
 
     file = folder / f"{name}.py"
     explain = shlex.join(["werrimbi", "explain", name, "--effects", str(file)])

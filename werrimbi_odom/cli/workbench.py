@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
     os.environ.pop("NICEGUI_REDIS_URL", None)
     try:
-        from werrimbi_odom.api.next_command import beside
+        from werrimbi_odom.files.text_files import beside
         from werrimbi_odom.report.number_format import picked
         from werrimbi_odom.workbench.saving import Target
         from werrimbi_odom.workbench.server import listening, serve

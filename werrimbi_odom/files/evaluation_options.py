@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.model.encoder_online import EncoderLimits
 
+LEAST, MOST = 1e-9, 1e6
+"""Range of a leg and of the reference's standard deviations: squares are finite and not zero."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationOptions:

@@ -12,7 +12,7 @@ from typing import get_args
 
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.files.evaluation_options import LEAST, MOST, EvaluationOptions
 from werrimbi_odom.files.gyro_headings import as_of_a_gyro
 from werrimbi_odom.files.merged_reference import with_one_scale
 from werrimbi_odom.files.mislabelled_columns import without_zeros
@@ -27,8 +27,6 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
 BAG = "metadata.yaml"
-LEAST, MOST = 1e-9, 1e6
-"""Range of a leg and of the reference's standard deviations: squares are finite and not zero."""
 _NAMED = 8  # runs of a folder named before "..."
 
 

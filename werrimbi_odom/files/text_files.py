@@ -15,6 +15,11 @@ from typing import TextIO
 from werrimbi_odom.errors import InputError
 
 
+def beside(file: Path, word: str) -> str:
+    """Name for a new file, beside the one that it is made of: robot_better.yaml."""
+    return str(file.with_name(f"{file.stem}_{word}{file.suffix}"))
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[TextIO]:
     """Open a text file (UTF-8, LF) that replaces `path` if the block succeeds.

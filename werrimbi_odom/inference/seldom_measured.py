@@ -37,19 +37,23 @@ def more_to_judge(runs: Iterable[Run]) -> int:
     return max(math.ceil(lacking * len(legs) / sum(legs)), 0) if legs else 0
 
 
-def more_to_diagnose(runs: Sequence[Run], *, all_fitted: bool) -> int | None:
+def more_to_diagnose(runs: Sequence[Run], *, all_fitted: bool) -> int:
     """How many more drives like these leave a diagnosis the legs to fit that it needs.
 
-    None of drives that were measured often: these are parted, or too short. `all_fitted`: whether
-    other drives are held out.
+    0 where drives were measured often: these are parted, or too short. `all_fitted`: whether other
+    drives are held out.
     """
     poses = [poses_of(run) for run in runs]
     if not all(1 < count < rules.FEWEST_LEGS for count in poses):
-        return None
+        return 0
     each = sum(poses) / len(poses) - 1.0
-    for more in itertools.count(1):
-        drives = len(poses) + more
-        fitted = drives if all_fitted else drives - held_of_few(drives)
-        if fitted * each >= rules.LEGS_OF_A_PART:
-            return more
-    return None
+
+    def fitted(drives: int) -> int:
+        return drives if all_fitted else drives - held_of_few(drives)
+
+    enough = (
+        more
+        for more in itertools.count(1)
+        if fitted(len(poses) + more) * each >= rules.LEGS_OF_A_PART
+    )
+    return next(enough)

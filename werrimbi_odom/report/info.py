@@ -13,13 +13,14 @@ from typing import Any
 from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.files.first_robot import PLACEHOLDER_TICKS
 from werrimbi_odom.files.run_folder import REFERENCE
+from werrimbi_odom.files.text_files import beside
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, drove, measures_of
 from werrimbi_odom.inference.seldom_measured import more_to_judge, tell_sizes
 from werrimbi_odom.report.document import Document, Paragraph
 from werrimbi_odom.report.info_wheels import WITHOUT_WHEELS, wheels_to_try
 from werrimbi_odom.report.info_words import words_of
-from werrimbi_odom.report.number_format import counted, listed, picked
+from werrimbi_odom.report.number_format import counted, listed, more_like_these, picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -158,8 +159,7 @@ def _before_command(found: Info) -> str:
             "hides what the robot does. Next:"
         )
     if found.intervals < rules.FEWEST_LEGS:
-        more = more_to_judge(found.runs)
-        these = f" ({counted(more, 'more drive')} like these)" if more else ""
+        these = more_like_these(more_to_judge(found.runs))
         shown = "what these show is printed by"
         if _wants_fit(found):
             shown = "base and radii alone are told by these drives together"
@@ -288,5 +288,5 @@ def command_of(found: Info) -> str:
     if held.reference is not None:
         topics = held.topics if all(each.beside for each in usable) else held.topics[:1]
         words += [word for topic in topics for word in ("--reference-topic", topic)]
-    out = ["--out", str(robot.with_name(f"{robot.stem}_fitted{robot.suffix}"))] if fit else []
+    out = ["--out", beside(robot, "fitted")] if fit else []
     return shlex.join([*words, *_others(usable), *paths, *out])

@@ -173,3 +173,8 @@ def picked(item: object, names: str) -> dict[str, Any]:
 def counted(number: int, word: str) -> str:
     """A count with its noun: 1 leg, 2 legs."""
     return f"{number} {word}{'' if number == 1 else 's'}"
+
+
+def more_like_these(drives: int, apart: str = "") -> str:
+    """How many more drives are needed, behind the words that ask for them; "" if none are."""
+    return f" ({counted(drives, 'more drive')} like these{apart})" if drives else ""

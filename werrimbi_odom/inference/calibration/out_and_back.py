@@ -124,8 +124,8 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
             "the headings look like degrees: divided by 57.3 they scatter as wheels make them that "
             "scatter x and y so, and as radians they do not; eyaw_rad is in radians"
         )
-    least = likelihood.interval_of_same(same)[0]
-    if (min(left.low, right.low) if split_known else math.sqrt(least)) > rules.STRANGE_NOISE:
+    of_both = 0.0 if split_known else math.sqrt(likelihood.interval_of_same(same)[0])
+    if max(of_both, min(left.low, right.low)) > rules.STRANGE_NOISE:
         raise InputError(
             f"k would be {left.value:.2g} and {right.value:.2g} m^0.5, and no rolling wheels err "
             f"by more than {rules.STRANGE_NOISE:g}: are the errors in metres and radians, is "

@@ -98,8 +98,8 @@ def umbmark(squares: Squares, robot: Robot) -> Umbmark:
     """Corrections of base and radii from squares of both senses, with standard deviations.
 
     `robot`: the robot that the odometry of these squares assumed; its base is that by its effects
-    (`skid_steer`), which the squares turned on. InputError if base and radii
-    cannot cause these offsets.
+    (`skid_steer`), which the squares turned on. InputError if base and radii cannot cause these
+    offsets.
     """
     angles, track = first_order_angles(squares), effective_track(robot)
     paper = paper_factors(angles, squares.side, track)

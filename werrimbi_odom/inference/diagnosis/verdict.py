@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 from werrimbi_odom.files.compared_ways import ways_of_one_scale
@@ -81,23 +82,23 @@ def diagnosis_of(
         of_another_drive(judge.train, model)
         for model in (plain(final, mended), as_given)  # a fit of few poses may be far off
     )
-    answer = _Answer("unknown")
-    if not another:
-        answer = _answer(begun, given, rounds, final, beyond, laid, instead)
+    answered = partial(_answer, begun, given, rounds, final, beyond, laid, instead)
+    answer = _Answer("unknown") if another else answered()
     before = judge.of(as_given)
     told = as_told(final, mended, answer.found, laid, rounds)
+
+    def unsure_of() -> list[str]:
+        return doubted_effects(told, given, [each for each in answer.found if each not in mistakes])
+
     doubted: tuple[str, ...] = ()
-    unsure = doubted_effects(told, given, answer.found)
+    unsure = unsure_of()
     while unsure:
         fewer = (*doubted, unsure.pop(0))
-        shorter = _answer(begun, given, rounds, final, beyond, laid, instead, fewer)
+        shorter = answered(fewer)
         without = as_told(final, mended, shorter.found, laid, rounds)
         if goes_without(without, mended, fewer[-1]):
             answer, told, doubted = shorter, without, fewer
-            # Among them may be a mistake of set-up, which stays found.
-            unsure = [
-                name for name in doubted_effects(told, given, answer.found) if name not in doubted
-            ]
+            unsure = unsure_of()
     after = judge.of(told.point.model)
     of_set_up = judge.of(Model(mended, judge.nothing_of_own)) if mistakes else before
     further = any(name not in mistakes for name in answer.found)

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.legs.queued_messages import (
     period_of,
     queued_messages,
     read_before,
-    steps_and_beside,
+    travel_of_steps,
 )
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
@@ -42,9 +42,9 @@ def with_even_stamps(
     """Estimate when a timer read the counters; return the stamps unchanged if no timer did.
 
     `time` (n,): stamps [s]. `left`, `right` (n,): cumulative counts. `lost` (n - 1,): number of
-    missing messages between neighbours; none by default. `least`: stamps are corrected only if the
-    correction exceeds this share of the message interval. Result (n,): ascending times [s]. A delay
-    common to all stamps remains; it is estimated as such.
+    missing messages between neighbours; by default as `lost_messages` finds them. `least`: stamps
+    are corrected only if the correction exceeds this share of the message interval. Result (n,):
+    ascending times [s]. A delay common to all stamps remains; it is estimated as such.
     """
     if time.size < rules.EVEN_MESSAGES or not (np.diff(time) >= 0.0).all():
         return time
@@ -160,7 +160,9 @@ def with_even_scan_stamps(reference: Reference) -> Reference:
 def _lost_scans(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
     """Count missing scans: holes in which the robot moves several times a neighbouring step."""
     interval = np.diff(time)
-    step, beside = steps_and_beside(left, right)
+    step = travel_of_steps(left, right)
+    wide = np.pad(step, 2, mode="edge")
+    beside = 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
     drives = beside > 0.5 * float(np.median(step))
     times = np.divide(step, beside, out=np.ones_like(step), where=drives)
     holes = (times > rules.EVEN_HOLE) & (interval > np.median(interval))

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter, minimum_filter1d, uniform_filter1d
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.legs.queued_messages import travel_of_steps
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -82,7 +83,7 @@ def _ways(left: Counts, right: Counts) -> Floats:
     wheels may speed up or brake meanwhile. In multiples of what steps are off by, (3, n - 1); zeros
     where nothing is known.
     """
-    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right))).astype(np.float64)
+    step = travel_of_steps(left, right)
     known = np.isfinite(step)
     step = np.where(known, step, 0.0)
     usual = np.pad(median_filter(step, 3, mode="nearest"), 2, mode="edge")
@@ -104,11 +105,10 @@ def _likeliest(late: Floats, rough: Floats, ways: Floats) -> NDArray[np.intp]:
     than the root of n.
     """
     near = late - np.rint(late)
-    near = np.abs(near - np.median(near))
-    scale = max(float(near.mean()), rules.EVEN_LEAST)
+    middle = np.median(near)
+    late, scale = late - middle, max(float(np.abs(near - middle).mean()), rules.EVEN_LEAST)
     length = int(np.sqrt(late.size)) + 1
     parts = -(-late.size // length)
-    late = late - np.median(late - np.rint(late))
 
     def side_by_side(values: Floats) -> NDArray[np.float32]:
         wide = np.concatenate([values, np.zeros(parts * length - values.size)])

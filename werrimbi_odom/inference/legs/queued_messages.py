@@ -63,15 +63,13 @@ def read_before(stamps: Floats, left: Counts, right: Counts, queued: NDArray[np.
     inside = queued[1:] | queued[:-1]
     interval = np.diff(stamps)
     quick = interval < rules.EVEN_AT_ONCE * np.median(interval)
-    step = np.nan_to_num(steps_and_beside(left, right)[0])
+    step = np.nan_to_num(travel_of_steps(left, right))
     at_once, usual = (step[inside & part] for part in (quick, ~quick))
     if not at_once.size or not usual.any():
         return False
     return bool(np.mean(at_once) > (1.0 - rules.EVEN_SHARE) * np.mean(usual))
 
 
-def steps_and_beside(left: Counts, right: Counts) -> tuple[Floats, Floats]:
-    """Travel of each step, and that of the steps beside it, (n - 1,) each."""
-    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
-    wide = np.pad(step, 2, mode="edge")
-    return step, 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
+def travel_of_steps(left: Counts, right: Counts) -> Floats:
+    """Travel from each message to the next, the mean of both wheels', (n - 1,) [counts]."""
+    return 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right))).astype(np.float64)

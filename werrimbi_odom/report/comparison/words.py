@@ -22,7 +22,14 @@ from werrimbi_odom.report.comparison.phrases import (
     systematic_told,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.number_format import capital, counted, length, listed, two_digits
+from werrimbi_odom.report.number_format import (
+    capital,
+    counted,
+    length,
+    listed,
+    more_like_these,
+    two_digits,
+)
 from werrimbi_odom.report.phrases import left_out_words, leg_words, rarer_than_asked, remark_words
 
 _CHANNELS = {
@@ -81,8 +88,7 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
         median, asked = comparison.median_length, comparison.main.leg
         more = "Drive more, or try a shorter --leg"
         if _is_seldom(comparison, verdict):
-            drives = more_to_judge(comparison.prepared.runs)
-            these = f" ({counted(drives, 'more drive')} like these)" if drives else ""
+            these = more_like_these(more_to_judge(comparison.prepared.runs))
             more = f"Drive more{these}, or measure the robot more often on its way"
         return (
             f"Too little to judge: {counted(count, 'leg')} of {leg_words(median, asked)} m, "
