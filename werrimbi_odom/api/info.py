@@ -13,50 +13,26 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.api.info_stretches import judged_stretches
+from werrimbi_odom.api.info_topics import DESCRIPTION, chosen_topics, separate_reference
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Bag, opened_bag
-from werrimbi_odom.files.bag_contents import contents_of
 from werrimbi_odom.files.bag_joints import wheel_names
-from werrimbi_odom.files.bag_reference import LOCALISED
-from werrimbi_odom.files.bag_ticks import KINDS
 from werrimbi_odom.files.bag_wheels import Wheels
-from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.controller_wheels import of_controller
-from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.first_robot import FirstRobot, with_driver, with_steps, with_wraps
-from werrimbi_odom.files.gyro_headings import as_of_a_gyro
-from werrimbi_odom.files.measured_topic import Measured, preference
+from werrimbi_odom.files.first_robot import FirstRobot, with_steps, with_wraps
 from werrimbi_odom.files.merged_reference import SCALE_MOST
-from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.recordings import reference_of_each
 from werrimbi_odom.files.reference_choice import NONE
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_poses
-from werrimbi_odom.files.run_folder import REFERENCE
-from werrimbi_odom.files.stamps import stamps_of
 from werrimbi_odom.files.text_files import replacing
-from werrimbi_odom.files.urdf_wheels import of_urdf
 from werrimbi_odom.files.wheel_joints import (
     SIDES,
-    chosen_wheels,
-    joints_told_apart,
-    of_another_robot,
 )
-from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
-from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
-from werrimbi_odom.inference.legs.count_interpolation import counters_of
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
-from werrimbi_odom.inference.legs.motion_states import driven
 from werrimbi_odom.inference.recording_info import Held, Info
-from werrimbi_odom.inference.set_up.corrected_robot import with_findings
-from werrimbi_odom.inference.set_up.search import knows_left, mistakes_without_sizes
 from werrimbi_odom.report.info import document_of, info_json
-
-DESCRIPTION = "/robot_description"
 
 
 def info(
@@ -140,16 +116,16 @@ def _held(
     reference_topic: str | None,
 ) -> tuple[Held, FirstRobot]:
     bag = bag_at(path)
-    separate = None if other is None else _separate(other, source, reference_topic)
+    separate = None if other is None else separate_reference(other, source, reference_topic)
     if bag is None:
         topic = separate.name if separate is not None else None
         if source is None:
             first = replace(first, counted=True)
-        file = source or robot_file_of(first)
+        file = source or first.file
         run = read_run(path, file, reference=other, reference_topic=topic)
         held = Held(path, None, None, separate, {}, None, "", other=other)
         return _as_read(held, run, source, first)
-    held, first = _of_bag(path, bag, source, first, ticks_topic, reference_topic)
+    held, first = chosen_topics(path, bag, source, first, ticks_topic, reference_topic)
     if other is not None:
         held = replace(held, reference=separate, beside=None, other=other)
     try:
@@ -158,8 +134,8 @@ def _held(
         own = NONE if other is None else None
         reference = reference_topic or (held.reference.name if held.reference else own)
         if source is None:
-            first = _with_ticks(path, held.wheels, first)
-        file, topic = source or robot_file_of(first), held.wheels.name
+            first = with_ticks_of_steps(path, held.wheels, first)
+        file, topic = source or first.file, held.wheels.name
         merged = _with_gyro(path, held, file)
         if merged is not None:
             judged, first = _as_read(held, merged, source, first)
@@ -178,7 +154,7 @@ def _as_read(
 ) -> tuple[Held, FirstRobot]:
     """What the run that was read tells, by a robot file with the width at which counters wrap."""
     first = first if source else with_wraps(first, run.ticks)
-    return _judged(replace(held, run=run), source, first), first
+    return judged_stretches(replace(held, run=run), source, first), first
 
 
 def _with_gyro(path: Path, held: Held, file: RobotFile) -> Run | None:
@@ -207,7 +183,7 @@ def _at_fault(
     if held.wheels is None:
         return ""
     try:
-        file, topic = source or robot_file_of(first), held.wheels.name
+        file, topic = source or first.file, held.wheels.name
         read_run(path, file, ticks_topic=topic, reference_topic="none")
     except InputError:
         ours = (held.joints.left, held.joints.right)
@@ -216,100 +192,14 @@ def _at_fault(
     return ""
 
 
-def _of_bag(
-    path: Path,
-    bag: Path,
-    source: RobotFile | None,
-    first: FirstRobot,
-    ticks_topic: str | None,
-    reference_topic: str | None,
-) -> tuple[Held, FirstRobot]:
-    """Contents of a bag, and what it says about the robot."""
-    with opened_bag(bag) as opened:
-        base = "" if source is None else str(source.values["base_frame_id"])
-        contents = contents_of(opened, base, wished=[reference_topic or ""])
-        wheels, joints = chosen_wheels(opened, contents, ticks_topic, source)
-        if source is None and not first.has_sizes:
-            first = of_urdf(_description(opened, wheels), tuple(joints.turned or ()))
-        if source is None and wheels:
-            first = with_driver(replace(first, counted=wheels.gives == "counts"), wheels.kind)
-            if first.counted and not wheels.places:
-                named = (name for name, kind in KINDS.items() if kind == wheels.kind)
-                first = replace(first, input_type=next(named, ""))
-        if source is None and joints.turned:
-            known = (first.left, first.right)
-            joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
-            told = dict(first.told or {})
-            if (joints.left, joints.right) != known and "joints" in told:
-                told["joints"] = "the bag's joints, by their names"
-            first = replace(first, left=joints.left, right=joints.right, told=told)
-        others = of_another_robot(contents, wheels) if reference_topic is None else set()
-        if wheels is not None:  # odometry that is asked for as the wheels measures nothing more
-            others = {*others, wheels.name}
-        ours = [each for each in contents.references if each.name not in others]
-        reference = _best(ours, reference_topic)
-        beside = None if reference_topic else _gyro(ours, reference)
-        listed = [wheels, *contents.references]
-        topics = {name for each in listed if each for name in _topics(each)}
-        stamps = stamps_of(opened, sorted(topics))
-    held = Held(path, contents, wheels, reference, stamps, None, "", joints, beside=beside)
-    return held, first
-
-
-def _description(bag: Bag, wheels: Wheels | None) -> str:
-    """The URDF of the namespace of the wheels, or else the first one; "" without one."""
-    spaces = [
-        each.name.removesuffix(DESCRIPTION)
-        for each in bag.topics
-        if each.name.endswith(DESCRIPTION)
-    ]
-    ours = "" if wheels is None else wheels.name
-    spaces.sort(key=lambda space: (not ours.startswith(f"{space}/"), -len(space)))
-    named = [f"{space}{DESCRIPTION}" for space in spaces]
-    found = bag.firsts(named[:1])
-    return next((getattr(each, "data", "") for each in found.values()), "")
-
-
-def _separate(other: Path, source: RobotFile | None, wish: str | None) -> Measured | None:
-    """The reference in a recording of its own; None for a folder with reference.csv."""
-    bag = bag_at(other, REFERENCE)
-    if bag is None:
-        return None
-    base = "" if source is None else str(source.values["base_frame_id"])
-    with opened_bag(bag) as opened:
-        return _best(contents_of(opened, base, wished=[wish or ""]).references, wish)
-
-
-def _topics(each: Wheels | Measured) -> list[str]:
-    return [name.partition(":")[0] for name in each.name.split(",")]
-
-
-def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
-    """The requested reference, or the independent one that measures most."""
-    if wish is not None:
-        return next((each for each in references if each.name == wish), None)
-    usable = [each for each in references if each.independent and each.messages >= rules.FEW_POSES]
-    usable = usable or [each for each in references if each.independent]
-    return min(usable, key=preference, default=None)
-
-
-def _gyro(references: Sequence[Measured], reference: Measured | None) -> Measured | None:
-    """A gyro that may give the headings beside the poses of a localiser."""
-    if reference is None or reference.measures != "poses":
-        return None
-    if reference.chain is None and reference.kind != LOCALISED:  # motion capture, scans
-        return None
-    return _best([each for each in references if each.measures == "yaw"], None)
-
-
-def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
+def with_ticks_of_steps(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
     """Counts per turn from the steps of the joint angles, if visible."""
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first
     turn = 2.0 * math.pi
     run = read_run(
         path,
-        robot_file_of(replace(first, ticks=turn)),
+        replace(first, ticks=turn).file,
         ticks_topic=wheels.name,
         reference_topic="none",
     )
@@ -317,61 +207,6 @@ def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
         return first
     angles = (run.ticks.left, run.ticks.right)
     return with_steps(first, [np.asarray(each, dtype=np.float64) for each in angles])
-
-
-def robot_file_of(first: FirstRobot) -> RobotFile:
-    """A robot file from the known values, with placeholders for unknown sizes."""
-    return robot_file_of_text(first.text("what is known"), Path("robot.yaml"))
-
-
-def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
-    """When the robot stood, drove, was held and carried, and what will be excluded."""
-    assert held.run is not None
-    (recorded,) = as_of_a_gyro([without_zeros(held.run)])
-    robot_file = source or robot_file_of(first)
-    robot, limits = robot_file.robot, robot_file.limits
-    try:
-        if recorded.reference is not None:
-            refuse_unjudgeable(recorded, robot)
-            if source is not None or first.tells_distances:
-                if words := words_about_ways(recorded, robot):
-                    return replace(held, problem=f"{recorded.path}: {words}")
-                require_independent(recorded, robot, limits)
-            if recorded.reference.kind != "incremental":  # as where drives are judged
-                recorded = without_held_poses(recorded, robot)
-        run = with_no_driving(recorded, robot, limits)
-        counters = counters_of(run, robot, limits)
-        how = EvaluationOptions(limits=limits)
-        mistakes = mistakes_without_sizes(run, robot, how)
-        without_names = held.wheels is not None and held.wheels.of_array
-        confirmed = without_names and not mistakes and knows_left(run, robot, how)
-        wired, _ = with_findings(robot, mistakes, None)
-        found = driven(counters, wired, run.no_driving or ())
-        record = record_of(run, robot, limits) if run.reference is not None else None
-    except InputError as error:
-        return replace(held, problem=str(error))
-    seen = None
-    if record is not None:
-        seen = driven(counters, wired, run.no_driving or (), unmeasured(record))
-    scans = bias = 0.0
-    if recorded.reference is not None and run.reference is not None:
-        given, used = recorded.reference, run.reference
-        scans = float(np.std(used.time - given.time))
-        last = int(np.flatnonzero(used.has_yaw)[-1]) if used.has_yaw.any() else 0
-        if last:
-            bias = float(given.yaw[last] - used.yaw[last]) / float(np.ptp(used.time[: last + 1]))
-    return replace(
-        held,
-        run=run,
-        mistakes=mistakes,
-        confirmed=confirmed,
-        driven=found,
-        seen=seen,
-        left_out=() if record is None else record.left_out,
-        restamped=counters.restamped,
-        scans_restamped=scans,
-        gyro_bias=bias,
-    )
 
 
 def _write(found: Info, out: Path, force: bool) -> Path:

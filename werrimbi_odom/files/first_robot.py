@@ -7,12 +7,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.counter_columns import bits_of_wraps
 from werrimbi_odom.files.driver_messages import DRIVERS
+from werrimbi_odom.files.robot_file import RobotFile, robot_file_of_text
 from werrimbi_odom.files.run import Ticks
 from werrimbi_odom.files.wheel_joints import SIDES
 from werrimbi_odom.model.pose import Floats
@@ -65,6 +67,11 @@ class FirstRobot:
     def tells_distances(self) -> bool:
         """Whether it turns what the wheels counted into metres."""
         return self.has_sizes and not self.lacks_ticks
+
+    @property
+    def file(self) -> RobotFile:
+        """Robot file from what is known, with placeholders for unknown sizes."""
+        return robot_file_of_text(self.text("what is known"), Path("robot.yaml"))
 
     def text(self, title: str) -> str:
         """Text of the robot file, with placeholders for unknown sizes."""
