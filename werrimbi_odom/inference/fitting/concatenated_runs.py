@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
+from werrimbi_odom.inference.fitting.drives_of_runs import counts_of, drive_of_runs, messages_of
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun
-from werrimbi_odom.model.driven_motion import features
+from werrimbi_odom.model.drive_of_run import DriveOfRun
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
@@ -250,7 +250,7 @@ class Concatenated:
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
         """Wheel travel of all steps before any effect."""
         left, right = wiring_of(robot.effects).wheels(
-            *self.cache.known("counts", lambda: _counts(self.runs))
+            *self.cache.known("counts", lambda: counts_of(self.runs))
         )
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
@@ -261,9 +261,8 @@ class Concatenated:
         return self.cache.drive(key, lambda: self._drive(robot, wiring))
 
     def _drive(self, robot: Robot, wiring: Wiring) -> DriveOfRun:
-        messages = self.cache.known("messages", lambda: _messages(self.runs))
-        of_runs = zip(self.runs, messages, strict=True)
-        return _drives_joined([_drive_of(run, its, robot, wiring) for run, its in of_runs])
+        messages = self.cache.known("messages", lambda: messages_of(self.runs))
+        return drive_of_runs(self.runs, messages, robot, wiring)
 
 
 def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) -> Concatenated:
@@ -296,54 +295,6 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
     )
 
 
-class _Messages(NamedTuple):
-    """Messages of a run that have a part in its steps."""
-
-    of_step: NDArray[np.intp]
-    """Which of them each step is a part of."""
-    rates: Floats | None
-    """Counts per second in each (2, k), where the counts alone are too coarse to tell them."""
-
-
-def _messages(runs: Sequence[MatchedRun]) -> list[_Messages]:
-    found = []
-    for run in runs:
-        middles = 0.5 * (run.time[1:] + run.time[:-1])
-        numbers, of_step = np.unique(run.counters.message_at(middles), return_inverse=True)
-        rates = run.counters.rates
-        found.append(_Messages(of_step, None if rates is None else rates[:, numbers]))
-    return found
-
-
-def _drive_of(run: MatchedRun, messages: _Messages, robot: Robot, wiring: Wiring) -> DriveOfRun:
-    left, right = wiring.wheels(run.left, run.right)
-    first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
-    raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    rims = None
-    if messages.rates is not None:
-        left, right = wiring.wheels(*messages.rates)
-        rims = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    duration, message = np.diff(run.time), messages.of_step
-    return features(robot, duration, raw, first_counts, run.channels, message, rims)
-
-
-def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:
-    """Concatenate the inputs of the effects."""
-    if len(parts) == 1:
-        return parts[0]
-
-    def joined(name: str) -> Any:
-        return _joined([part.found(name) for part in parts])
-
-    return DriveOfRun.by({name: partial(joined, name) for name in QUANTITIES})
-
-
-def _counts(runs: Sequence[MatchedRun]) -> WheelTravel[Floats]:
-    """Counts of both wheels in all steps."""
-    counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs])
-    return counts
-
-
 def _stated(measured: Reference) -> Floats | None:
     """Stated covariances of poses (r, 3, 3) in the reference's axes; None if there are none."""
     if measured.covariance is not None:
@@ -356,16 +307,3 @@ def _stated(measured: Reference) -> Floats | None:
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
     return np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp)
-
-
-def _joined(parts: Sequence[Any]) -> Any:
-    """Concatenate arrays, tuples or mappings of arrays."""
-    first = parts[0]
-    if len(parts) == 1:
-        return first
-    if isinstance(first, np.ndarray):
-        return np.concatenate(parts)
-    if isinstance(first, tuple):
-        return type(first)(*(_joined(list(column)) for column in zip(*parts, strict=True)))
-    common = [name for name in first if all(name in part for part in parts)]
-    return {name: _joined([part[name] for part in parts]) for name in common}
