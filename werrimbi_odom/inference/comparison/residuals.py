@@ -162,14 +162,18 @@ def fitted_heading(
 def _facing(
     predicted: NDArray[np.complex128], yaw: Floats, measured: NDArray[np.complex128], heading: float
 ) -> Floats:
-    """Heading at each pose, by aligning the predicted path with the positions around it."""
-    count = measured.size
-    index = np.arange(count)
-    low, high = (
-        np.maximum(index - rules.FACING_POSES, 0),
-        np.minimum(index + rules.FACING_POSES, count - 1),
-    )
-    chord, seen_chord = predicted[high] - predicted[low], measured[high] - measured[low]
+    """Heading at each pose, by the chord of the path around it.
+
+    Where the robot reverses, that is short: there, by the longer half of it.
+    """
+    index = np.arange(measured.size)
+    low = np.maximum(index - rules.FACING_POSES, 0)
+    high = np.minimum(index + rules.FACING_POSES, index.size - 1)
+    begin, end = np.stack([low, low, index]), np.stack([high, index, high])
+    chord = predicted[end] - predicted[begin]
+    length = np.abs(chord) * np.array([2.0, 1.0, 1.0])[:, None]
+    taken = np.argmax(length, axis=0), index
+    chord, seen_chord = chord[taken], (measured[end] - measured[begin])[taken]
     off = np.angle(seen_chord * np.conj(chord))
     usable = (np.abs(chord) > 0.0) & (np.abs(seen_chord) > 0.0)
     return yaw + np.where(usable, off, heading)

@@ -148,8 +148,8 @@ NOISE_LEFT = 0.25
 deviation. Where growth exceeds the noise, the extrapolation cannot be trusted down to zero."""
 
 FACING_POSES = 10
-"""Positions to either side of a pose whose chord gives its heading, if only positions are measured:
-noise counts for a tenth of what it is between two neighbours."""
+"""Positions to either side of a pose by whose chord its heading is told, if only positions are
+measured: noise counts for a twentieth of what it is between two neighbours."""
 
 OTHER_DRIVE, OTHER_DRIVE_LEGS = 0.5, 4
 """Squared error relative to the squared motion, at every length with so many legs, above which the
