@@ -133,8 +133,8 @@ def test_a_marker_ahead_of_the_axle_goes_aside_in_curves(
     for run in runs:
         seen = run.reference
         assert seen is not None
-        x, y = seen.x + ahead * np.cos(seen.yaw), seen.y + ahead * np.sin(seen.yaw)
-        moved.append(replace(run, reference=replace(seen, x=x, y=y)))
+        place = seen.x + 1j * seen.y + ahead * np.exp(1j * seen.yaw)
+        moved.append(with_reference(run, x=place.real, y=place.imag))
     found = compare(moved, RIGHT)
     (part,) = [
         each
