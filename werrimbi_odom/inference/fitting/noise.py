@@ -38,8 +38,6 @@ _ALL = (*NOISES, STAMP_NOISE, *WALK)
 _LOWEST = np.log(1e-14)
 _HIGHEST = np.log([rules.STRANGE_NOISE**2] * 2 + [10.0] * 6)
 """Bounds of the log variances; the wheels' one is physical."""
-_UNTOLD = 1e-4
-"""Information on a log variance that tells nothing: its standard deviation is then a hundred."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +207,7 @@ def noise_estimates(
     logs = 2.0 * np.log(sigmas[moving])
     curved = hessian(function, logs)
     covariance = 2.0 * _inverse(curved)
-    untold = np.flatnonzero(np.diag(curved) < _UNTOLD)
+    untold = np.flatnonzero(np.diag(curved) < rules.NOISE_UNTOLD)
     most = {index: 0.5 * _highest(function, logs, index) for index in untold.tolist()}
     if information is not None:
         step = 0.1
@@ -241,7 +239,7 @@ def _inverse(information: Floats) -> Floats:
     A noise that is far below all others has none, or a little less than none by rounding.
     """
     values, ways = np.linalg.eigh(information)
-    return np.asarray((ways / np.maximum(values, _UNTOLD)) @ ways.T)
+    return np.asarray((ways / np.maximum(values, rules.NOISE_UNTOLD)) @ ways.T)
 
 
 def _highest(function: Callable[[Floats], Floats], logs: Floats, index: int) -> float:
