@@ -76,6 +76,19 @@ def test_a_reference_without_headings_has_none_that_are_late_or_drift() -> None:
     assert known - unknown == {"reference_heading_delay", "reference_gyro_drift"}
 
 
+def test_a_size_that_is_wrong_in_any_case_is_no_rival_of_the_others() -> None:
+    """Squares by tape tell the ratio of the radii, and neither their mean nor the base."""
+    names = ("wheel_radius_scale", "unequal_wheel_radii", "track_width")
+    scale, ratio, base = names
+    final: Fitted = replace(
+        a_round().before, calibrated=(scale, ratio), alternatives=((ratio, base),)
+    )
+    assert rivals_of(scale, (), final, ()) == (scale, base)
+    assert rivals_of(ratio, (), final, ()) == ()
+    final = replace(final, alternatives=((ratio, base), (scale, base)))
+    assert set(rivals_of(scale, (), final, ())) == set(names)
+
+
 @pytest.mark.parametrize("needed", [(), ("wheel_radius_scale",)])
 def test_an_effect_beside_which_the_size_is_needless_is_its_rival(needed: tuple[str, ...]) -> None:
     assert of_sizes(needed, 0.5 * rules.RIVAL) == ("unequal_wheel_radii", "lateral_slip")

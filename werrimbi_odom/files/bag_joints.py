@@ -17,8 +17,9 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of
 from werrimbi_odom.files.parameters import WHOLE_COUNTS
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import WORKED_OUT, Ticks, counts_of, integrated
+from werrimbi_odom.files.run import WORKED_OUT, Ticks, counts_of
 from werrimbi_odom.files.two_publishers import leaps_to_and_fro
+from werrimbi_odom.files.ways_of_speeds import ways_of
 from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
@@ -76,7 +77,8 @@ class JointsCollector:
         if self._speeds_tell(positions):
             time, speeds = self._speeds.arrays(len(self._wheels))
             known = np.where(np.isfinite(speeds), speeds, 0.0)
-            positions, words = integrated(time, known), [*words, WORKED_OUT["velocities"]]
+            positions, how = ways_of(time, known)
+            words += [WORKED_OUT["velocities"], *how]
         elif not time.size:
             raise InputError(f"{self._place}: {self._why_none()}")
         elif self._file.values["position_unit"] == "radians" and _begin_anew(positions):

@@ -19,7 +19,8 @@ from werrimbi_odom.files.bag_wheels import Wheels
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import WORKED_OUT, Ticks, integrated
+from werrimbi_odom.files.run import WORKED_OUT, Ticks
+from werrimbi_odom.files.ways_of_speeds import ways_of
 from werrimbi_odom.model.pose import Floats
 
 _WINDOW = 0.5
@@ -132,8 +133,9 @@ class OdometryTurnedBack:
         if not np.isfinite(x + y + yaw).any():
             raise InputError(f"{self._place}: no message holds a finite pose")
         if not (np.ptp(x[np.isfinite(x)]) or np.ptp(y[np.isfinite(y)])) and np.any(speed):
-            along, turned = integrated(time, speed), integrated(time, rate)
-            words.append(FROM_TWIST)
+            ways, how = ways_of(time, np.column_stack([speed, rate]))
+            along, turned = ways.T
+            words += [FROM_TWIST, *how]
         else:
             repeated = self._repeated(x, y, yaw, speed, rate)
             count = int(repeated.sum())

@@ -27,12 +27,13 @@ error (a localiser)."""
 Gives = Literal["counts", "positions", "velocities", "odometry"]
 """Kinds of wheel data: counters, joint angles, joint speeds only, or the firmware's own poses."""
 WORKED_OUT: dict[Gives, str] = {
-    "velocities": "there are no wheel angles, only speeds: they are integrated (trapezia), which "
-    "loses what the wheels did between two messages",
-    "odometry": "the wheels' travel is turned back from poses of odometry, by wheel_radius and "
-    "wheel_separation of the robot file without their multipliers: these must be what the driver "
-    "itself works with; what else it is made of is judged with the wheels, as the gyro that it "
-    "takes its heading from, or all that a filter fuses",
+    "velocities": "there are no wheel angles, only speeds: they are integrated, which loses "
+    "what the wheels did between two messages",
+    "odometry": "the wheels' travel is turned back from poses of odometry (from its twist, where "
+    "they never change), by wheel_radius and wheel_separation of the robot file without their "
+    "multipliers: these must be what the driver itself works with; what else it is made of is "
+    "judged with the wheels, as the gyro that it takes its heading from, or all that a filter "
+    "fuses",
 }
 """What is said of wheels that nothing counted."""
 Made = TypeVar("Made")

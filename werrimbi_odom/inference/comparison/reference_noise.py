@@ -84,31 +84,32 @@ def independent_for(residuals: Sequence[Residual], span: int) -> bool:
     return True
 
 
-def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
+def stamp_noise(robot: Robot, every: Concatenated, residuals: Sequence[Residual]) -> float:
     """Standard deviation of the stamps of gyros, and of scans [s]; zero for others.
 
     Heading errors in turns have a larger dispersion than on straight lines, by turn rate times
     this. Spans are longer than two messages of the ticks, since the interpolation between two
-    messages causes the same error in all headings.
+    messages causes the same error in all headings. On straight lines both counters may step
+    together, so that their rounding cancels in the heading, while in turns all of it remains, and
+    even more at some paces. The measured headings hold none, and scatter by stamps and motion.
     """
     if not every.has_stamp_noise:
         return 0.0
     pairs = zip(every.runs, residuals, strict=True)
     found = [_scatter_and_rate(item, run.counters.time) for run, item in pairs]
-    scatter, rate = (np.concatenate(part) for part in zip(*found, strict=True))
+    scatter, seen, rate = (np.concatenate(part) for part in zip(*found, strict=True))
     turning = rate > rules.TURNS_ENOUGH
     if min(turning.sum(), (~turning).sum()) < rules.DIFFERENCES:
         return 0.0
-    fast, slow = (
-        (MEDIAN_TO_SIGMA * float(np.median(scatter[rows]))) ** 2 / 20.0
-        for rows in (turning, ~turning)
-    )
+    fast, slow = (_variance(scatter[rows]) for rows in (turning, ~turning))
+    reading = float(quantisation_variance(robot)[2])
+    stamps = min(fast - max(slow, reading), _variance(seen[turning]))
     more = float(np.median(rate[turning] ** 2) - np.median(rate[~turning] ** 2))
-    return float(np.sqrt(max(fast - slow, 0.0) / more))
+    return float(np.sqrt(max(stamps, 0.0) / more))
 
 
-def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
-    """Absolute third differences of the heading error, and turn rates there [rad, rad/s]."""
+def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats, Floats]:
+    """Third differences of heading error and of measured heading, and turn rates there [rad/s]."""
     apart, messages = (float(np.median(np.diff(time))) for time in (item.time, ticks))
     span = max(1, round(2.0 * messages / max(apart, 1e-9)))
     first = np.arange(max(item.time.size - 3 * span, 0))
@@ -116,11 +117,11 @@ def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
     off, turned = (
         np.concatenate([[0.0], np.cumsum(part[:, 2])]) for part in (item.intervals, item.relative)
     )
-    left = _third_at(off, first, span)
+    left, seen = (_third_at(each, first, span) for each in (off, off + turned))
     rate = np.abs(turned[last] - turned[first]) / (item.time[last] - item.time[first])
     moved = np.concatenate([[0.0], np.cumsum(np.abs(item.relative).sum(axis=1))])
     moving = moved[last] > moved[first]
-    return np.abs(left)[moving], rate[moving]
+    return left[moving], seen[moving], rate[moving]
 
 
 Differences = dict[int, tuple[Floats, float]]

@@ -93,7 +93,7 @@ def noise_of(
         estimated = reference_noise(robot, residuals, options.reference_kind)
     position, of_position, told = _known(options.sigma_xy, stated[0], estimated[0], usual[0])
     heading, of_heading, yaw_told = _known(options.sigma_yaw, stated[1], estimated[1], usual[1])
-    stamp = stamp_noise(every, residuals)
+    stamp = stamp_noise(robot, every, residuals)
     noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk)
     counts = (
         2 * sum(int(np.isfinite(item.measured).sum()) for item in residuals),

@@ -45,7 +45,7 @@ def rivals_of(
 ) -> tuple[str, ...]:
     """The first effect and its rivals, which the runs cannot tell from it; empty if it has none."""
     if first in CALIBRATED:
-        named = [first, *_sizes_in_place_of(first, final)]
+        named = [first, *_but_certain(_sizes_in_place_of(first, final), final)]
         limit = final.total + rules.RIVAL * final.scatter
         named += [item.effect for item in instead if item.total < limit]
         named = list(dict.fromkeys((*named, *_in_place_of_a_size(first, rounds, final))))
@@ -97,6 +97,12 @@ def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
     """Calibration effects that explain as much in place of `name`."""
     others = {other for subset in final.alternatives for other in subset if name not in subset}
     return tuple(other for other in CALIBRATED if other in others)
+
+
+def _but_certain(others: tuple[str, ...], final: Fitted) -> tuple[str, ...]:
+    """Sizes that explain as much in place of another, without those that are wrong in any case."""
+    certain = set(final.calibrated).intersection(*final.alternatives)
+    return tuple(other for other in others if other not in certain)
 
 
 def _in_place_of_a_size(name: str, rounds: tuple[Round, ...], final: Fitted) -> Iterator[str]:

@@ -21,6 +21,7 @@ from werrimbi_odom.inference.diagnosis.fit_statistics import grain_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.post_selection import Law, model_averaged_covariance
 from werrimbi_odom.inference.distributions import upper_part
+from werrimbi_odom.inference.fitting.between_counts import variances_between_counts
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
@@ -77,8 +78,9 @@ def with_spread(
 
     These are which sizes differ from the file's, which parameters effects need
     (`model_averaged_covariance`), which sign an effect has (`variances_by_sign`), and the noise
-    (`Precision.widening`). No value is more precise than its law (`grain_of`). Lengths have the
-    uncertainty of their logarithm, as scale parameters do.
+    (`Precision.widening`). No value is more precise than its law (`grain_of`), nor a delay than the
+    counts that it is told by (`variances_between_counts`). Lengths have the uncertainty of their
+    logarithm, as scale parameters do.
     """
     laws = [law for effect in effects if len(law := _optional(effect)) > 1]
     columns = fit.design.columns
@@ -106,6 +108,9 @@ def with_spread(
     within = averaged[np.ix_(where, where)] * np.outer(wide, wide)
     within += np.diag(grain_of(fit.design, fit.point.model.robot)[told])
     within += np.diag([by_sign.get(name, 0.0) for name in names])
+    numbers = [number for number, _ in columns]
+    by_counts = variances_between_counts(runs, fit.point, numbers, fit.moves)
+    within += np.diag([by_counts.get(name, 0.0) for name in names])
     variances = np.diag(within).copy()
     scales = {
         f"{effect.name}.{name}"

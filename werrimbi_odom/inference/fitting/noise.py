@@ -205,7 +205,10 @@ def noise_estimates(
     function = _in_logs(costs, variances, moving)
     sigmas = np.sqrt(_row(variances))
     logs = 2.0 * np.log(sigmas[moving])
-    covariance = 2.0 * np.linalg.pinv(hessian(function, logs), hermitian=True)
+    curved = hessian(function, logs)
+    covariance = 2.0 * _inverse(curved)
+    untold = np.flatnonzero(np.diag(curved) < rules.NOISE_UNTOLD)
+    most = {index: 0.5 * _highest(function, logs, index) for index in untold.tolist()}
     if information is not None:
         step = 0.1
         sides = logs + step * np.concatenate([np.eye(logs.size), -np.eye(logs.size)])
@@ -216,7 +219,10 @@ def noise_estimates(
         logs = np.where(np.isclose(logs, highest), logs, np.minimum(logs + shift, highest))
         sigmas[moving] = np.exp(0.5 * logs)
     share = np.zeros(len(_ALL))
-    share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    shares = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    for index, log in most.items():  # so that two standard deviations reach that far
+        shares[index] = 0.5 * np.exp(log) / sigmas[moving][index]
+    share[moving] = shares
     told = moving | np.isin(
         _ALL, [name for name, known in zip(NOISES[2:], held, strict=True) if known]
     )
@@ -225,6 +231,24 @@ def noise_estimates(
         for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
         if tell
     }
+
+
+def _inverse(information: Floats) -> Floats:
+    """Inverse of an information matrix; of what nothing tells the variance is large, and not zero.
+
+    A noise that is far below all others has none, or a little less than none by rounding.
+    """
+    values, ways = np.linalg.eigh(information)
+    return np.asarray((ways / np.maximum(values, rules.NOISE_UNTOLD)) @ ways.T)
+
+
+def _highest(function: Callable[[Floats], Floats], logs: Floats, index: int) -> float:
+    """Log variance from which on one is contradicted at 95 %, the others as they are."""
+    row = logs.copy()
+    limit = float(function(row[None])[0]) + NORMAL_95**2
+    while row[index] < _HIGHEST.max() and float(function(row[None])[0]) < limit:
+        row[index] += np.log(2.0)
+    return float(row[index])
 
 
 def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:

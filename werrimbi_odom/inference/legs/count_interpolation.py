@@ -105,6 +105,11 @@ class Counters:
         rates = uniform_filter1d(rates, rules.MESSAGES_A_SPEED, axis=1, mode="nearest")
         return np.concatenate([rates[:, :1], rates], axis=1)
 
+    def between_counts(self) -> Counters:
+        """With coarse counters going evenly between the middles of their steps."""
+        left, right = (_without_steps(self.time, side) for side in (self.left, self.right))
+        return replace(self, left=left, right=right)
+
     def way(self, robot: Robot, leg: float, turn: float) -> Floats:
         """Cumulative travel at each message, in legs: path / `leg` [m] + turning / `turn`.
 

@@ -60,6 +60,10 @@ NOISE_TOLD = 0.5
 """Relative standard deviation above which a noise is not determined: both twice the noise and none
 are then within two standard deviations."""
 
+NOISE_UNTOLD = 1e-4
+"""Curvature of minus two log-likelihoods in a log variance up to which nothing is told of it: its
+standard deviation would be above a hundred, while all that a noise can be spans forty."""
+
 MOTION_CAPTURE_INTERVAL, MOTION_CAPTURE_XY, MOTION_CAPTURE_YAW = 0.05, 1e-3, 2e-3
 """Interval of poses [s], noise of a position [m] and of a heading [rad] of motion capture, the best
 reference for robots: 1 mm at each of two markers 0.7 m apart is 2 mrad. Fits start there, and it is

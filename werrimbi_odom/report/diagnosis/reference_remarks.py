@@ -14,6 +14,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
+from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
 from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
@@ -24,6 +25,10 @@ from werrimbi_odom.report.number_format import (
     with_std,
 )
 
+_CLOSED = 0.125
+"""Distance of its end from its begin up to which a path is closed, in its length: half a side of a
+square; of a bend that is open it is more."""
+
 
 def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
     """That effects of the floor are not among those asked for, where axes begin anew."""
@@ -33,6 +38,32 @@ def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
         "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched scans "
         "begin anew with each drive. Motion capture or a localiser's map shows it."
     ]
+
+
+def by_ruler(diagnosis: Diagnosis) -> list[str]:
+    """What tells rivals apart that no manoeuvre of the library does."""
+    said = "No manoeuvre of the library tells them apart in reasonable time; "
+    if set(diagnosis.rivals) != {"wheel_radius_scale", "track_width"}:
+        return [f"{said}a ruler may."]
+    lines = [f"{said}a line to and fro beside a tape does: it shows the mean radius alone."]
+    if _are_squares(diagnosis):
+        lines.append(
+            "Squares both ways, measured at begin and end, are what `werrimbi calibrate umbmark` "
+            "is for: it takes that radius as entered, and fits the rest."
+        )
+    return lines
+
+
+def _are_squares(diagnosis: Diagnosis) -> bool:
+    """Whether the drives are rounds both ways, measured at the begin and the end alone."""
+    runs = diagnosis.runs
+    if runs.count != len(runs.runs):
+        return False
+    driven = predict_all(diagnosis.final.point.model, runs)
+    closed = np.hypot(*driven.relative[:, :2].T) < _CLOSED * driven.length
+    round_about = np.abs(np.abs(driven.turn) - math.tau) < 0.25 * math.tau
+    both = bool((driven.turn > 0.0).any() and (driven.turn < 0.0).any())
+    return bool(np.all(closed & round_about)) and both
 
 
 def wandering(diagnosis: Diagnosis) -> list[str]:

@@ -236,9 +236,7 @@ def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         lines.append(f"Why: {move.why}.")
         lines.append(" ".join((f"Next: {move.do} ({move.name}).", *how_long(move, steps.diagnose))))
     else:
-        lines.append(
-            "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
-        )
+        lines += reference_remarks.by_ruler(diagnosis)
     rest = [other for other in diagnosis.found if other not in rivals]
     command = steps.add([_to_try(diagnosis, [rivals[0], *twins]), *rest])
     lines += ["Or, if you know which it is, add it, for example:", f"    {command}"]
