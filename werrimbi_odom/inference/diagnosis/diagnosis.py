@@ -40,7 +40,11 @@ from werrimbi_odom.inference.diagnosis.forward_selection import (
 )
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect, lasting
-from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
+from werrimbi_odom.inference.diagnosis.misfit import (
+    Misfit,
+    misfit_of_found,
+    misfit_of_held_law,
+)
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
@@ -169,6 +173,10 @@ def _searched(
         certain = [cell for cell in remaining if cell.p_value < rules.VERY_SURE]
         misfit = misfit_of_found(fit, certain, laid)
     found = diagnosis_of(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
+    if misfit is None and beyond is not None and found.verdict in ("named", "ambiguous"):
+        misfit = Misfit(
+            None, beyond, None
+        )  # it stands beside what was found, and `add` will say it
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, effects, set_up.robot)

@@ -114,7 +114,7 @@ def diagnosis_of(
         effect=answer.found[0] if answer.found else None,
         found=answer.found,
         ranking=tuple(
-            ranking_of(answer.found, begun.set_up, rounds, final, judge, before, laid, given)
+            ranking_of(answer.found, begun.set_up, rounds, final, judge, before, laid, given, told)
         ),
         rivals=answer.rivals,
         torn=answer.torn,

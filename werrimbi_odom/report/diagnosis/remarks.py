@@ -15,8 +15,9 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.model.effect import applied_of
+from werrimbi_odom.report.diagnosis.costs import error_kind, judged
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
+from werrimbi_odom.report.diagnosis.phrases import sizes
 from werrimbi_odom.report.number_format import (
     chance_words,
     error_words,
@@ -24,6 +25,18 @@ from werrimbi_odom.report.number_format import (
     quantity,
     two_digits,
 )
+
+
+def remainder(advised: AdvisedDiagnosis) -> list[str]:
+    """What speaks against the model with everything found put in."""
+    bounds = at_bounds_told(advised.diagnosis)
+    return [*rest(advised), *bounds]
+
+
+def rest(advised: AdvisedDiagnosis) -> list[str]:
+    """What is left, if anything, and whether that is the reference's own noise."""
+    told = [*law(advised), *scatter(advised)]
+    return [*told, *left_is_noise(advised)] if told else []
 
 
 def law(advised: AdvisedDiagnosis) -> list[str]:

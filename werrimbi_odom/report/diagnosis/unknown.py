@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
-from werrimbi_odom.report.diagnosis import phrases, reference_remarks, remarks
+from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.number_format import chance_words
 
@@ -42,7 +42,7 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
         ]
     lines = phrases.set_up_lines(diagnosis)
     cells = significant(diagnosis)
-    lines += phrases.by_sizes_alone(advised)
+    lines += costs.by_sizes_alone(advised)
     lines.append("Something is missing that no effect of the library explains.")
     if cells:
         lines.append(
