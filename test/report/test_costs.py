@@ -10,13 +10,18 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 
 from test.inference.driven import COMMON, run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, ranked_of
+from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.report.calibration.fit_words import fit_in_words
 from werrimbi_odom.report.diagnosis.costs import cost, whole
+from werrimbi_odom.report.diagnosis.reference_remarks import as_one_that_wanders
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
 
@@ -67,6 +72,29 @@ def test_what_no_effect_explains_is_told_beside_what_is_named() -> None:
     said = as_text(words_of(told(found), NextSteps()))
     assert "something is left" in said
     assert "how far the right wheel rolls" in said
+
+
+def test_no_noise_of_a_model_that_does_not_fit_is_written() -> None:
+    """A camera that wanders made k 8 times the truth, and the file was written with that."""
+    runs = match_for_fit([late_and_one_wheel_larger(seed) for seed in (1, 2)], ROBOT, 1.0)
+    found = calibrate(runs, ROBOT)
+    assert found.misfit
+    assert found.noises["right_wheel_noise"].determined
+    assert "right_wheel_noise" not in found.changes
+    assert found.robot.right_wheel_noise == ROBOT.right_wheel_noise
+    said = " ".join(as_text(fit_in_words(found)).split())
+    assert "noise in the robot file is left alone until a model explains the drives" in said
+    assert "--reference-kind local_map" in said
+
+
+@pytest.mark.parametrize(("kind", "asked"), [("absolute", True), ("local_map", False)])
+def test_where_the_reference_wanders_its_kind_is_the_next_step(kind: str, asked: bool) -> None:
+    """`calibrate fit` said to diagnose, `diagnose` said to calibrate: none said how."""
+    point = SimpleNamespace(options=SimpleNamespace(reference_kind=kind))
+    wandering: Any = SimpleNamespace(final=SimpleNamespace(point=point))
+    said = " ".join(as_one_that_wanders(wandering, NextSteps().on_map))
+    assert ("Next: there is nothing to add" in said) == asked
+    assert ("--reference-kind local_map" in said) == asked
 
 
 def test_a_base_off_is_told_beside_wheels_that_are_exchanged() -> None:

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -14,10 +13,8 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.number_format import listed
-
-if TYPE_CHECKING:
-    from werrimbi_odom.report.diagnosis.words import NextSteps
 
 
 def ambiguous_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:

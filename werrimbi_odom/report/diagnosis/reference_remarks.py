@@ -50,6 +50,18 @@ def wandering(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def as_one_that_wanders(diagnosis: Diagnosis, command: str) -> list[str]:
+    """Next step where errors of poses that were taken as absolute wander; `command` fits noise."""
+    if diagnosis.final.point.options.reference_kind != "absolute":
+        return []
+    return [
+        "Next: there is nothing to add. With poses that err one by one, the reference's wander "
+        "would be put down to the wheels' noise: take it for one that wanders, here and in "
+        "`werrimbi compare`:",
+        f"    {command}",
+    ]
+
+
 def _of_both(place: float, heading: float | None) -> str:
     """Sizes of the errors of positions [m] and, where they were measured, of headings [rad]."""
     sizes = [error_words(place, "m")]

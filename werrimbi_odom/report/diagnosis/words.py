@@ -5,8 +5,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from werrimbi_odom.inference.changes.between_drives import driven_in_order
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -19,25 +17,14 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.ambiguous import ambiguous_words
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.unknown import mounted_anew, unknown_words
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.number_format import error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
-
-@dataclass(frozen=True)
-class NextSteps:
-    """Commands for the same robot and drives, ready to type."""
-
-    add: Callable[[Sequence[str]], str] = lambda names: (
-        f"werrimbi add {','.join(names)} --robot R RUN... --out NEW.yaml"
-    )
-    """Command to add effects of these names."""
-    again: Callable[[Sequence[str]], str] = lambda names: "werrimbi diagnose --robot R RUN..."
-    """Command to diagnose the drives of these names alone; "" for none."""
-    draft: str = "werrimbi draft --robot R RUN... --out my_effect"
-    diagnose: str = "werrimbi diagnose"
+__all__ = ["NextSteps", "words_of"]
 
 
 def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ...]:
@@ -167,6 +154,8 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "Next: fit some of the drives held out too, and hold out others: something happens on "
             "them that the fitted ones hardly show.",
         ]
+    if wanders and (by_map := reference_remarks.as_one_that_wanders(diagnosis, steps.on_map)):
+        return [*lines, *by_map]
     lines.append(
         "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
         "covariance is honest; where it is not, `werrimbi calibrate fit` fits the wheels' noise."
