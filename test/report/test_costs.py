@@ -14,6 +14,7 @@ import pytest
 
 from test.inference.driven import COMMON, run_of
 from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
@@ -113,3 +114,21 @@ def test_a_base_off_is_told_beside_wheels_that_are_exchanged() -> None:
     assert abs(value - 1.03) < 3.0 * std
     said = " ".join(as_text(words_of(told(found), NextSteps())).split())
     assert "On the robot, if it is wheels_swapped: wheel base 3.0" in said
+
+
+def test_that_a_camera_s_metre_may_be_why_is_said_before_anything_is_added() -> None:
+    """Base and radii 1.5 % smaller were written for a camera that shows 1.5 % too little."""
+    runs = []
+    for seed in (1, 2):
+        run = run_of(ROBOT, seed)
+        seen = run.reference
+        assert seen is not None
+        runs.append(replace(run, reference=replace(seen, x=0.985 * seen.x, y=0.985 * seen.y)))
+    found = diagnose(runs, ROBOT, COMMON)
+    assert set(found.found) == {"wheel_radius_scale", "track_width"}
+    said = " ".join(as_text(words_of(told(found), NextSteps())).split())
+    assert said.index("beside a tape") < said.index("Next: measure that first.")
+    assert said.index("Next: measure that first.") < said.index("werrimbi add wheel_radius_scale,")
+    assert "write reference_scale with multiplier 0.98" in said
+    by_hand = replace(ROBOT, effects=(find("reference_scale").using(multiplier=0.985),))
+    assert diagnose(runs, by_hand, COMMON).verdict == "none"

@@ -128,7 +128,7 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     runs, found = diagnosis.runs, diagnosis.found
     by_headings = runs.headings_alone and "track_width" in found
     if not by_headings and not (runs.own_axes and "wheel_radius_scale" in found):
-        return _or_its_metre(diagnosis)
+        return or_its_metre(diagnosis)
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
     share = f"{100.0 * abs(size - 1.0):.2g} %"
     if by_headings:
@@ -146,7 +146,7 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _or_its_metre(diagnosis: Diagnosis) -> list[str]:
+def or_its_metre(diagnosis: Diagnosis) -> list[str]:
     """That one number explains base and radii that are off by one factor within their deviations.
 
     Where positions are measured, a wrong metre of theirs shows just that.
@@ -170,8 +170,9 @@ def _or_its_metre(diagnosis: Diagnosis) -> list[str]:
         f"Base and radii are off by one factor, {size:.3f}, within their ±. A reference that shows "
         f"{100.0 * abs(size - 1.0):.2g} % too {less} of every way shows the same (reference_scale: "
         "a camera's or a map's metre). Drive a straight line of 10 m beside a tape: if the wheels, "
-        "with the robot file as it is, count 10 m, it is the reference; then add reference_scale "
-        "in place of both."
+        "with the robot file as it is, count 10 m, it is the reference: write reference_scale with "
+        f"multiplier {size:.4g} into its effects by hand, in place of both (`add` cannot tell it "
+        "from the radii), and diagnose again."
     ]
 
 

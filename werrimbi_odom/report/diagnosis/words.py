@@ -183,12 +183,21 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         *lines,
         *costs.whole(advised),
         *remarks.remainder(advised),
-        f"Next: add {it} to the model, fitted together with all calibration:",
-        f"    {steps.add(diagnosis.found)}",
         *reference_remarks.or_the_reference_s_scale(diagnosis),
+        *_add(diagnosis, it, steps),
         *reference_remarks.moved_by_its_odometry(diagnosis),
         *reference_remarks.transform_to_mend(diagnosis),
         *reference_remarks.not_shown(advised),
+    ]
+
+
+def _add(diagnosis: Diagnosis, it: str, steps: NextSteps) -> list[str]:
+    """The command that adds everything; on a condition where the reference's metre may be why."""
+    metre = bool(reference_remarks.or_its_metre(diagnosis))
+    begin = "measure that first. If it is the wheels, add" if metre else "add"
+    return [
+        f"Next: {begin} {it} to the model, fitted together with all calibration:",
+        f"    {steps.add(diagnosis.found)}",
     ]
 
 
