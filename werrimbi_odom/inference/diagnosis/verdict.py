@@ -109,6 +109,8 @@ def diagnosis_of(
         at = rounds[0].before if mistakes else final
         told = as_told(at, mended, answer.found, laid, rounds)
         after = judge.of(told.point.model)
+    by_noise = judge.by_the_wander_of(told.point.model) if answer.found else judge
+    promising = after if by_noise is judge else by_noise.of(told.point.model)
     return Diagnosis(
         verdict=answer.verdict,
         effect=answer.found[0] if answer.found else None,
@@ -140,8 +142,8 @@ def diagnosis_of(
         left=None
         if another
         else what_is_left(
-            (judge.train, after.fitted_legs),
-            (judge.holdout, after.legs),
+            (judge.train, after.fitted_legs, promising.fitted_legs),
+            (judge.holdout, after.legs, promising.legs),
             after.unit,
             laid,
             final.point,
