@@ -310,11 +310,15 @@ def test_no_size_is_told_that_the_drives_do_not_determine(monkeypatch: pytest.Mo
 def test_no_better_reference_is_promised_to_tell_twins_apart() -> None:
     held = {"reference_yaw_offset": ("sideways_drift", "reference_delay")}
     told: Any = SimpleNamespace(
-        rivals_of_held=held, effect_named=find, runs=SimpleNamespace(headings_alone=False)
+        rivals_of_held=held,
+        needless_of_held=("reference_yaw_offset",),
+        effect_named=find,
+        runs=SimpleNamespace(headings_alone=False),
     )
     twins, others = instead_of_held(told)
     assert "turned by 90 degrees" in twins
     assert "sideways_drift" not in others
+    assert "reference_delay or nothing in its place would explain them as well" in others
     assert "measures more often tells them apart" in others
 
 

@@ -185,11 +185,12 @@ def instead_of_held(diagnosis: Diagnosis) -> list[str]:
             for twin in alike.values()
         ]
         if rest := [other for other in others if other not in alike]:
+            nothing = ["nothing"] if name in diagnosis.needless_of_held else []
             lines.append(
                 f"But: that it is {name}, which the robot file holds, these drives do not show: "
-                f"{listed(rest, 'or')} in its place would explain them as well. `werrimbi explain` "
-                "says how each is checked on the robot; a reference that measures more often tells "
-                "them apart."
+                f"{listed([*rest, *nothing], 'or')} in its place would explain them as well. "
+                "`werrimbi explain` says how each is checked on the robot; a reference that "
+                "measures more often tells them apart."
             )
     return lines
 
