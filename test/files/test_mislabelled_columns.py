@@ -166,6 +166,20 @@ def test_a_yaw_that_turns_against_its_path(seed: int) -> None:
             refuse_wrong_columns(wrong)
 
 
+@pytest.mark.parametrize("sway", [0.65, 0.8])
+def test_a_yaw_that_turns_against_a_path_that_hardly_turns(sway: float) -> None:
+    """A drive that sways by 37 degrees to either side was told to be a law of its own."""
+    time = np.arange(0.0, 60.0, 0.05)
+    random = np.random.default_rng(7)
+    yaw = sway * np.sin(0.7 * time) + 0.05 * random.standard_normal(time.size)
+    place = np.cumsum(0.02 * np.exp(1j * sway * np.sin(0.7 * time)))
+    ticks = Ticks(time, np.arange(time.size) * 10.0, np.arange(time.size) * 10.0)
+    run = replace(driven(0), ticks=ticks, reference=Reference(time, place.real, place.imag, yaw))
+    refuse_wrong_columns(run)
+    with pytest.raises(InputError, match="clockwise"):
+        refuse_wrong_columns(seen(run, yaw=lambda it: -it.yaw))
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("of_range", [wrap_all, lambda yaw: yaw % (2.0 * np.pi), np.unwrap])
 @pytest.mark.parametrize("places", [True, False])

@@ -15,6 +15,7 @@ from test.evidence import in_evidence
 from test.report.browser import visit
 from werrimbi_odom.report.fleet import Fleet, Row, fleet_json, headline, words_of
 from werrimbi_odom.report.fleet_page import cells, fleet_figure, fleet_table, write_fleet_page
+from werrimbi_odom.report.fleet_row import missing_words, next_words
 from werrimbi_odom.report.save import find_browser
 from werrimbi_odom.report.terminal import as_text
 
@@ -213,3 +214,15 @@ def test_the_page_draws_itself_without_a_complaint(tmp_path: Path, dark: bool) -
     assert seen.answers[0] == [each.robot for each in ALL.rows]
     assert seen.answers[1] == [each.robot for each in ALL.rows if each is not BAD]
     assert "&lt;train&gt;" in written.read_text(encoding="utf-8")
+
+
+def test_a_wheel_that_errs_by_no_law_is_to_be_looked_at_and_no_law_is_drafted() -> None:
+    """What the parts of the drives do not agree on, is no floor and no speed of theirs."""
+    place = [{"words": "how far the left wheel rolls goes with the place on the floor"}]
+    worn = row("robot_9", "unknown", 0.009, 0.009, depends_on=place)
+    assert (missing_words(worn), next_words(worn)) == ([place[0]["words"]], "draft")
+    worn = row(
+        "robot_9", "unknown", 0.009, 0.009, depends_on=place, one_sided_noise={"side": "left"}
+    )
+    assert missing_words(worn) == ["the left wheel errs, by no law"]
+    assert next_words(worn) == "look at the left wheel"

@@ -30,7 +30,8 @@ from werrimbi_odom.inference.changes.change_points import (
     find_changes,
     only_these,
 )
-from werrimbi_odom.inference.changes.history import course_of, estimate_of_drive
+from werrimbi_odom.inference.changes.drive_estimate import estimate_of_drive
+from werrimbi_odom.inference.changes.history import course_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import NumberGroup, groups_of
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of

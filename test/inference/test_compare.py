@@ -124,6 +124,27 @@ def test_a_base_two_percent_too_small_goes_wrong_in_turns_and_not_on_lines(
     assert "says which physical effect explains it" in words
 
 
+@pytest.mark.parametrize("ahead", [0.028, -0.02])
+def test_a_marker_ahead_of_the_axle_goes_aside_in_curves(
+    runs: tuple[Run, ...], ahead: float
+) -> None:
+    """Forth and back, by travel times turn, it was "nothing systematic" and a noise 110 times."""
+    moved = []
+    for run in runs:
+        seen = run.reference
+        assert seen is not None
+        place = seen.x + 1j * seen.y + ahead * np.exp(1j * seen.yaw)
+        moved.append(with_reference(run, x=place.real, y=place.imag))
+    found = compare(moved, RIGHT)
+    (part,) = [
+        each
+        for each in verdict_of(found).systematic
+        if each.channel == "sideways" and each.kind == "arc"
+    ]
+    assert part.per == "sine of turn"
+    assert part.value == pytest.approx(ahead, abs=max(4.0 * part.std, 0.1 * abs(ahead)))
+
+
 def test_a_larger_left_wheel_veers_to_the_right(runs: tuple[Run, ...]) -> None:
     # The robot file believes the left wheel smaller than it is.
     believed = RIGHT.left_wheel_radius_multiplier / 1.01

@@ -13,12 +13,8 @@ from test.inference.driven import run_of
 from test.model.drives import ROBOT as DRIVEN
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.inference.changes.history import (
-    Course,
-    DriveEstimate,
-    course_of,
-    estimate_of_drive,
-)
+from werrimbi_odom.inference.changes.drive_estimate import DriveEstimate, estimate_of_drive
+from werrimbi_odom.inference.changes.history import Course, course_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
@@ -173,3 +169,23 @@ def test_a_length_that_the_drive_fits_does_not_stand_at_zero_for_the_history() -
     for name, true in (("castor_kick.angle", 0.03), ("wheel_separation_multiplier", 1.0)):
         each = found.numbers[number(found, name)]
         assert abs(each.own[0] - true) < 3.0 * each.own_std[0] < 0.002
+
+
+def test_a_marker_that_moved_is_seen_though_the_file_does_not_hold_it() -> None:
+    """Each drive knew its own to 2 mm, as what the file lacks passed for noise of the wheels."""
+    ahead_of_it = [0.020] * 3 + [0.028] * 3
+    drives = []
+    for seed, ahead in enumerate(ahead_of_it):
+        run = run_of(DRIVEN, seed, 40)
+        seen = run.reference
+        assert seen is not None
+        x, y = seen.x + ahead * np.cos(seen.yaw), seen.y + ahead * np.sin(seen.yaw)
+        moved = replace(run, reference=replace(seen, x=x, y=y))
+        drives.append(estimate_of_drive(moved, DRIVEN, EvaluationOptions()))
+    found = course_of(drives, DRIVEN, DAY * np.arange(6.0))
+    told = found.numbers[number(found, "reference_lever_arm.x")]
+    assert np.all(told.own_std < 5e-4)
+    assert np.abs(told.own - ahead_of_it).max() < 1.5e-3
+    (change,) = [each for each in found.changes if each.what == "reference_lever_arm.x"]
+    assert change.from_run == "3"
+    assert change.after - change.before == pytest.approx(0.008, abs=1e-3)

@@ -102,7 +102,7 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         show=show,
     )
     given = as_judged(given, diagnosis)
-    if diagnosis.verdict != "unknown" and insist:
+    if insist and (diagnosis.verdict != "unknown" or diagnosis.one_sided is not None):
         raise InputError(_known(diagnosis, given, insist))
 
     def tried_out(found: Draft) -> Added:
@@ -129,6 +129,11 @@ def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
     force = f"; {insist} the strongest dependence all the same"
     if diagnosis.verdict == "none":
         return f"the verdict is none: the model explains these drives to their noise{force}"
+    if diagnosis.one_sided is not None:
+        return (
+            f"the {diagnosis.one_sided.side} wheel errs, but the parts of the drives do not agree "
+            f"on what its errors go with{force}"
+        )
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)
         return f"the verdict is ambiguous between effects of the library ({names}){force}"

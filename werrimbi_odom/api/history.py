@@ -32,7 +32,8 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.dated_drives import Dated, History, Unusable, in_order
-from werrimbi_odom.inference.changes.history import DriveEstimate, course_of, estimate_of_drive
+from werrimbi_odom.inference.changes.drive_estimate import DriveEstimate, estimate_of_drive
+from werrimbi_odom.inference.changes.history import course_of
 from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:

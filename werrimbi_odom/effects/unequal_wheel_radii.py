@@ -28,7 +28,7 @@ def unequal_wheel_radii(
     Formula    left *= 2 / (1 + ratio);  right *= 2 ratio / (1 + ratio)      [m] = [m] * [1]
     Signature  heading gained in proportion to distance, taken back when driving backwards; turns on
                the spot are good; squares driven left and right go wrong in opposite ways
-    Ruler      drive 10 m straight by the odometry along a chalk line and measure how far left of it
+    Ruler      drive 3 m straight by the odometry along a chalk line and measure how far left of it
                the robot ends: ratio - 1 = 2 * base * offset / distance^2
     Twins      left_wheel_radius_multiplier and right_wheel_radius_multiplier of the robot file
                hold the same ratio

@@ -55,6 +55,9 @@ below which they do not. A path along the yaw has 1 less its scatter (0.8 at 0.6
 that hardly turns, both senses of turning have much."""
 TURNED = 0.9
 """Mean resultant length of the path's direction above which it hardly turned (0.46 rad)."""
+FAR_LESS = 3.0
+"""Factor by which a path that turned scatters less about the yaw turned over (1 less the length
+above). About its own yaw a path scatters less, as the other sense adds twice its turning."""
 
 MORE_THAN_A_TURN = 2.1 * np.pi
 """Range of yaw from which it may be in degrees: wrapped, in radians, it is 2 pi at most."""
@@ -222,7 +225,8 @@ def _no_heading(ticks: Ticks, reference: Reference) -> str:
                 "yaw_rad stays within 1 while the path turns all round, and twice its arcsine "
                 "follows the path: it is the z of a quaternion: write the angle, 2 atan2(z, w)"
             )
-    if against < FOLLOWS or along > CONTRADICTS:
+    far_less = along < TURNED and FAR_LESS * (1.0 - against) < 1.0 - along
+    if against < FOLLOWS or (along > CONTRADICTS and not far_less):
         return ""
     return (
         "the reference's yaw turns to the right where its path bends to the left: yaw_rad counts "

@@ -11,7 +11,7 @@ from typing import Any
 
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.number_format import error_words as leg_error
-from werrimbi_odom.report.number_format import listed, with_std
+from werrimbi_odom.report.number_format import listed
 
 ERROR = "error"
 """Shown in place of a verdict if a robot could not be diagnosed."""
@@ -243,43 +243,6 @@ def _left(fleet: Fleet) -> list[str]:
         names.append(f"{len(fleet.left) - _NAMED} more")
     everyone = len(fleet.rows) + len(fleet.left)
     return [f"Not done: {len(fleet.left)} of {everyone} are left, {listed(names)}."]
-
-
-def missing_words(row: Row) -> list[str]:
-    """Missing effects of a robot, each with its fitted values."""
-    if row.verdict == "none":
-        return ["nothing"]
-    said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
-    said += [_with_values(row, effect) for effect in row.missing]
-    if row.verdict == "unknown" and row.figures is not None:
-        cells = row.figures["depends_on"]
-        said.append(cells[0]["words"] if cells else "no effect of the library")
-    return said
-
-
-def _with_values(row: Row, effect: str) -> str:
-    values = [
-        f"{name} {with_std(item['value'], item['std'])} {item['unit']}".rstrip()
-        for name, item in believed(row.values(effect)).items()
-    ]
-    return "\n  ".join([f"{effect}:", *values]) if values else effect
-
-
-def next_words(row: Row) -> str:
-    """Next step in a few words; `add` and `draft` are verbs of this tool."""
-    if row.verdict == "named":
-        return f"add {','.join(row.missing)}"
-    if row.verdict == "unknown":
-        return "draft"
-    if row.verdict == "none" and row.figures is not None and row.figures["outdated"]:
-        return f"add {row.figures['outdated'][0]['effect']}"
-    if row.verdict == "ambiguous" and row.figures is not None:
-        move = row.figures["next_manoeuvre"]
-        if move is None:
-            return "use a ruler"
-        name = str(move["name"]).replace("_", " ")
-        return f"drive {name} ({move['minutes']:.0f} min)" if move["minutes"] else name
-    return ""
 
 
 def error_words(row: Row) -> str:

@@ -18,10 +18,9 @@ from werrimbi_odom.report.fleet import (
     Fleet,
     Row,
     error_words,
-    missing_words,
-    next_words,
     words_of,
 )
+from werrimbi_odom.report.fleet_row import missing_words, next_words
 from werrimbi_odom.report.page import table_html
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.style import Figure

@@ -23,6 +23,7 @@ from werrimbi_odom.inference.fitting.score_tests import signatures
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point
 from werrimbi_odom.model.effect import extended_by
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,12 @@ class Evidence:
         return np.asarray(size[self.run, None] * (self.shared @ step.group.directions))
 
 
+def held_or_equivalent(robot: Robot) -> set[str]:
+    """Names of a robot's effects, of their twins, and of what they extend."""
+    held = {name for item in robot.effects for name in (item.name, *item.effect.twins)}
+    return held | extended_by(robot.effects)
+
+
 def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float) -> Evidence:
     """Innovations at a point, and their derivatives in all parameters.
 
@@ -63,8 +70,7 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
     squared innovations are too large.
     """
     robot = point.model.robot
-    held = {name for item in robot.effects for name in (item.name, *item.effect.twins)}
-    held |= extended_by(robot.effects)
+    held = held_or_equivalent(robot)
     white, flat = design.flat()
     columns = {number.name: flat[:, n] for n, (number, run) in enumerate(design.columns) if run < 0}
     own = flat[:, [n for n, (_, run) in enumerate(design.columns) if run >= 0]]

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.changes.history import Course, DriveEstimate
+from werrimbi_odom.inference.changes.drive_estimate import DriveEstimate
+from werrimbi_odom.inference.changes.history import Course
 from werrimbi_odom.model.robot import Robot
 
 DateFrom = Literal["stamp", "file", "order"]

@@ -14,21 +14,19 @@ Sources: Efron and Morris, J. Am. Stat. Assoc. 68, 1973 (pooling).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import ParameterChange, parameter_changes_of
-from werrimbi_odom.inference.changes.change_evidence import evidence_of
 from werrimbi_odom.inference.changes.change_points import ChangePoints, find_changes, only_these
+from werrimbi_odom.inference.changes.drive_estimate import NULLS, DriveEstimate
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
-from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms, out_of_logarithms
+from werrimbi_odom.inference.changes.logarithmic_sizes import out_of_logarithms
 from werrimbi_odom.inference.changes.parameter_groups import (
     MOUNT,
     groups_of,
@@ -38,35 +36,12 @@ from werrimbi_odom.inference.changes.parameter_groups import (
 )
 from werrimbi_odom.inference.changes.scatter import Values, beyond_scatter, scatter_of
 from werrimbi_odom.inference.changes.shapes import Kind
-from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.distributions import chi2_survival
-from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
-from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 KINDS: tuple[Kind, ...] = ("step", "alone", "trend")
-
-
-@dataclass(frozen=True, slots=True)
-class DriveEstimate:
-    """Information of one drive."""
-
-    names: tuple[str, ...]
-    """Names of its s parameters."""
-    information: Floats
-    """Information matrix, (s, s)."""
-    weighted: Floats
-    """Information times estimate, (s,)."""
-    begin: float
-    """First stamp of the ticks [s]."""
-    data: int
-    """Number of measured coordinates in use."""
-    way: float
-    """Travel [m]."""
 
 
 @dataclass(frozen=True)
@@ -110,32 +85,6 @@ class Course:
     """Parameters of the robot file that differ from the last drives."""
 
 
-def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> DriveEstimate:
-    """Fit one drive by itself; InputError when it has no usable reference or no ticks."""
-    laid = concatenated(
-        match_for_fit(
-            [with_no_driving(run, robot, options.limits)], robot, options.leg, options.limits
-        )
-    )
-    fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
-    evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
-    drive = in_logarithms(evidence.drives(np.zeros(1)), evidence.values, robot)
-    # Fitted, and told for no drive: a length of a law, a phase.
-    told = {number.name for number in evidence.numbers}
-    drive = drive.without(
-        {
-            number.name: (value_at(robot, number.name, _NULLS), number.undetermined)
-            for number, run in fit.design.columns
-            if run < 0 and number.name not in told
-        }
-    )
-    way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
-    begin = float(laid.runs[0].counters.time[0])
-    return DriveEstimate(
-        drive.names, drive.information[0], drive.weighted[0], begin, laid.data, way
-    )
-
-
 def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) -> Course:
     """Combine the drives into the course of the parameters.
 
@@ -143,7 +92,7 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
     """
     numbers = _numbers(estimates, robot)
     names = tuple(number.name for number in numbers)
-    given = np.array([value_at(robot, name, _NULLS) for name in names])
+    given = np.array([value_at(robot, name, NULLS) for name in names])
     drives = _laid(estimates, names, time)
     limits = np.array([number.undetermined for number in numbers])
     own = _alone(drives, given, limits)
@@ -285,8 +234,3 @@ def _off(
                 OffNow(name, float(values[number]), math.sqrt(variance), float(given[number]))
             )
     return tuple(off)
-
-
-_NULLS: Mapping[str, float] = {
-    f"{name}.{key}": null for name in MOUNT for key, null in find(name).nulls.items()
-}

@@ -29,6 +29,9 @@ TERMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
     "spin": (("turn",), ("turn",), ("turn", "size of turn")),
 }
 """Regressors of the error of each channel, by motion type."""
+OF_A_POINT = ("travel", "sine of turn")
+"""Regressors of the sideways error in arcs where a heading error is not the better cause: a point
+ahead of the axle goes aside as the robot turns, whether it drives forward or back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +41,7 @@ class Systematic:
     kind: str
     channel: str
     per: str
-    """travel [m], turn [rad], size of turn [rad], travel × turn [m·rad]."""
+    """travel [m], turn [rad], size of turn [rad], travel × turn [m·rad], sine of turn."""
     value: float
     """Measured minus predicted, per unit of the variable [m or rad]."""
     std: float
@@ -90,6 +93,14 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
             if rows.size < rules.LEGS_OF_A_PART + len(names):
                 continue
             parts, predicted = _regressed_on(legs, rows, channel, kind, names)
+            if (kind, CHANNELS[channel]) == ("arc", "sideways"):
+                error = legs.error[rows, channel]
+                of_point, its = _regressed_on(legs, rows, channel, kind, OF_A_POINT)
+                sums = [
+                    max(float(np.sum((error - each) ** 2)), 1e-300) for each in (its, predicted)
+                ]
+                if rows.size * np.log(sums[0] / sums[1]) < rules.RIVAL:
+                    parts, predicted = of_point, its
             found += parts
             if any(part.finding for part in parts):
                 left[rows, channel] -= predicted
@@ -105,6 +116,7 @@ def _regressed_on(
         "turn": legs.turn,
         "size of turn": np.abs(legs.turn),
         "travel × turn": legs.along * legs.turn,
+        "sine of turn": np.sin(legs.turn),
     }
     design = np.stack([variables[name][rows] for name in names], axis=-1)
     size = np.sqrt(np.sum(design**2, axis=0))

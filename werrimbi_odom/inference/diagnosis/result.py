@@ -14,6 +14,7 @@ from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
+from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -80,6 +81,9 @@ class Diagnosis:
     """Remainder of a law of slightly wrong form, or beside everything found."""
     wander: Wander | None = None
     """Of a reference that was taken as absolute and is not: then all this is by `local_map`."""
+    one_sided: OneSidedNoise | None = None
+    """Where errors go with something, and the parts of the drives agree on nothing: that one wheel
+    errs far more than the other. No reference errs so, and the verdict is *unknown*."""
     happened: Events = field(default_factory=Events)
     """Abrupt errors, which no law explains."""
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

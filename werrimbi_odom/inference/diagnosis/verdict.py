@@ -23,6 +23,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun
+from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -111,8 +112,11 @@ def diagnosis_of(
         after = judge.of(told.point.model)
     by_noise = judge.by_the_wander_of(told.point.model) if answer.found else judge
     promising = after if by_noise is judge else by_noise.of(told.point.model)
+    # What is beyond the library stands beside what was found, and `add` will say it too.
+    beside = beyond if answer.verdict in ("named", "ambiguous") else None
     return Diagnosis(
         verdict=answer.verdict,
+        misfit=None if beside is None else Misfit(None, beside, None),
         effect=answer.found[0] if answer.found else None,
         found=answer.found,
         ranking=tuple(

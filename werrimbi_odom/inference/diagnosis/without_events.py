@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits repeated without abrupt events: for a diagnosis, and for effects that are added.
 
-Events in a few legs have inflated the noise of a fit: it is estimated without them.
+Events in a few legs have inflated the noise of a fit: it is estimated without them. And what a
+model lacks has inflated the noise of its wheels, which may then stand for that of the reference:
+between poses that follow closely both look alike.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ import numpy as np
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.comparison.judged_legs import in_runs, paths
+from werrimbi_odom.inference.comparison.reference_noise import reference_noise
 from werrimbi_odom.inference.diagnosis.holdout import Judge
 from werrimbi_odom.inference.distributions import chi2_median
 from werrimbi_odom.inference.events.events import Events, EventSide, events_among, without
@@ -47,6 +51,28 @@ def noise_of_most(runs: Concatenated, point: Point) -> Variances:
     return point.variances
 
 
+def with_noise_of_reference(variances: Variances, point: Point, judge: Judge) -> Variances:
+    """Variances in which a reference has no less noise than its small differences show.
+
+    Those know no wheel noise. So wheels that stand for a missing law, and err by as much between
+    two poses as the reference does, leave it its own noise; else each of its larger errors is a
+    jump. Noise that is known, and that of a reference whose errors are correlated, stays.
+    """
+    options = point.options
+    if options.reference_kind != "absolute":
+        return variances
+    prepared = judge.train
+    residuals = paths(prepared, in_runs(prepared, point.model))
+    shown = reference_noise(prepared.robot, residuals, options.reference_kind)
+    least = [
+        0.0 if known or sigma is None else sigma**2
+        for sigma, known in zip(shown, options.sigmas_known, strict=True)
+    ]
+    return replace(
+        variances, xy=np.maximum(variances.xy, least[0]), yaw=np.maximum(variances.yaw, least[1])
+    )
+
+
 Found = TypeVar("Found")
 
 
@@ -77,7 +103,7 @@ def refit_without_events(
 
 def events_beside(runs: Concatenated, fitted: Point, judge: Judge) -> Events:
     """Abrupt events beside a model, in the fitted and in the held-out drives."""
-    noise = noise_of_most(runs, fitted)
+    noise = with_noise_of_reference(noise_of_most(runs, fitted), fitted, judge)
     point = replace(fitted, variances=noise)
     home = replace(judge.fitted_per_run(point.model), variances=noise)
     fitted_on, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))

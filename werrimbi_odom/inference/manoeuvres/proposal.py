@@ -123,7 +123,7 @@ def next_manoeuvre(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
             return by_hand
         weighed = discriminations(diagnosis)
         return quickest(diagnosis.rivals, weighed) if weighed[0].rises else None
-    if diagnosis.verdict == "unknown":
+    if diagnosis.verdict == "unknown" and diagnosis.one_sided is None:
         return for_the_unknown(diagnosis)
     return None
 

@@ -41,6 +41,12 @@ entered 17 % too small, and every effect with it."""
 MOST_WHEEL_NOISE = 3e-3
 """The noise of the softest wheels that roll [m^0.5] (see `TYPICAL_WHEEL_NOISE`)."""
 
+UNLIKE_WHEELS = MOST_WHEEL_NOISE / TYPICAL_WHEEL_NOISE
+"""Ratio of the noise of two wheels above which they are not two of one robot on one floor: as the
+softest on tiles to a typical one, six (`TYPICAL_WHEEL_NOISE`). Chong and Kleeman's two are 1.45. A
+reference's error makes it, whatever it is, only if errors along the path and in heading are
+correlated by (6² - 1) / (6² + 1) = 0.95; of one that wanders they are independent."""
+
 LEAST_WHEEL_NOISE = 1e-5
 """Least start value of a fit [m^0.5]: a tenth of the least noise of a rolling wheel, if the robot
 file has none. Without noise the first step would have no weights."""

@@ -43,7 +43,7 @@ def systematic_told(part: Systematic) -> str:
     if part.channel == "sideways" and part.per == "travel":
         side = "left" if value > 0.0 else "right"
         return f"the robot ends {_to_side(value, std)} to the {side} per metre forward"
-    quarter = 0.5 * math.pi
+    quarter = 1.0 if part.per == "sine of turn" else 0.5 * math.pi
     where = {
         ("along", True): "forward",
         ("along", False): "back",

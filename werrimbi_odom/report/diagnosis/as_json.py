@@ -14,6 +14,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
+from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.what_is_left import WhatIsLeft
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
@@ -85,6 +86,7 @@ def json_of(
         "left": diagnosis.left and _left(diagnosis.left),
         "reference_remarks": remarks_json(diagnosis.remarks),
         "reference_wanders": diagnosis.wander and picked(diagnosis.wander, _WANDER),
+        "one_sided_noise": diagnosis.one_sided and _one_sided(diagnosis.one_sided),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
         "widened": widest(diagnosis),
@@ -109,6 +111,15 @@ def _transform(diagnosis: Diagnosis) -> dict[str, Any] | None:
             for part, std in found.std.items()
         },
         "effects": list(found.effects),
+    }
+
+
+def _one_sided(noise: OneSidedNoise) -> dict[str, Any]:
+    """Noise of wheels of which one errs far more than the other [m^0.5]."""
+    sides = {"left": noise.left, "right": noise.right}
+    return {
+        "side": noise.side,
+        **{f"{name}_wheel_noise": picked(each, "value std") for name, each in sides.items()},
     }
 
 

@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.number_format import chance_words
+from werrimbi_odom.report.number_format import chance_words, scaled_with_std, two_digits
 
 
 def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
@@ -44,6 +45,8 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
     cells = significant(diagnosis)
     lines += costs.by_sizes_alone(advised)
     lines.append("Something is missing that no effect of the library explains.")
+    if diagnosis.one_sided is not None:
+        return [*lines, *_of_one_wheel(diagnosis.one_sided)]
     if cells:
         lines.append(
             f"What is known of it: {dependence_words(cells[0])} ({chance_words(cells[0].p_value)})."
@@ -81,3 +84,21 @@ def mounted_anew(advised: AdvisedDiagnosis) -> bool:
     """Whether places differ, and turns do not, because the reference was mounted otherwise."""
     places = any(remark.what == "places" for remark in advised.diagnosis.remarks)
     return places and any(change.group == "mount" for change in advised.changes)
+
+
+def _of_one_wheel(noise: OneSidedNoise) -> list[str]:
+    """What is known of errors of one wheel that follow no law on which the drives agree."""
+    other = "right" if noise.side == "left" else "left"
+    sizes = (
+        f"{short} = {scaled_with_std(item.value, item.std, 'm^0.5')}"
+        for short, item in (("k_L", noise.left), ("k_R", noise.right))
+    )
+    return [
+        f"What is known of it: the {noise.side} wheel errs {two_digits(noise.times)} times as much "
+        f"as the {other} one ({', '.join(sizes)}), and for seconds together its errors are alike, "
+        "more than noise is. A reference that errs makes both wheels err alike, so it is the "
+        "robot's.",
+        "The parts of the drives do not agree on what its errors go with, so no law can be written "
+        f"of them. Next: look at the {noise.side} wheel, its tyre, axle, motor and encoder, and at "
+        "what it drove over; where both paths part, `werrimbi compare` with --report shows.",
+    ]
