@@ -100,3 +100,27 @@ def test_what_is_printed_takes_a_reference_that_wanders_as_it_was_taken(
     assert called(draft, *words) == 0
     assert "werrimbi add by_load" in (said := printed())
     assert "--reference-kind local_map" in said
+
+
+def test_a_law_is_tried_with_the_file_from_before_what_stood_in_for_it(tmp_path: Path) -> None:
+    """Four effects were added for one law; beside the law none of them was ever taken out."""
+    text = (RECORDING / "robot.yaml").read_text()
+    (tmp_path / "robot.yaml").write_text(text)
+    better = tmp_path / "robot_better.yaml"
+    held = "    effects: [load_transfer]\n    load_transfer: {lateral: 0.03, longitudinal: 0.0}\n"
+    better.write_text(text.rstrip("\n") + "\n" + held)
+
+    def said() -> str:
+        given = recordings_of(wo.read_robot(better), RECORDING)
+        return " ".join(draft._next(Path("mine"), given, "by_load").split())
+
+    told = said()
+    before = f"werrimbi diagnose --robot {tmp_path / 'robot.yaml'} --effects mine/by_load.py"
+    assert "the robot file from before load_transfer, which may have stood in for it" in told
+    assert told.index(before) < told.index(f"werrimbi add by_load --robot {better}")
+    (tmp_path / "robot.yaml").write_text(
+        text.replace("wheel_separation: 0.35 ", "wheel_separation: 0.4 ")
+    )
+    told = said()  # another robot's file
+    assert before not in told
+    assert "diagnose the file from before, with --effects as here" in told

@@ -155,15 +155,15 @@ def test_noise_alone_is_not_more_than_the_error_without_a_reason(creep: Added) -
     odd = replace(quiet, errors=replace(quiet.errors, covariance=some))
     reason = "Noise alone is what the covariance promises, and the held-out"
     for after in (loud, odd):
-        found = replace(creep, holdout=replace(creep.holdout, after=after))
+        found = replace(creep, holdout=replace(creep.holdout, after=after, promising=after))
         assert found.noise_alone(found.holdout) > found.holdout.error("after")
         assert reason in " ".join(as_text(words_of(found)).split())
-    few, legs = replace(creep.holdout, after=odd).of_few_legs
+    few, legs = replace(creep.holdout, after=odd, promising=odd).of_few_legs
     assert few < 0.3 * legs < creep.holdout.of_few_legs[0]
     for share in (0.5, 0.8):
         covariance = share * quiet.errors.covariance
         after = replace(quiet, errors=replace(quiet.errors, covariance=covariance))
-        found = replace(creep, holdout=replace(creep.holdout, after=after))
+        found = replace(creep, holdout=replace(creep.holdout, after=after, promising=after))
         told = reason in " ".join(as_text(words_of(found)).split())
         assert told == (found.noise_alone(found.holdout) > found.holdout.error("after"))
 

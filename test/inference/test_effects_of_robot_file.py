@@ -15,9 +15,12 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.diagnosis.effects_of_robot_file import outdated
+from werrimbi_odom.inference.diagnosis.effects_of_robot_file import needless_of_held, outdated
+from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Events
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
@@ -106,3 +109,12 @@ def test_events_that_come_with_starts_are_no_noise(runs: list[Run]) -> None:
     alike = Alike("start or stop", 8, 8, (math.nan, math.nan), 1e-6, of_reference=False)
     found = diagnosed(runs, holding(0.04))
     assert "noise" not in words(replace(found, happened=Events(alike=alike))).partition("Next")[0]
+
+
+def test_what_stood_in_for_another_law_is_said_to_be_needless(runs: list[Run]) -> None:
+    """Three effects that were never there: six rivals of each were told, and not that of none."""
+    stale = find("load_transfer").using(lateral=0.03, longitudinal=0.0)
+    robot = replace(holding(0.04), effects=(*holding(0.04).effects, stale))
+    fit = fit_calibration(laid := concatenated(match_for_fit(runs, robot, 1.0)), robot)
+    asked = ("lateral_slip", "sideways_drift", "load_transfer")
+    assert needless_of_held(laid, fit, asked, robot) == ("load_transfer",)

@@ -25,8 +25,10 @@ from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.set_up.search import _late
 from werrimbi_odom.report.adding.words import _headline
-from werrimbi_odom.report.diagnosis import as_json, phrases, tables, words
-from werrimbi_odom.report.diagnosis.phrases import by_sizes_alone, cost, hang_together, whole
+from werrimbi_odom.report.diagnosis import ambiguous, as_json, costs, phrases, tables, words
+from werrimbi_odom.report.diagnosis.ambiguous import how_long
+from werrimbi_odom.report.diagnosis.costs import by_sizes_alone, cost, whole
+from werrimbi_odom.report.diagnosis.phrases import hang_together
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
 from werrimbi_odom.report.diagnosis.remarks import (
     at_bounds_told,
@@ -35,7 +37,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     like_noise,
     nearest,
 )
-from werrimbi_odom.report.diagnosis.words import NextSteps, how_long, words_of
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.terminal import as_text
 
 
@@ -114,8 +116,8 @@ def test_what_base_and_radii_do_is_no_credit_of_the_effect_that_is_nearest(
     """Radii 13 % too large, and something unknown besides (a car with rear encoders)."""
     sizes = "both wheels 12.7 % smaller"
     factor, unsure = 0.873, 0.01
-    monkeypatch.setattr(phrases, "sizes_found", lambda _: sizes)
-    monkeypatch.setattr(phrases, "best_sizes", lambda _: {"left": (factor, unsure)})
+    monkeypatch.setattr(costs, "sizes_found", lambda _: sizes)
+    monkeypatch.setattr(costs, "best_sizes", lambda _: {"left": (factor, unsure)})
     ranking = [
         SimpleNamespace(effect=name, holdout=Sides(0.103, after))
         for name, after in (("wheel_radius_scale", 0.030), ("reference_heading_delay", 0.024))
@@ -308,11 +310,15 @@ def test_no_size_is_told_that_the_drives_do_not_determine(monkeypatch: pytest.Mo
 def test_no_better_reference_is_promised_to_tell_twins_apart() -> None:
     held = {"reference_yaw_offset": ("sideways_drift", "reference_delay")}
     told: Any = SimpleNamespace(
-        rivals_of_held=held, effect_named=find, runs=SimpleNamespace(headings_alone=False)
+        rivals_of_held=held,
+        needless_of_held=("reference_yaw_offset",),
+        effect_named=find,
+        runs=SimpleNamespace(headings_alone=False),
     )
     twins, others = instead_of_held(told)
     assert "turned by 90 degrees" in twins
     assert "sideways_drift" not in others
+    assert "reference_delay or nothing in its place would explain them as well" in others
     assert "measures more often tells them apart" in others
 
 
@@ -357,5 +363,6 @@ def test_of_twins_the_example_leaves_what_the_node_publishes() -> None:
     """A marker askew and a robot that crabs are one to the reference."""
     told: Any = SimpleNamespace(effect_named=find)
     twins = ["sideways_drift", "reference_yaw_offset"]
-    assert words._to_try(told, twins) == words._to_try(told, twins[::-1]) == "reference_yaw_offset"
-    assert words._to_try(told, ["track_width"]) == "track_width"
+    assert ambiguous._to_try(told, twins) == "reference_yaw_offset"
+    assert ambiguous._to_try(told, twins[::-1]) == "reference_yaw_offset"
+    assert ambiguous._to_try(told, ["track_width"]) == "track_width"

@@ -119,6 +119,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
         return NextSteps(
             add=lambda names: next_command(["add", ",".join(names)], given, out=better).strip(),
             again=lambda names: next_command(["diagnose"], given.chosen(names)).strip(),
+            on_map=_fit_command(on_map(given), one_line=False).strip(),
             draft=next_command(["draft"], given, out="my_effect").strip(),
         )
 
@@ -154,8 +155,11 @@ def _fit_command(given: Recordings, *, one_line: bool) -> str:
 
 def as_judged(given: Recordings, diagnosis: Diagnosis) -> Recordings:
     """Recordings with the kind of reference that a diagnosis found, for what follows it."""
-    if diagnosis.wander is None:
-        return given
+    return given if diagnosis.wander is None else on_map(given)
+
+
+def on_map(given: Recordings) -> Recordings:
+    """Recordings with a reference that wanders."""
     return replace(given, how=replace(given.how, reference_kind="local_map"))
 
 

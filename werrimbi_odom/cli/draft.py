@@ -55,16 +55,38 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _next(folder: Path, given: Recordings, name: str) -> str:
-    """Commands to test and to install the draft."""
+    """Commands to test and to install the draft.
+
+    What no effect of the library is may have been told as several of them, and these added. Beside
+    the law they are needless, but a model that holds them finds no fault with them.
+    """
     from werrimbi_odom.api.next_command import next_command
+    from werrimbi_odom.files.earlier_robot_file import earlier_robot_file
     from werrimbi_odom.files.text_files import beside
+    from werrimbi_odom.report.number_format import listed
 
     file = folder / f"{name}.py"
     explain = shlex.join(["werrimbi", "explain", name, "--effects", str(file)])
     new = beside(given.source.path, "new")
     add = next_command(["add", name], given, effects=[file], out=new)
+    tried = f"Try it:\n{add}"
+    held = [each.name for each in given.source.effects if not each.effect.is_mistake]
+    before = earlier_robot_file(given.source, given.collection)
+    if before is not None:
+        kept = [each.name for each in before.effects]
+        held = [each for each in held if each not in kept]
+        again = next_command(["diagnose"], given, robot=before.path, effects=[file])
+        tried = (
+            f"Try it with the robot file from before {listed(held)}, which may have stood in for "
+            f"it:\n{again}\nOr beside them:\n{add}"
+        )
+    elif held:
+        tried += (
+            f"\nIf {listed(held)} came into the robot file by these drives, it may have stood in "
+            "for this law: then diagnose the file from before, with --effects as here."
+        )
     return (
-        f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files may name it:\n"
+        f"\nRead it:\n    {explain}\n{tried}\nInstall it, and robot files may name it:\n"
         f"    {shlex.join(['pip', 'install', _place(folder)])}"
     )
 

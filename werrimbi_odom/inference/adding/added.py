@@ -46,6 +46,8 @@ class JudgedSide:
     calibrated: Legs
     """Legs with everything fitted but the effects."""
     after: Legs
+    promising: Legs
+    """`after`, with the wander of the reference as that model leaves it, where one wanders."""
 
     def figures(self, which: str) -> LegStatistics:
         """Statistics of the legs without jumps of the reference; the median is of all legs."""
@@ -71,12 +73,12 @@ class JudgedSide:
 
         It is the error by noise alone if the model explains the drives (`Added.noise_alone`).
         """
-        return promised_of(self.after, self.unit)
+        return promised_of(self.promising, self.unit)
 
     @property
     def of_few_legs(self) -> tuple[int, int]:
         """Legs that hold half of the predicted squared error, the fewest that do, and all legs."""
-        shares = np.cumsum(np.sort(promised_variances(self.after, self.unit))[::-1])
+        shares = np.cumsum(np.sort(promised_variances(self.promising, self.unit))[::-1])
         half = int(np.searchsorted(shares, 0.5 * shares[-1])) + 1 if shares.size else 0
         return half, shares.size
 

@@ -205,18 +205,19 @@ def _judged(
 ) -> tuple[JudgedSide, JudgedSide]:
     """Legs of the fitted and the held-out drives; per-run parameters are fitted run by run."""
     plain = Model(judge.given, judge.nothing_of_own)
+    final = _noisy(fit, noise)
+    by_noise = judge.by_the_wander_of(final)
+    after = _legs(judge.train, final)
     train = JudgedSide(
         _legs(judge.train, in_runs(judge.train, plain)),
         _legs(judge.train, base.point.model),
-        _legs(judge.train, _noisy(fit, noise)),
+        after,
+        after if by_noise is judge else _legs(by_noise.train, final),
     )
-    kept = JudgedSide(
-        *(
-            _legs(judge.holdout, judge.fitted_per_run(model).model)
-            for model in (plain, base.point.model, _noisy(fit, noise))
-        )
-    )
-    return train, kept
+    models = [judge.fitted_per_run(each).model for each in (plain, base.point.model, final)]
+    before, calibrated, after = (_legs(judge.holdout, each) for each in models)
+    promising = after if by_noise is judge else _legs(by_noise.holdout, models[-1])
+    return train, JudgedSide(before, calibrated, after, promising)
 
 
 def _at_home(judge: Judge, without: Fitted, kept: JudgedSide, noise: Mapping[str, Any]) -> Sides:

@@ -9,7 +9,7 @@ same exclusions and the same reference noise.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import compress
 from typing import Literal, TypeVar
 
@@ -20,6 +20,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.comparison.local_map_errors import wandering_of
 from werrimbi_odom.inference.comparison.poses_within_legs import parts_for_fit
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup, group_of, jumped_in
 from werrimbi_odom.inference.comparison.reference_noise_source import ReferenceNoise
@@ -204,6 +205,23 @@ def _cut_to_lengths(
         )
         for length, found in rows.items()
     }
+
+
+def with_wander_of(prepared: PreparedRuns, robot: Robot) -> PreparedRuns:
+    """The same runs, with the wander of their references as a robot's own errors leave it.
+
+    Beside the robot that the runs were prepared with, what that robot lacks is told as wander: a
+    late clock made 14 mm of each metre, and noise alone was to make 9. The same runs where the
+    error of no reference wanders.
+    """
+
+    def of_group(group: ReferenceGroup) -> ReferenceGroup:
+        if group.own.wandering is None:
+            return group
+        found = wandering_of([run.record for run in group.every.runs], robot, prepared.options)
+        return replace(group, own=replace(group.own, wandering=found.variances))
+
+    return replace(prepared, groups=tuple(map(of_group, prepared.groups)))
 
 
 def for_fit(prepared: PreparedRuns, robot: Robot) -> list[MatchedRun]:

@@ -16,7 +16,7 @@ what is left, it is no reference's, and something is missing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -29,7 +29,7 @@ from werrimbi_odom.inference.comparison.prepared_runs import for_fit
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
-from werrimbi_odom.inference.diagnosis.effects_of_robot_file import outdated, rivals_of_held
+from werrimbi_odom.inference.diagnosis.effects_of_robot_file import doubts_of_held, outdated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
@@ -175,13 +175,13 @@ def _searched(
         certain = [cell for cell in remaining if cell.p_value < rules.VERY_SURE]
         misfit = misfit_of_found(fit, certain, laid)
     found = diagnosis_of(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
-    held: Mapping[str, tuple[str, ...]] = {}
-    if found.verdict == "none" and misfit is None:
-        held = rivals_of_held(laid, fit, effects, set_up.robot)
+    misfit = misfit or found.misfit
+    asked = found.verdict == "none" and misfit is None
+    held, needless = doubts_of_held(laid, fit, effects, set_up.robot) if asked else ({}, ())
     old = outdated(fit, robot) if found.verdict == "none" and found.holdout.fell_much else ()
     either = ahead_or_behind(laid, fit, set_up.robot)
-    found = replace(found, misfit=misfit, rivals_of_held=held, outdated=old, ahead_or_behind=either)
-    return found, judge
+    found = replace(found, misfit=misfit, rivals_of_held=held, needless_of_held=needless)
+    return replace(found, outdated=old, ahead_or_behind=either), judge
 
 
 def _refuse_few(laid: Concatenated, set_up: SetUp, judge: Judge) -> None:

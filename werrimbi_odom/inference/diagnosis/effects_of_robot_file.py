@@ -11,7 +11,7 @@ no search looks for it. The errors of the robot as given are as wrong for it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -31,6 +31,14 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 
+def doubts_of_held(
+    runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot
+) -> tuple[dict[str, tuple[str, ...]], tuple[str, ...]]:
+    """Rivals of the effects that the file holds, and which of these effects are needless."""
+    rivals = rivals_of_held(runs, fit, effects, given)
+    return rivals, needless_of_held(runs, fit, rivals, given)
+
+
 def rivals_of_held(
     runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot
 ) -> dict[str, tuple[str, ...]]:
@@ -46,6 +54,20 @@ def rivals_of_held(
         if rivals:
             found[applied.name] = rivals
     return found
+
+
+def needless_of_held(
+    runs: Concatenated, fit: Fitted, names: Iterable[str], given: Robot
+) -> tuple[str, ...]:
+    """Those of the effects that the file holds without which the drives are explained as well."""
+    found = []
+    for name in names:
+        bare = replace(fit.point, model=fit.point.model.without_effect(name))
+        free = [number for number in fit.numbers if not number.name.startswith(f"{name}.")]
+        without = refined(runs, fitted(runs, bare, (), free, given), given)
+        if without.total < fit.total + rules.RIVAL * fit.scatter:
+            found.append(name)
+    return tuple(found)
 
 
 def _rivals(

@@ -12,7 +12,12 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.calibration_parametrisation import base_told, sizes_of, std_as_effect
+from werrimbi_odom.inference.calibration_parametrisation import (
+    base_name,
+    base_told,
+    sizes_of,
+    std_as_effect,
+)
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import tried_with
 from werrimbi_odom.inference.diagnosis.p_values import chance
@@ -202,15 +207,39 @@ def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:
 def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]:
     """Wheel base and radii of the best model, as multipliers with standard deviations.
 
-    The given ones where set-up mistakes were found, since sizes are reported together with them.
+    The given ones where sizes are among the set-up mistakes, since all are reported with these.
     """
-    if mistakes(diagnosis):
+    wrong = mistakes(diagnosis)
+    if wrong and not any(_is_size(name) for name in wrong):
+        return _beside_mistakes(diagnosis)
+    if wrong:
         return {name: (getattr(diagnosis.given, name), None) for name in MULTIPLIERS}
     robot, spread = diagnosis.robot, _spreads(diagnosis.told)
     same = {name for name in MULTIPLIERS if getattr(robot, name) == getattr(diagnosis.given, name)}
     return {
         name: (getattr(robot, name), 0.0 if name in same else spread[name]) for name in MULTIPLIERS
     }
+
+
+def _is_size(mistake: str) -> bool:
+    """Whether a set-up mistake is one of sizes, or of the unit that they are measured by."""
+    return mistake == IN_DEGREES or mistake in CALIBRATED or base_name(find(mistake)) is not None
+
+
+def _beside_mistakes(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
+    """Sizes beside exchanged wires or a mount: those that differ from the file beyond their std.
+
+    The set-up search puts the few percent that they are off by into the robot that the fits start
+    with, so a fit may leave them there. How well they are known, the fit with all sizes free tells.
+    """
+    robot, spread = diagnosis.final.point.model.robot, _spreads(diagnosis.final)
+    sizes = {}
+    for name in MULTIPLIERS:
+        value, given = float(getattr(robot, name)), float(getattr(diagnosis.given, name))
+        std = spread.get(name, math.inf)
+        seen = abs(value - given) > rules.SIGNIFICANT * std
+        sizes[name] = (value, std) if seen else (given, 0.0)
+    return sizes
 
 
 def one_wheel(diagnosis: Diagnosis) -> str | None:

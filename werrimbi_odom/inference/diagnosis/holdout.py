@@ -17,6 +17,7 @@ from werrimbi_odom.inference.comparison.prepared_runs import (
     judged_by,
     prepare,
     refuse_standing,
+    with_wander_of,
 )
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
@@ -89,6 +90,15 @@ class Judge:
             holdout,
             train,
         )
+
+    def by_the_wander_of(self, model: Model) -> Judge:
+        """The judge for what noise alone leaves: its references wander as the model leaves it."""
+        if self.options.reference_kind != "local_map":
+            return self
+        train, holdout = (
+            with_wander_of(prepared, model.robot) for prepared in (self.train, self.holdout)
+        )
+        return replace(self, train=train, holdout=holdout)
 
     def fitted_per_run(self, model: Model) -> Point:
         """The model for the held-out runs: shared values kept, per-run parameters estimated."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.calibration_parametrisation import name_of_base
+from werrimbi_odom.inference.calibration_parametrisation import base_name, name_of_base
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge
 from werrimbi_odom.inference.diagnosis.p_values import (
@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.distributions import bonferroni
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.robot import Robot
@@ -34,7 +34,10 @@ class Ranked:
     """Corrected for the number of effects tried. None where nothing was tested: a set-up mistake is
     found by a search of all set-ups, whose statistic has no known distribution."""
     train: Sides | None
-    """Position error before and after adding it [m]; None where it was not fitted."""
+    """Position error before and after adding it [m]; None where it was not fitted.
+
+    An effect is held against the same model without it: where base and radii are fitted with it, so
+    are they before it, as in `add`."""
     holdout: Sides | None
 
 
@@ -47,16 +50,18 @@ def ranking_of(
     start: Errors,
     laid: Concatenated,
     given: Robot,
+    told: Fitted,
 ) -> list[Ranked]:
     """All effects, those found first, with the figures of the round that accepted them.
 
-    The figures of the others are of their first trial.
+    The figures of the others are of their first trial. `told`: the reported fit.
     """
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
         ranked[finding.effect] = _worth(finding.effect, None, start, mended)
-    before = mended
+    calibrated = judge.of(rounds[0].before.point.model)
+    before = calibrated if _sizes_differ(told, set_up.robot) else mended
     for number, this in enumerate(rounds):
         if number > 0:
             before = judge.of(this.before.point.model)
@@ -68,8 +73,8 @@ def ranking_of(
                 p_value = chance(fit, this.before, this.number)
                 if taken:
                     p_value = max(p_value, p_value_by_parts(laid, final, name, this.number))
-                ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
-    calibrated = judge.of(rounds[0].before.point.model)
+                without = mended if base_name(fit.newest) is not None else before
+                ranked[name] = _worth(name, p_value, without, judge.of(fit.point.model))
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
         p_value = bonferroni(rounds[0].number, p_value_of_size(final, name, given, set_up.robot))
@@ -82,6 +87,12 @@ def ranking_of(
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
     return [*first, *sorted(ranked.values(), key=_certainty)]
+
+
+def _sizes_differ(told: Fitted, given: Robot) -> bool:
+    """Whether base or radii of the reported fit differ from those that it began with."""
+    robot = told.point.model.robot
+    return any(getattr(robot, name) != getattr(given, name) for name in MULTIPLIERS)
 
 
 def _certainty(item: Ranked) -> float:

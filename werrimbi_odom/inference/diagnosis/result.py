@@ -89,6 +89,9 @@ class Diagnosis:
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that explain as much in place of one that the file holds,
     by its name."""
+    needless_of_held: tuple[str, ...] = ()
+    """Those of `rivals_of_held` without which the drives are explained as well, with nothing in
+    their place."""
     outdated: tuple[str, ...] = ()
     """Where nothing is missing: effects that the file holds with values that the drives
     contradict."""

@@ -23,6 +23,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun
+from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -109,12 +110,17 @@ def diagnosis_of(
         at = rounds[0].before if mistakes else final
         told = as_told(at, mended, answer.found, laid, rounds)
         after = judge.of(told.point.model)
+    by_noise = judge.by_the_wander_of(told.point.model) if answer.found else judge
+    promising = after if by_noise is judge else by_noise.of(told.point.model)
+    # What is beyond the library stands beside what was found, and `add` will say it too.
+    beside = beyond if answer.verdict in ("named", "ambiguous") else None
     return Diagnosis(
         verdict=answer.verdict,
+        misfit=None if beside is None else Misfit(None, beside, None),
         effect=answer.found[0] if answer.found else None,
         found=answer.found,
         ranking=tuple(
-            ranking_of(answer.found, begun.set_up, rounds, final, judge, before, laid, given)
+            ranking_of(answer.found, begun.set_up, rounds, final, judge, before, laid, given, told)
         ),
         rivals=answer.rivals,
         torn=answer.torn,
@@ -140,8 +146,8 @@ def diagnosis_of(
         left=None
         if another
         else what_is_left(
-            (judge.train, after.fitted_legs),
-            (judge.holdout, after.legs),
+            (judge.train, after.fitted_legs, promising.fitted_legs),
+            (judge.holdout, after.legs, promising.legs),
             after.unit,
             laid,
             final.point,

@@ -71,25 +71,28 @@ class WhatIsLeft:
 
 
 def what_is_left(
-    train: tuple[PreparedRuns, Legs],
-    holdout: tuple[PreparedRuns, Legs],
+    train: tuple[PreparedRuns, Legs, Legs],
+    holdout: tuple[PreparedRuns, Legs, Legs],
     unit: Unit,
     runs: Concatenated,
     point: Point,
 ) -> WhatIsLeft | None:
     """Compare what is left with the reference's noise; None where that or the legs are too few.
 
-    `train`, `holdout`: drives and their legs, judged with everything found. `runs`, `point`: the
+    `train`, `holdout`: drives and their legs, judged with everything found, and again with the
+    wander of the reference that this leaves, where one wanders. `runs`, `point`: the
     fitted drives in the legs of the fit, and the fit.
     """
-    if not all(_noise_is_known(prepared) for prepared, _ in (train, holdout)):
+    if not all(_noise_is_known(prepared) for prepared, *_ in (train, holdout)):
         return None
     found = []
-    for _, legs in (train, holdout):
+    for _, legs, promising in (train, holdout):
         quiet = legs.quiet
         if np.count_nonzero(~quiet.outlier) < rules.FEWEST_LEGS:
             return None
-        found.append(LeftOfLegs(error_of(quiet, unit), promised_of(quiet, unit, wheels=False)))
+        found.append(
+            LeftOfLegs(error_of(quiet, unit), promised_of(promising.quiet, unit, wheels=False))
+        )
     return WhatIsLeft(found[0], found[1], unit, _neighbours(runs, point))
 
 

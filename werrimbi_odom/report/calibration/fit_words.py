@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from werrimbi_odom.inference.calibration.any_driving import Calibration
+from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
@@ -24,6 +25,11 @@ _UNITS = {
     "reference_reversion": "1/s",
 }
 
+_ABSOLUTE = (
+    " If it names nothing, it may be the reference that wanders, as a camera does: give "
+    "--reference-kind local_map here too."
+)
+
 
 def fit_in_words(result: Calibration) -> list[Part]:
     """Whether the model explains the drives, the values, and how reliable they are."""
@@ -38,6 +44,11 @@ def fit_in_words(result: Calibration) -> list[Part]:
             f"{capital(listed(unwritten))} {stays} in the robot file: a noise that no wheel has "
             "is not written."
         )
+    if result.misfit:
+        said.append(
+            "The wheels' noise in the robot file is left alone until a model explains the drives: "
+            "what is missing would be written as noise."
+        )
     if left_out := _left_out(result):
         legs, were = counted(left_out, "leg"), "was" if left_out == 1 else "were"
         said.append(f"{legs} on which the reference jumped {were} left out.")
@@ -46,6 +57,7 @@ def fit_in_words(result: Calibration) -> list[Part]:
             "These values are the best of a model that does not fit, so they have no error bars. "
             "`werrimbi diagnose` says which physical effect explains the drives, or what is set up "
             "wrongly: how the reference is mounted, its axes, its clock."
+            + (_ABSOLUTE if result.fit.point.options.reference_kind == "absolute" else "")
         )
     return [*_verdict(result), _values(result), *paragraphs(said, apart=True)]
 
@@ -65,7 +77,8 @@ def _strange(result: Calibration, name: str) -> bool:
     return (
         name.endswith("wheel_noise")
         and noise is not None
-        and (noise.determined and name not in result.changes)
+        and noise.determined
+        and beyond_wheel_noise(noise)
     )
 
 

@@ -41,7 +41,10 @@ def json_of(
     """Complete result."""
     misfit = diagnosis.misfit
     return {
-        **picked(diagnosis, "verdict effect rivals rivals_by_halves:torn ahead_or_behind"),
+        **picked(
+            diagnosis,
+            "verdict effect rivals rivals_by_halves:torn ahead_or_behind needless_of_held",
+        ),
         **{
             part: {name: list(each) for name, each in getattr(diagnosis, part).items()}
             for part in ("rivals_of_others", "rivals_of_held")

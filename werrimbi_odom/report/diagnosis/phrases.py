@@ -13,26 +13,23 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
     Value,
-    best_sizes,
     mistakes,
     ranked_of,
     values_of,
 )
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.report.diagnosis import costs
 from werrimbi_odom.report.diagnosis.manual_check import expected_words
 from werrimbi_odom.report.number_format import (
     capital,
     chance_words,
     each_its_own,
-    error_words,
     listed,
     quantity,
 )
-from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
 def about(advised: AdvisedDiagnosis, name: str) -> list[str]:
@@ -46,7 +43,7 @@ def about(advised: AdvisedDiagnosis, name: str) -> list[str]:
     ranked = ranked_of(diagnosis, name)
     if ranked is not None and name not in mistakes(diagnosis):
         lines.append(f"How sure: {chance_words(ranked.p_value)}{_deviations(diagnosis, name)}.")
-    lines += cost(advised, name)
+    lines += costs.cost(advised, name)
     lines += ruler(diagnosis, effect, "Check it")
     return lines
 
@@ -171,116 +168,6 @@ def _value(value: Value) -> str:
     if not value.determined:
         return "not determined by these drives"
     return quantity(value.value, value.std, value.unit, value.or_else)
-
-
-def cost(advised: AdvisedDiagnosis, name: str) -> list[str]:
-    """Errors without an effect and with it."""
-    ranked = ranked_of(advised.diagnosis, name)
-    if ranked is None or ranked.holdout is None:
-        return []
-    return _fall(advised, ranked.holdout)
-
-
-def _fall(advised: AdvisedDiagnosis, sides: Sides) -> list[str]:
-    before, after = sides.before, sides.after
-    if not (math.isfinite(before) and math.isfinite(after)):
-        return []
-    where, kind = f"on {judged(advised)}", error_kind(sides)
-    if after >= before:
-        both = (
-            f"{where} the {kind} error is {error_words(before, sides.unit)} without it and "
-            f"{error_words(after, sides.unit)} with it"
-        )
-        if sides.rose:
-            return [
-                f"But: {both}, and chance does not raise it so. These drives are not like those "
-                "it was found in: look what is different."
-            ]
-        turned = _fall_of_headings(advised.diagnosis)
-        if turned:
-            return [f"What it costs: {where} {turned}; positions are as good without it."]
-        return [f"What it costs is not seen yet: {both}, which these legs do not tell from chance."]
-    told_before, told_after = (error_words(each, sides.unit) for each in (before, after))
-    if told_before == told_after:
-        return [
-            f"What it costs: hardly anything {where}; the {kind} error there is "
-            f"{told_before} with it and without."
-        ]
-    part = math.sqrt(before**2 - after**2)
-    return [
-        f"What it costs: {error_words(part, sides.unit)} {_each(advised, sides)}; {where} the "
-        f"{kind} error falls from {told_before} to {told_after} when it is put in."
-    ]
-
-
-def _fall_of_headings(diagnosis: Diagnosis) -> str:
-    """The fall of the heading error, if it is halved: spins on the spot leave a robot in place."""
-    sides = diagnosis.headings[1]
-    if not 2.0 * sides.after < sides.before:
-        return ""
-    before, after = (error_words(each, "rad") for each in (sides.before, sides.after))
-    together = " with all that is found" if len(diagnosis.found) > 1 else ""
-    return f"the heading error falls from {before} to {after}{together}"
-
-
-def error_kind(sides: Sides) -> str:
-    """Kind of an error."""
-    return "heading" if sides.unit == "rad" else "position"
-
-
-def _each(advised: AdvisedDiagnosis, sides: Sides) -> str:
-    if rarer_than_asked(sides.length, advised.leg):
-        return f"on each leg of {leg_words(sides.length, advised.leg)} m"
-    return f"on each {'metre' if advised.leg == 1.0 else f'{advised.leg:g} m'} or quarter turn"
-
-
-def judged(advised: AdvisedDiagnosis) -> str:
-    """Drives and legs of the held-out errors."""
-    which = "the drives held out" if advised.held_out else "a part put aside for judging"
-    leg = leg_words(advised.diagnosis.holdout.length, advised.leg)
-    return f"{which} (legs of {leg} m)"
-
-
-def sizes_found(diagnosis: Diagnosis) -> str:
-    """Wheel base and radii of the best model in measurable units; "" if all are right."""
-    return sizes_words(diagnosis.given, best_sizes(diagnosis))
-
-
-def whole(advised: AdvisedDiagnosis) -> list[str]:
-    """Errors with everything that was found, if that is more than one effect."""
-    diagnosis = advised.diagnosis
-    sides = diagnosis.holdout
-    if len(diagnosis.found) < 2 or not math.isfinite(sides.before):
-        return []
-    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
-    goes = f"{'falls' if sides.after < sides.before else 'goes'} from {before} to {after}"
-    if before == after:
-        goes = f"stays at {before}"
-    return [f"With all of them put in, the {error_kind(sides)} error on {judged(advised)} {goes}."]
-
-
-def by_sizes_alone(advised: AdvisedDiagnosis) -> list[str]:
-    """Of errors that base and radii lower, where something else is missing as well.
-
-    Sizes that are off by more than calibration may stand in for what is missing, and sizes that are
-    as uncertain as they are off are not said to be off.
-    """
-    diagnosis = advised.diagnosis
-    sides, words = diagnosis.holdout, sizes_found(diagnosis)
-    sizes = [
-        (value, getattr(diagnosis.given, name), std)
-        for name, (value, std) in best_sizes(diagnosis).items()
-    ]
-    usual = all(1.0 / rules.ORDINARY < value / given < rules.ORDINARY for value, given, _ in sizes)
-    seen = any(abs(value - given) > rules.SIGNIFICANT * (std or 0.0) for value, given, std in sizes)
-    if not (words and sides.fell and usual and seen):
-        return []
-    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
-    return [
-        f"Base and radii by themselves: {words}. With these the {error_kind(sides)} error on "
-        f"{judged(advised)} falls from {before} to {after}. They are off, or stand in for the mean "
-        "of what follows."
-    ]
 
 
 def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:

@@ -81,6 +81,18 @@ def wandering(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def as_one_that_wanders(diagnosis: Diagnosis, command: str) -> list[str]:
+    """Next step where errors of poses that were taken as absolute wander; `command` fits noise."""
+    if diagnosis.final.point.options.reference_kind != "absolute":
+        return []
+    return [
+        "Next: there is nothing to add. With poses that err one by one, the reference's wander "
+        "would be put down to the wheels' noise: take it for one that wanders, here and in "
+        "`werrimbi compare`:",
+        f"    {command}",
+    ]
+
+
 def _of_both(place: float, heading: float | None) -> str:
     """Sizes of the errors of positions [m] and, where they were measured, of headings [rad]."""
     sizes = [error_words(place, "m")]
@@ -147,7 +159,7 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     runs, found = diagnosis.runs, diagnosis.found
     by_headings = runs.headings_alone and "track_width" in found
     if not by_headings and not (runs.own_axes and "wheel_radius_scale" in found):
-        return _or_its_metre(diagnosis)
+        return or_its_metre(diagnosis)
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
     share = f"{100.0 * abs(size - 1.0):.2g} %"
     if by_headings:
@@ -165,7 +177,7 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _or_its_metre(diagnosis: Diagnosis) -> list[str]:
+def or_its_metre(diagnosis: Diagnosis) -> list[str]:
     """That one number explains base and radii that are off by one factor within their deviations.
 
     Where positions are measured, a wrong metre of theirs shows just that.
@@ -189,8 +201,9 @@ def _or_its_metre(diagnosis: Diagnosis) -> list[str]:
         f"Base and radii are off by one factor, {size:.3f}, within their ±. A reference that shows "
         f"{100.0 * abs(size - 1.0):.2g} % too {less} of every way shows the same (reference_scale: "
         "a camera's or a map's metre). Drive a straight line of 10 m beside a tape: if the wheels, "
-        "with the robot file as it is, count 10 m, it is the reference; then add reference_scale "
-        "in place of both."
+        "with the robot file as it is, count 10 m, it is the reference: write reference_scale with "
+        f"multiplier {size:.4g} into its effects by hand, in place of both (`add` cannot tell it "
+        "from the radii), and diagnose again."
     ]
 
 

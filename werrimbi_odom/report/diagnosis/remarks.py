@@ -15,8 +15,9 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.model.effect import applied_of
+from werrimbi_odom.report.diagnosis.costs import error_kind, judged
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.phrases import error_kind, judged, sizes
+from werrimbi_odom.report.diagnosis.phrases import sizes
 from werrimbi_odom.report.number_format import (
     chance_words,
     error_words,
@@ -24,6 +25,18 @@ from werrimbi_odom.report.number_format import (
     quantity,
     two_digits,
 )
+
+
+def remainder(advised: AdvisedDiagnosis) -> list[str]:
+    """What speaks against the model with everything found put in."""
+    bounds = at_bounds_told(advised.diagnosis)
+    return [*rest(advised), *bounds]
+
+
+def rest(advised: AdvisedDiagnosis) -> list[str]:
+    """What is left, if anything, and whether that is the reference's own noise."""
+    told = [*law(advised), *scatter(advised)]
+    return [*told, *left_is_noise(advised)] if told else []
 
 
 def law(advised: AdvisedDiagnosis) -> list[str]:
@@ -172,11 +185,12 @@ def instead_of_held(diagnosis: Diagnosis) -> list[str]:
             for twin in alike.values()
         ]
         if rest := [other for other in others if other not in alike]:
+            nothing = ["nothing"] if name in diagnosis.needless_of_held else []
             lines.append(
                 f"But: that it is {name}, which the robot file holds, these drives do not show: "
-                f"{listed(rest, 'or')} in its place would explain them as well. `werrimbi explain` "
-                "says how each is checked on the robot; a reference that measures more often tells "
-                "them apart."
+                f"{listed([*rest, *nothing], 'or')} in its place would explain them as well. "
+                "`werrimbi explain` says how each is checked on the robot; a reference that "
+                "measures more often tells them apart."
             )
     return lines
 

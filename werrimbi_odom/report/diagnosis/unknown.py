@@ -7,7 +7,7 @@ from __future__ import annotations
 from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
-from werrimbi_odom.report.diagnosis import phrases, reference_remarks, remarks
+from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.number_format import chance_words, scaled_with_std, two_digits
 
@@ -43,7 +43,7 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
         ]
     lines = phrases.set_up_lines(diagnosis)
     cells = significant(diagnosis)
-    lines += phrases.by_sizes_alone(advised)
+    lines += costs.by_sizes_alone(advised)
     lines.append("Something is missing that no effect of the library explains.")
     if diagnosis.one_sided is not None:
         return [*lines, *_of_one_wheel(diagnosis.one_sided)]

@@ -5,10 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
-from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.changes.between_drives import driven_in_order
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
@@ -17,35 +14,23 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     reference_wanders,
 )
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
-from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
-from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
-from werrimbi_odom.report.diagnosis import phrases, reference_remarks, remarks
+from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
+from werrimbi_odom.report.diagnosis.ambiguous import ambiguous_words
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.unknown import mounted_anew, unknown_words
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.number_format import error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
-
-@dataclass(frozen=True)
-class NextSteps:
-    """Commands for the same robot and drives, ready to type."""
-
-    add: Callable[[Sequence[str]], str] = lambda names: (
-        f"werrimbi add {','.join(names)} --robot R RUN... --out NEW.yaml"
-    )
-    """Command to add effects of these names."""
-    again: Callable[[Sequence[str]], str] = lambda names: "werrimbi diagnose --robot R RUN..."
-    """Command to diagnose the drives of these names alone; "" for none."""
-    draft: str = "werrimbi draft --robot R RUN... --out my_effect"
-    diagnose: str = "werrimbi diagnose"
+__all__ = ["NextSteps", "words_of"]
 
 
 def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ...]:
     """All sentences, and the commands of the next step."""
     diagnosis = advised.diagnosis
-    tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
+    tell = {"none": _none, "named": _named, "ambiguous": ambiguous_words, "unknown": _unknown}
     said = [
         *_changes(advised, steps),
         *tell[diagnosis.verdict](advised, steps),
@@ -134,11 +119,15 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     ending = ": the model explains them to their noise." if noise else "."
     if old:
         ending = ", but values of effects in the robot file are off."
-    lines = [f"Nothing is missing that these drives could show{ending}", *old, *_rest(advised)]
+    lines = [
+        f"Nothing is missing that these drives could show{ending}",
+        *old,
+        *remarks.rest(advised),
+    ]
     if math.isfinite(diagnosis.holdout.before) and not old:
         errors = error_words(diagnosis.holdout.before, diagnosis.holdout.unit)
         like = remarks.like_noise(diagnosis, noise=noise)
-        lines.append(f"Its errors on {phrases.judged(advised)} are {errors}{like}")
+        lines.append(f"Its errors on {costs.judged(advised)} are {errors}{like}")
         lines += large
     lines += remarks.instead_of_held(diagnosis)
     if wanders:
@@ -165,6 +154,8 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "Next: fit some of the drives held out too, and hold out others: something happens on "
             "them that the fitted ones hardly show.",
         ]
+    if wanders and (by_map := reference_remarks.as_one_that_wanders(diagnosis, steps.on_map)):
+        return [*lines, *by_map]
     lines.append(
         "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
         "covariance is honest; where it is not, `werrimbi calibrate fit` fits the wheels' noise."
@@ -185,89 +176,33 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     for other in diagnosis.found[1:]:
         if other not in mistakes(diagnosis):
             lines += phrases.also(advised, other)
-    if sizes := phrases.sizes_found(diagnosis):
+    if sizes := costs.sizes_found(diagnosis):
         lines.append(f"On the robot: {sizes}.")
     it = "it" if len(diagnosis.found) == 1 else "all of it"
     return [
         *lines,
-        *phrases.whole(advised),
-        *_remainder(advised),
-        f"Next: add {it} to the model, fitted together with all calibration:",
-        f"    {steps.add(diagnosis.found)}",
+        *costs.whole(advised),
+        *remarks.remainder(advised),
         *reference_remarks.or_the_reference_s_scale(diagnosis),
+        *_add(diagnosis, it, steps),
         *reference_remarks.moved_by_its_odometry(diagnosis),
         *reference_remarks.transform_to_mend(diagnosis),
         *reference_remarks.not_shown(advised),
     ]
 
 
-def _ambiguous(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
-    diagnosis = advised.diagnosis
-    rivals = diagnosis.rivals
-    first = diagnosis.effect_named(rivals[0])
-    lines = phrases.set_up_lines(diagnosis)
-    which = listed(rivals, "or")
-    lines.append(
-        f"These drives cannot tell which it is, {which}."
-        if rivals[0] in mistakes(diagnosis)
-        else f"Something is missing, but these drives cannot tell which: {which}."
-    )
-    if diagnosis.torn:
-        lines.append(
-            f"All drives together speak for {rivals[0]}; halves of them, taken by themselves, for "
-            f"{listed(diagnosis.torn, 'or')}. A verdict that half of the data would change is none."
-        )
-    others = [diagnosis.effect_named(name) for name in rivals[1:]]
-    twins = [each.name for each in others if each and first and always_twins(first, each)]
-    if twins:
-        lines.append(
-            f"To the reference {listed([rivals[0], *twins])} are one and the same, on any drive."
-        )
-    for name in rivals:
-        effect = diagnosis.effect_named(name)
-        if effect is not None:
-            size = phrases.sizes(diagnosis, name, believed=True)
-            lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
-    lines += reference_remarks.or_the_reference_s_scale(diagnosis)
-    lines += reference_remarks.moved_by_its_odometry(diagnosis)
-    lines += reference_remarks.transform_to_mend(diagnosis)
-    lines += phrases.cost(advised, rivals[0])
-    if (move := advised.manoeuvre) is not None:
-        lines.append(f"Why: {move.why}.")
-        lines.append(" ".join((f"Next: {move.do} ({move.name}).", *how_long(move, steps.diagnose))))
-    else:
-        lines += reference_remarks.by_ruler(diagnosis)
-    rest = [other for other in diagnosis.found if other not in rivals]
-    command = steps.add([_to_try(diagnosis, [rivals[0], *twins]), *rest])
-    lines += ["Or, if you know which it is, add it, for example:", f"    {command}"]
-    for name in rivals[:3]:
-        lines += phrases.ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
-    for other in diagnosis.found[1:]:
-        if other not in rivals and other not in mistakes(diagnosis):
-            lines += phrases.also(advised, other)
-    return [*lines, *_remainder(advised)]
-
-
-def _to_try(diagnosis: Diagnosis, twins: Sequence[str]) -> str:
-    """The one of twins that leaves what the node publishes as it is; the first if none does."""
-    effects = map(diagnosis.effect_named, twins)
-    kept = [each.name for each in effects if each is not None and each.stage == "reference"]
-    return next(iter(kept), twins[0])
+def _add(diagnosis: Diagnosis, it: str, steps: NextSteps) -> list[str]:
+    """The command that adds everything; on a condition where the reference's metre may be why."""
+    metre = bool(reference_remarks.or_its_metre(diagnosis))
+    begin = "measure that first. If it is the wheels, add" if metre else "add"
+    return [
+        f"Next: {begin} {it} to the model, fitted together with all calibration:",
+        f"    {steps.add(diagnosis.found)}",
+    ]
 
 
 def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     return unknown_words(advised, steps.draft)
-
-
-def how_long(move: ProposedManoeuvre, diagnose: str) -> Iterator[str]:
-    """Duration and power of a drive that separates rivals, and what to do with it."""
-    if not move.minutes:
-        return
-    enough = "are enough"
-    if move.chance is not None and move.chance < rules.POWER:
-        enough = f"tell them apart in {100.0 * move.chance:.0f} % of cases"
-    yield f"About {move.minutes:.0f} min of it {enough}."
-    yield f"Then give that drive to `{diagnose}` together with these."
 
 
 def _things(diagnosis: Diagnosis) -> list[str]:
@@ -279,18 +214,6 @@ def _things(diagnosis: Diagnosis) -> list[str]:
     radii = [name for name in diagnosis.found if name in of_a_wheel]
     told = {radii[0]: f"the size of the {side} wheel ({' with '.join(radii)})", radii[1]: ""}
     return [words for name in diagnosis.found if (words := told.get(name, name))]
-
-
-def _remainder(advised: AdvisedDiagnosis) -> list[str]:
-    """What speaks against the model with everything found put in."""
-    bounds = remarks.at_bounds_told(advised.diagnosis)
-    return [*_rest(advised), *bounds]
-
-
-def _rest(advised: AdvisedDiagnosis) -> list[str]:
-    """What is left, if anything, and whether that is the reference's own noise."""
-    rest = [*remarks.law(advised), *remarks.scatter(advised)]
-    return [*rest, *remarks.left_is_noise(advised)] if rest else []
 
 
 def _count(number: int) -> str:
