@@ -18,6 +18,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     values_of,
 )
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
+from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
@@ -42,7 +43,8 @@ def about(advised: AdvisedDiagnosis, name: str) -> list[str]:
     lines += _large(diagnosis, name)
     ranked = ranked_of(diagnosis, name)
     if ranked is not None and name not in mistakes(diagnosis):
-        lines.append(f"How sure: {chance_words(ranked.p_value)}{_deviations(diagnosis, name)}.")
+        sure = _chance(diagnosis, name, ranked.p_value)
+        lines.append(f"How sure: {sure}{_deviations(diagnosis, name)}.")
     lines += costs.cost(advised, name)
     lines += ruler(diagnosis, effect, "Check it")
     return lines
@@ -53,7 +55,9 @@ def also(advised: AdvisedDiagnosis, name: str) -> list[str]:
     effect = advised.diagnosis.effect_named(name)
     size = sizes(advised.diagnosis, name)
     ranked = ranked_of(advised.diagnosis, name)
-    sure = f"; {chance_words(ranked.p_value)}" if ranked is not None else ""
+    sure = ""
+    if ranked is not None:
+        sure = f"; {_chance(advised.diagnosis, name, ranked.p_value)}"
     what = f" {effect.summary}" if effect is not None else ""
     own = own_scale_instead(
         name, advised.diagnosis.final, advised.diagnosis.given, advised.diagnosis.runs
@@ -138,13 +142,29 @@ def hang_together(values: Iterable[Value]) -> str:
     return " Any one of these may be none, but not all of them: they hang together in these drives."
 
 
-def _deviations(diagnosis: Diagnosis, name: str) -> str:
-    """Distance of the most significant parameter from null, in standard deviations."""
-    far = {
+def _chance(diagnosis: Diagnosis, name: str, p_value: float | None) -> str:
+    """Chance of an effect in words: of one number, no less than its distance from null allows.
+
+    The ± of that number includes what the likelihood cannot see: the steps of coarse counters.
+    """
+    far = _in_deviations(diagnosis, name)
+    if p_value is not None and len(far) == 1:
+        p_value = max(p_value, chi2_survival(max(far.values()) ** 2, 1))
+    return chance_words(p_value)
+
+
+def _in_deviations(diagnosis: Diagnosis, name: str) -> dict[str, float]:
+    """Distance of each determined parameter from null, in standard deviations."""
+    return {
         parameter: abs(value.value - value.null) / value.std
         for parameter, value in values_of(diagnosis, name).items()
         if value.std > 0.0 and math.isfinite(value.value) and value.determined
     }
+
+
+def _deviations(diagnosis: Diagnosis, name: str) -> str:
+    """Distance of the most significant parameter from null, in standard deviations."""
+    far = _in_deviations(diagnosis, name)
     if not far:
         return ""
     first = max(far, key=lambda parameter: far[parameter])
