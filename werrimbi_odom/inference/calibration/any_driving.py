@@ -48,12 +48,11 @@ class Calibration:
     """Result of a fit of calibration and noise."""
 
     robot: Robot
-    """Robot with the values to write."""
+    """Robot with all determined values, except a noise too large for a wheel."""
     multipliers: dict[str, Multiplier]
     noises: dict[str, NoiseEstimate]
     changes: dict[str, float]
-    """Parameters to write to the robot file: no noise of a model that does not explain the drives,
-    for what is missing would be told as noise of the wheels."""
+    """Parameters to write to the robot file."""
     correlation: Floats
     """Correlation of the determined multipliers, in the order of `fit.free`."""
     misfit: tuple[Dependence, ...]
@@ -117,7 +116,7 @@ def calibrate(
     wheels = {
         name: noises[name]
         for name in ("left_wheel_noise", "right_wheel_noise")
-        if noises[name].determined and not (misfit or beyond_wheel_noise(noises[name]))
+        if noises[name].determined and not beyond_wheel_noise(noises[name])
     }
     changes = {name: item.value for name, item in multipliers.items() if item.determined}
     usual = np.sqrt(np.diag(fit.covariance))

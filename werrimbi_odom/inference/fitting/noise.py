@@ -205,17 +205,22 @@ def noise_estimates(
     function = _in_logs(costs, variances, moving)
     sigmas = np.sqrt(_row(variances))
     logs = 2.0 * np.log(sigmas[moving])
-    curved = hessian(function, logs)
-    covariance = 2.0 * _inverse(curved)
-    untold = np.flatnonzero(np.diag(curved) < rules.NOISE_UNTOLD)
-    most = {index: 0.5 * _highest(function, logs, index) for index in untold.tolist()}
+    curved, highest = hessian(function, logs), _HIGHEST[moving]
+    untold = np.diag(curved) < rules.NOISE_UNTOLD
+    rising = untold & np.isclose(logs, highest)  # stopped by its bound, beyond which it is likelier
+    rest = np.ix_(~rising, ~rising)
+    covariance = np.zeros_like(curved)
+    covariance[rest] = 2.0 * _inverse(curved[rest])
+    most = {
+        index: 0.5 * _highest(function, logs, index)
+        for index in np.flatnonzero(untold & ~rising).tolist()
+    }
     if information is not None:
         step = 0.1
         sides = logs + step * np.concatenate([np.eye(logs.size), -np.eye(logs.size)])
         found = [information(_variances(variances, moving, row[None])) for row in sides]
         gradient = np.subtract(*np.split(np.array(found), 2)) / (2.0 * step)
         shift = np.clip(-0.5 * covariance @ gradient, -1.0, 1.0)
-        highest = _HIGHEST[moving]
         logs = np.where(np.isclose(logs, highest), logs, np.minimum(logs + shift, highest))
         sigmas[moving] = np.exp(0.5 * logs)
     share = np.zeros(len(_ALL))

@@ -46,8 +46,8 @@ def fit_in_words(result: Calibration) -> list[Part]:
         )
     if result.misfit:
         said.append(
-            "The wheels' noise in the robot file is left alone until a model explains the drives: "
-            "what is missing would be written as noise."
+            "What is missing is part of the wheels' noise that is written, so that the covariance "
+            "holds it: fit that noise again when a model explains the drives."
         )
     if left_out := _left_out(result):
         legs, were = counted(left_out, "leg"), "was" if left_out == 1 else "were"
