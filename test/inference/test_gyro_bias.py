@@ -109,6 +109,18 @@ def test_coming_to_rest_in_short_pauses_is_no_bias() -> None:
     np.testing.assert_array_equal(seen.yaw, coasts.reference.yaw)
 
 
+def test_a_slow_spin_amid_a_fast_drive_is_no_rest() -> None:
+    """Seven degrees a second of it were a gyro's bias, and all legs of that drive erred by 5°/m."""
+    fast, slow = np.ones(400), np.ones(40)
+    speed = np.concatenate([0.8 * fast, 0.0 * slow, 0.8 * fast])
+    turning = np.concatenate([0.4 * fast, -0.12 * slow, -0.3 * fast])
+    run = by_gyro(speed, turning, 1.0, 0.0, 1)
+    seen = with_no_driving(run, ROBOT).reference
+    assert seen is not None
+    assert run.reference is not None
+    np.testing.assert_array_equal(seen.yaw, run.reference.yaw)
+
+
 def veering(rest: int) -> Run:
     """A minute at one speed, by wheels of which the right one is 3 % larger."""
     still, turns = np.zeros(rest), np.repeat([0.2, -0.2, 0.0, 0.3, -0.1, -0.2], 200)

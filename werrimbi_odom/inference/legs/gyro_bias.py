@@ -12,8 +12,10 @@ import numpy as np
 
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.motion_states import TimeSpan
 from werrimbi_odom.model.pose import wrap_all
+from werrimbi_odom.model.robot import Robot
 
 
 class AtRest(NamedTuple):
@@ -31,34 +33,43 @@ class AtRest(NamedTuple):
 
 
 def without_bias(
-    reference: Reference, spans: Sequence[TimeSpan]
+    reference: Reference, spans: Sequence[TimeSpan], counters: Counters, robot: Robot
 ) -> tuple[Reference, AtRest | None]:
     """Remove the bias estimated at rest from the headings of a gyro, if it is significant.
 
     Also returned is how the headings turn at rest from then on. The robot model takes no part, so
     all parts of a drive get the same bias. Its change while the robot drives is left to the fits,
     where the drift of each run is free. `reference`: headings alone. `spans`: what the robot did
-    when, in order.
+    when, in order. `counters`, `robot`: a rest in which the wheels crept is none, as in a slow spin
+    amid a fast drive.
     """
-    told = _turning_at_rest(reference, spans)
+    rests = [span for span in spans if span.what == "stood" and not _crept(span, counters, robot)]
+    told = _turning_at_rest(reference, rests)
     if told is None or abs(told.rate) < rules.BIAS_SURE * told.unsure:
         return reference, told
     lapsed = reference.time - reference.time[0]
     return replace(reference, yaw=reference.yaw - told.rate * lapsed), told._replace(rate=0.0)
 
 
-def _turning_at_rest(reference: Reference, spans: Sequence[TimeSpan]) -> AtRest | None:
+def _crept(span: TimeSpan, counters: Counters, robot: Robot) -> bool:
+    """Whether a wheel went on by more than it trembles or than one count."""
+    ends = np.array([span.begin + rules.BIAS_EDGE, span.end - rules.BIAS_EDGE])
+    ticks = np.array([robot.left_tick, robot.right_tick])
+    moved = np.abs(np.diff(counters.at(ends), axis=0)[0]) * ticks
+    return bool(np.any(moved > np.maximum(rules.NO_DRIVING_TREMBLES, ticks)))
+
+
+def _turning_at_rest(reference: Reference, rests: Sequence[TimeSpan]) -> AtRest | None:
     """The turning of headings while the wheels stand; None if they never do so for long enough."""
     seen = reference.has_yaw
     time, turned = reference.time[seen], wrap_all(np.diff(reference.yaw[seen]))
     duration = np.diff(time)
     rest = np.zeros(duration.size, dtype=np.bool_)
-    for span in spans:
-        if span.what == "stood":
-            inside = (time >= span.begin + rules.BIAS_EDGE) & (time <= span.end - rules.BIAS_EDGE)
-            within = inside[:-1] & inside[1:]
-            if duration[within].sum() >= rules.BIAS_REST:  # in a pause it may still come to rest
-                rest |= within
+    for span in rests:
+        inside = (time >= span.begin + rules.BIAS_EDGE) & (time <= span.end - rules.BIAS_EDGE)
+        within = inside[:-1] & inside[1:]
+        if duration[within].sum() >= rules.BIAS_REST:  # in a pause it may still come to rest
+            rest |= within
     seconds = float(duration[rest].sum())
     if not rest.any():
         return None

@@ -64,7 +64,8 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
     found = no_driving(counters, in_time, robot)
     at_rest = None
     if not seen.has_position.any():  # a gyro
-        in_time, at_rest = without_bias(in_time, driven(counters, robot, found).spans)
+        spans = driven(counters, robot, found).spans
+        in_time, at_rest = without_bias(in_time, spans, counters, robot)
     seen = replace(seen, yaw=in_time.yaw)
     return replace(run, reference=seen, no_driving=found, at_rest=at_rest)
 
