@@ -35,7 +35,7 @@ from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.as_json import json_of
 from werrimbi_odom.report.adding.words import words_of
-from werrimbi_odom.report.diagnosis.words import NextSteps
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.words import words_of as diagnosis_words
 from werrimbi_odom.report.terminal import as_text
 

@@ -20,7 +20,8 @@ from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.as_json import json_of as added_json
 from werrimbi_odom.report.adding.words import words_of as added_words
 from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 BEHIND = -0.06

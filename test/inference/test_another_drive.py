@@ -24,7 +24,8 @@ from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, advised_diagnosis
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 
 TRUE = WhiteNoiseRobot()
 ROBOT = TRUE.entered(0.05)

@@ -26,7 +26,8 @@ from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.document import document_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.terminal import as_text
 

@@ -24,7 +24,8 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 SLIP = find("lateral_slip")

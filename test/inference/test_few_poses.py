@@ -37,8 +37,9 @@ from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.as_json import json_of as json_of_added
 from werrimbi_odom.report.adding.words import words_of as words_of_added
 from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.tables import tables_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

@@ -25,7 +25,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.manoeuvres.advice import advised_diagnosis
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 KICKING = replace(GIVEN, effects=(find("castor_kick").using(angle=0.02, length=0.05),))

@@ -29,7 +29,8 @@ from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import words_of as words_of_added
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

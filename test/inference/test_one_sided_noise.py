@@ -23,7 +23,8 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
 from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 TRUE = WhiteNoiseRobot(0.35, 0.05, 0.05, 4e-4, 4e-4)

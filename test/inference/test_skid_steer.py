@@ -20,7 +20,8 @@ from werrimbi_odom.inference.diagnosis.told_sizes import sizes_among
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 from werrimbi_odom.simulation import TrueRobot, free, record
 from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer

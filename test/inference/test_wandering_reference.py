@@ -19,8 +19,9 @@ from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.reference_remarks import wandering
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.words import words_of
 
 NAMES = ("floor_slope", "anisotropic_floor", "reference_delay", "track_width", "sideways_drift")
 EFFECTS = [find(name) for name in (*NAMES, "unequal_wheel_radii", "wheel_radius_scale")]

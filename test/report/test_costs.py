@@ -25,8 +25,9 @@ from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, ranke
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.report.calibration.fit_words import fit_in_words
 from werrimbi_odom.report.diagnosis.costs import cost, whole
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.reference_remarks import as_one_that_wanders
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 

@@ -28,6 +28,7 @@ from werrimbi_odom.report.adding.words import _headline
 from werrimbi_odom.report.diagnosis import ambiguous, as_json, costs, phrases, tables, words
 from werrimbi_odom.report.diagnosis.ambiguous import how_long
 from werrimbi_odom.report.diagnosis.costs import by_sizes_alone, cost, whole
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.phrases import hang_together
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
 from werrimbi_odom.report.diagnosis.remarks import (
@@ -37,7 +38,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     like_noise,
     nearest,
 )
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
 

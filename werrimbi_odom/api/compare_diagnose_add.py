@@ -106,7 +106,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
     from werrimbi_odom.inference.manoeuvres.advice import advised_diagnosis, with_leg
     from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.document import document_of
-    from werrimbi_odom.report.diagnosis.words import NextSteps
+    from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 
     try:
         advised = advised_diagnosis(given, show)

@@ -28,9 +28,7 @@ from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
-from werrimbi_odom.files.wheel_joints import (
-    SIDES,
-)
+from werrimbi_odom.files.wheel_joints import SIDES
 from werrimbi_odom.inference.recording_info import Held, Info
 from werrimbi_odom.report.info import document_of, info_json
 
@@ -134,7 +132,7 @@ def _held(
         own = NONE if other is None else None
         reference = reference_topic or (held.reference.name if held.reference else own)
         if source is None:
-            first = with_ticks_of_steps(path, held.wheels, first)
+            first = _with_ticks(path, held.wheels, first)
         file, topic = source or first.file, held.wheels.name
         merged = _with_gyro(path, held, file)
         if merged is not None:
@@ -192,7 +190,7 @@ def _at_fault(
     return ""
 
 
-def with_ticks_of_steps(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
+def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
     """Counts per turn from the steps of the joint angles, if visible."""
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first

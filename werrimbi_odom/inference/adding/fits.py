@@ -146,10 +146,8 @@ def fits_of(
 
 def _without(effect: Effect, drives: FitDrives, fit: Fitted, given: Robot) -> Fitted:
     """Fit the model without one of its effects."""
-    point = replace(fit.point, model=fit.point.model.without_effect(effect.name))
+    point, numbers = fit.without(effect.name)
     names = tuple(name for name in fit.names if name != effect.name)
-    mine = f"{effect.name}."
-    numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
     return drives.fit(point, names, numbers, given)
 
 

@@ -94,17 +94,19 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
                 continue
             parts, predicted = _regressed_on(legs, rows, channel, kind, names)
             if (kind, CHANNELS[channel]) == ("arc", "sideways"):
-                error = legs.error[rows, channel]
-                of_point, its = _regressed_on(legs, rows, channel, kind, OF_A_POINT)
-                sums = [
-                    max(float(np.sum((error - each) ** 2)), 1e-300) for each in (its, predicted)
-                ]
-                if rows.size * np.log(sums[0] / sums[1]) < rules.RIVAL:
-                    parts, predicted = of_point, its
+                of_point = _regressed_on(legs, rows, channel, kind, OF_A_POINT)
+                if _as_likely(legs.error[rows, channel], of_point[1], predicted):
+                    parts, predicted = of_point
             found += parts
             if any(part.finding for part in parts):
                 left[rows, channel] -= predicted
     return tuple(found), left
+
+
+def _as_likely(error: Floats, one: Floats, other: Floats) -> bool:
+    """Whether errors go with one prediction, unless very strong evidence is for the other."""
+    left = [max(float(np.sum((error - each) ** 2)), 1e-300) for each in (one, other)]
+    return bool(error.size * np.log(left[0] / left[1]) < rules.RIVAL)
 
 
 def _regressed_on(

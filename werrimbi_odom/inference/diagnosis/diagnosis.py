@@ -29,7 +29,11 @@ from werrimbi_odom.inference.comparison.prepared_runs import for_fit
 from werrimbi_odom.inference.diagnosis.ahead_or_behind import ahead_or_behind
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.effect_support import askable, support_of
-from werrimbi_odom.inference.diagnosis.effects_of_robot_file import doubts_of_held, outdated
+from werrimbi_odom.inference.diagnosis.effects_of_robot_file import (
+    needless_of_held,
+    outdated,
+    rivals_of_held,
+)
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Instead,
@@ -177,7 +181,8 @@ def _searched(
     found = diagnosis_of(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
     misfit = misfit or found.misfit
     asked = found.verdict == "none" and misfit is None
-    held, needless = doubts_of_held(laid, fit, effects, set_up.robot) if asked else ({}, ())
+    held = rivals_of_held(laid, fit, effects, set_up.robot) if asked else {}
+    needless = needless_of_held(laid, fit, held, set_up.robot)
     old = outdated(fit, robot) if found.verdict == "none" and found.holdout.fell_much else ()
     either = ahead_or_behind(laid, fit, set_up.robot)
     found = replace(found, misfit=misfit, rivals_of_held=held, needless_of_held=needless)

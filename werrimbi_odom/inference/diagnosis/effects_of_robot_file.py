@@ -12,7 +12,6 @@ no search looks for it. The errors of the robot as given are as wrong for it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -29,14 +28,6 @@ from werrimbi_odom.inference.fitting.score_tests import candidates, parameters_w
 from werrimbi_odom.model.effect import AppliedEffect, Effect, extended_by
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-
-def doubts_of_held(
-    runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot
-) -> tuple[dict[str, tuple[str, ...]], tuple[str, ...]]:
-    """Rivals of the effects that the file holds, and which of these effects are needless."""
-    rivals = rivals_of_held(runs, fit, effects, given)
-    return rivals, needless_of_held(runs, fit, rivals, given)
 
 
 def rivals_of_held(
@@ -62,8 +53,7 @@ def needless_of_held(
     """Those of the effects that the file holds without which the drives are explained as well."""
     found = []
     for name in names:
-        bare = replace(fit.point, model=fit.point.model.without_effect(name))
-        free = [number for number in fit.numbers if not number.name.startswith(f"{name}.")]
+        bare, free = fit.without(name)
         without = refined(runs, fitted(runs, bare, (), free, given), given)
         if without.total < fit.total + rules.RIVAL * fit.scatter:
             found.append(name)
@@ -74,9 +64,8 @@ def _rivals(
     runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot, held: Effect
 ) -> tuple[str, ...]:
     """Score all effects without the held one; fit the best few in its place."""
-    mine, bare = f"{held.name}.", fit.point.model.without_effect(held.name)
-    point, others = replace(fit.point, model=bare), bare.robot.effects
-    numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
+    point, numbers = fit.without(held.name)
+    others = point.model.robot.effects
     # What extends the held effect holds it.
     own = {effect.name for effect in effects if held.name in (effect.name, effect.extends)}
     library = [held, *(effect for effect in effects if effect.name not in own)]

@@ -147,6 +147,12 @@ class Fitted:
         own = [f"{effect.name}.{key}" for key, item in effect.parameters.items() if not item.tries]
         return any(key not in self.held for key in own)
 
+    def without(self, name: str) -> tuple[Point, tuple[FreeParameter, ...]]:
+        """Point and parameters of the same model without one of its effects."""
+        point = replace(self.point, model=self.point.model.without_effect(name))
+        own = f"{name}."
+        return point, tuple(each for each in self.numbers if not each.name.startswith(own))
+
     @property
     def total(self) -> float:
         """Cost with all penalties."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Any
 
 from werrimbi_odom.inference.calibration.any_driving import Calibration
-from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
@@ -77,8 +76,7 @@ def _strange(result: Calibration, name: str) -> bool:
     return (
         name.endswith("wheel_noise")
         and noise is not None
-        and noise.determined
-        and beyond_wheel_noise(noise)
+        and (noise.determined and name not in result.changes)
     )
 
 

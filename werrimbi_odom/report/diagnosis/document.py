@@ -27,8 +27,9 @@ from werrimbi_odom.report.diagnosis.figures import (
     ranking_figure,
     set_up_figure,
 )
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.tables import tables_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.events import on_the_path, over_time
 from werrimbi_odom.report.number_format import capital

@@ -9,11 +9,12 @@ from werrimbi_odom.inference.drafting.draft import worth_drafting
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.number_format import chance_words, scaled_with_std, two_digits
 
 
-def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
-    """What nothing explains: what is known of it, and what to do next; `draft` is a command."""
+def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
+    """What nothing explains: what is known of it, and what to do next."""
     diagnosis = advised.diagnosis
     if diagnosis.of_another_drive and mounted_anew(advised):
         return [
@@ -63,7 +64,7 @@ def unknown_words(advised: AdvisedDiagnosis, draft: str) -> list[str]:
     lines += remarks.left_is_noise(advised)
     if worth_drafting(diagnosis):
         lines.append("Next: write it as an effect of your own, from what these drives show:")
-        lines.append(f"    {draft}")
+        lines.append(f"    {steps.draft}")
     elif cells:
         lines.append(
             "No law can be written of it. Next: see where both paths part, by `werrimbi compare` "

@@ -24,13 +24,11 @@ from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.number_format import error_words, listed
 from werrimbi_odom.report.phrases import either_side, jumps_words, left_out_words, remark_words
 
-__all__ = ["NextSteps", "words_of"]
-
 
 def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ...]:
     """All sentences, and the commands of the next step."""
     diagnosis = advised.diagnosis
-    tell = {"none": _none, "named": _named, "ambiguous": ambiguous_words, "unknown": _unknown}
+    tell = {"none": _none, "named": _named, "ambiguous": ambiguous_words, "unknown": unknown_words}
     said = [
         *_changes(advised, steps),
         *tell[diagnosis.verdict](advised, steps),
@@ -199,10 +197,6 @@ def _add(diagnosis: Diagnosis, it: str, steps: NextSteps) -> list[str]:
         f"Next: {begin} {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
     ]
-
-
-def _unknown(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
-    return unknown_words(advised, steps.draft)
 
 
 def _things(diagnosis: Diagnosis) -> list[str]:

@@ -13,8 +13,9 @@ from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
-from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.number_format import capital, chance_words, listed
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.leg_selection import CellPart
