@@ -31,7 +31,9 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.fit_statistics import wald_statistic
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
+from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
+from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
@@ -91,9 +93,23 @@ def misfit_of_held_law(
         by_forms, left = _gains(runs, before.point, numbers, score, cell, freer)
         both_even = support.even and _may_be_even(score.candidate, before, runs)
         most = max(score.gain, by_forms) if both_even else score.gain
-        if left < (1.0 - rules.REST_EXPLAINED) * most:
+        if left < (1.0 - rules.REST_EXPLAINED) * most and not _encompassed(
+            chance_of_score(replace(score, gain=left), before, this.number),
+            chi2_survival(by_forms + left - score.gain, cell.degrees + len(freer)),
+        ):
             return Misfit(law.name, cell, share)
     return rest
+
+
+def _encompassed(candidate_beside_forms: float, forms_beside_candidate: float) -> bool:
+    """Whether a candidate explains all that freer forms of a law do, and surely more than they.
+
+    Then the rest is the candidate's, not the law's (encompassing: Mizon and Richard, Econometrica
+    54, 1986). Given are the chances of what each of the two explains beside the other.
+    """
+    return (
+        candidate_beside_forms < rules.VERY_SURE and forms_beside_candidate > rules.SURE_WHEN_ASKED
+    )
 
 
 def misfit_of_found(
