@@ -61,7 +61,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if name == IN_DEGREES:
         return {}
     if name in CALIBRATED:
-        if name not in diagnosis.found and diagnosis.runs.headings_alone:
+        if name not in diagnosis.found and not diagnosis.told.design.sized:
             return _as_twin(diagnosis, name)
         if name not in (*diagnosis.found, *diagnosis.told.calibrated):
             return {}  # a rival with a fit of its own, whose other sizes are not these

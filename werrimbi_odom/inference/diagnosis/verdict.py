@@ -181,7 +181,7 @@ def _answer(
         for name in final.calibrated
         if _is_news(name, final, rounds[0].number, given, set_up.robot)
     ]
-    if laid.headings_alone and set(_OF_ONE_WHEEL) <= set(sizes):
+    if not final.design.sized and set(_OF_ONE_WHEEL) <= set(sizes):
         sizes = _without_needless_base(sizes, final, set_up.robot)
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     names = {"track_width": name_of_base(final.point.model.robot)}
@@ -228,7 +228,8 @@ def _is_news(name: str, final: Fitted, tried: int, given: Robot, start: Robot) -
 
 
 _OF_ONE_WHEEL = ("track_width", "unequal_wheel_radii")
-"""What headings see of one wheel that is larger: both, for they know each wheel over the base."""
+"""What is seen of one wheel that is larger where no length is measured: both, for each wheel is
+known over the base."""
 
 
 def _without_needless_base(sizes: list[str], final: Fitted, given: Robot) -> list[str]:

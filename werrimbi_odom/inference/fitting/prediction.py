@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.leg_noise import DrivenPath, noise_of_legs
@@ -46,6 +47,16 @@ class Prediction:
     """Signed travel of each leg, shape (m,), [m]."""
     turn: Floats
     """Heading change of each leg, shape (m,), [rad]."""
+
+
+def measures_lengths(runs: Concatenated, prediction: Prediction) -> bool:
+    """Whether the reference measured lengths that a radius could be told by.
+
+    Headings alone are none, nor are the ends of drives that came back to where they began.
+    """
+    apart = np.hypot(*(runs.finish - runs.start)[:, :2].T)
+    known = np.isfinite(apart) & ~runs.gap
+    return float(apart[known].sum()) > rules.CLOSED * float(prediction.length[known].sum())
 
 
 def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:

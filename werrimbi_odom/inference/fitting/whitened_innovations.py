@@ -22,7 +22,12 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     Model,
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
-from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
+from werrimbi_odom.inference.fitting.prediction import (
+    Prediction,
+    measures_lengths,
+    predict_all,
+    predicted_legs,
+)
 from werrimbi_odom.model.pose import Floats
 
 
@@ -52,7 +57,7 @@ class Design:
     """Parameter of each of the p columns; a per-run parameter has one column per run, with its
     index."""
     sized: bool = True
-    """Whether any length was measured: headings only determine ratios of lengths."""
+    """Whether lengths were measured (`measures_lengths`): else only their ratios are determined."""
 
     @property
     def names(self) -> list[str]:
@@ -167,4 +172,5 @@ def with_columns_per_run(
                 columns.append((number, index))
                 parts.append(column * (runs.run_of_leg == index)[:, None])
     wide = np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
-    return Design(white, wide, tuple(columns), sized=not runs.headings_alone)
+    sized = measures_lengths(runs, predict_all(model, runs))
+    return Design(white, wide, tuple(columns), sized)

@@ -86,6 +86,12 @@ CALIBRATION_KNOWN = 0.05
 """Relative standard deviation above which drives tell less about a radius or a base than the prior.
 Chosen: a tape measures either to 5 % on any wheel, tyre or track."""
 
+CLOSED = 0.03
+"""Distance between poses as a share of the way, in all legs together, up to which drives end where
+they began, and tell no length: by a base that is off by ε a square ends 1.2 ε of its way beside its
+start, and smaller wheels make that smaller too. So they tell a radius only where the base is known
+to some 2 % already."""
+
 TYPICAL_GYRO_WALK, GYRO_WALK_SPREAD = 3e-4, 0.8
 """Log-normal prior of a gyro's random walk [rad/s^0.5]: 1 degree per root hour, as in data sheets
 of gyros for robots; 0.2 to 5 are two standard deviations off."""

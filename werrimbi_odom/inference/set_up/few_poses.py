@@ -61,7 +61,8 @@ def search_sparse(
     drives = _Drives(cuts, track, measured == "pose")
     ticks = ratio_of_ticks(robot)
     tried = sorted(
-        ((drives.fits(each), i, each) for i, each in enumerate(_settings(ticks))), reverse=True
+        ((drives.fits(each), i, each) for i, each in enumerate(drives.settings(ticks))),
+        reverse=True,
     )
     (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
     if best < given + rules.SPARSE_MARGIN:
@@ -137,6 +138,17 @@ class _Drives:
     cuts: Cuts
     track: float
     facing: bool
+
+    def settings(self, ticks: float) -> Iterator[Setting]:
+        """Those that these drives may tell: both wheels' size only if they end somewhere else."""
+        cuts = self.cuts
+        way = cuts.summed(0.5 * np.abs(cuts.left + cuts.right))
+        closed = np.abs(cuts.move).sum() <= rules.CLOSED * way.sum()
+        return (
+            each
+            for each in _settings(ticks)
+            if not (closed and each.left == each.right and each.left != 1.0)
+        )
 
     def fits(self, setting: Setting) -> float:
         """Log-likelihood of all drives: wheels off by some share, and noisy, under this set-up."""

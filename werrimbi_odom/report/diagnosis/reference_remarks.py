@@ -157,15 +157,16 @@ def coarse_counters(diagnosis: Diagnosis) -> list[str]:
 def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     """What looks the same as a size that was found, as the reference's own scale is not known."""
     runs, found = diagnosis.runs, diagnosis.found
-    by_headings = runs.headings_alone and "track_width" in found
-    if not by_headings and not (runs.own_axes and "wheel_radius_scale" in found):
+    by_ratio = not diagnosis.told.design.sized and "track_width" in found
+    if not by_ratio and not (runs.own_axes and "wheel_radius_scale" in found):
         return or_its_metre(diagnosis)
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
     share = f"{100.0 * abs(size - 1.0):.2g} %"
-    if by_headings:
+    if by_ratio:
         larger = "larger" if size > 1.0 else "smaller"
+        know = "Headings know" if runs.headings_alone else "Drives that end where they began show"
         return [
-            f"Headings know the wheels' size over the base alone: wheels that are both {share} "
+            f"{know} the wheels' size over the base alone: wheels that are both {share} "
             f"{larger} than entered look the same to them as that base. A straight line of 10 m "
             "beside a tape tells."
         ]
