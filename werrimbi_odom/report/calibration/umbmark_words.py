@@ -27,7 +27,7 @@ def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
     """Verdict, offsets, angles, correction factors, and doubts."""
     exact = (
         "What is written is exact; the paper's equations are of first order. A factor common to "
-        "both radii does not show in squares: compare a long straight line with a tape."
+        "base and both radii does not show in squares: compare a long straight line with a tape."
     )
     return [
         *_verdict(squares, result),
