@@ -21,7 +21,7 @@ from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.rivals import possible_twins
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
-from werrimbi_odom.inference.manoeuvres.proposal import for_twins, next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.next_manoeuvre import for_twins, next_manoeuvre
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.model.effect import Effect

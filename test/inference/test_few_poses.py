@@ -16,7 +16,7 @@ from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_of
 from test.model.drives import ROBOT as STEERED
 from test.model.drives import read
-from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -70,6 +70,25 @@ def by_tape(run: Run) -> Run:
     assert run.reference is not None
     ends = np.array([0, run.reference.time.size - 1])
     return replace(run, reference=replace(run.reference.chosen(ends)))
+
+
+@pytest.mark.parametrize("base", [0.97, 1.01, 1.03, 1.08])
+def test_squares_that_close_give_the_base_that_closes_them_and_no_multiple_of_it(
+    base: float,
+) -> None:
+    """Smaller wheels end less far off: radii and base went to a third, or to four times.
+
+    Then the radii were found to be undetermined and put back, and the base stayed there.
+    """
+    robot = WhiteNoiseRobot(0.3 * base, 0.05, 0.05, 5e-4, 5e-4)
+    random = np.random.default_rng(1)
+    senses = np.repeat([1.0, -1.0], 4)
+    runs = [by_tape(drive(robot, square(2.0, sense), random)) for sense in senses]
+    entered = replace(robot.entered(0.05), wheel_separation=0.3)
+    laid = concatenated(match_for_fit(runs, entered, 1.0, None))
+    found = fit_calibration(laid, entered, EvaluationOptions()).point.model.robot
+    assert found.wheel_separation_multiplier == pytest.approx(base, abs=5e-3)
+    assert found.left_wheel_radius_multiplier == pytest.approx(1.0, abs=1e-2)
 
 
 def to_and_fro(seed: int) -> Run:

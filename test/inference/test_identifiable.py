@@ -40,7 +40,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
 )
 from werrimbi_odom.inference.fitting.noise import beyond_wheel_noise
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.manoeuvres.proposal import for_twins
+from werrimbi_odom.inference.manoeuvres.next_manoeuvre import for_twins
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.reference_remarks import or_the_reference_s_scale

@@ -31,7 +31,11 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import (
 )
 from werrimbi_odom.inference.manoeuvres.ideal_drives import DrivingLimits, ideal_run
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
-from werrimbi_odom.inference.manoeuvres.proposal import Discrimination, next_manoeuvre, quickest
+from werrimbi_odom.inference.manoeuvres.next_manoeuvre import (
+    Discrimination,
+    next_manoeuvre,
+    quickest,
+)
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation.hidden.axle_and_reference import ReferenceDelay, ReferenceMount

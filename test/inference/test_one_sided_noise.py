@@ -21,7 +21,7 @@ from werrimbi_odom.inference.diagnosis.one_sided_noise import one_sided_noise
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
-from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.next_manoeuvre import next_manoeuvre
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.words import words_of

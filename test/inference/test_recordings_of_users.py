@@ -14,7 +14,7 @@ from test.evidence import in_evidence
 from test.inference.driven import COMMON, of_headings, parts, run_of, runs_of
 from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY, find
-from werrimbi_odom.effects.lookup import load_file
+from werrimbi_odom.effects.user_effects import load_file
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference import rules

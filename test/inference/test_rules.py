@@ -139,7 +139,7 @@ BARE = {
     ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",
     ("legs/count_interpolation.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
     ("manoeuvres/ideal_drives.py", 0.2): "messages of an ideal drive [s]",
-    ("manoeuvres/proposal.py", 0.1): "in mm below it, in m above",
+    ("manoeuvres/next_manoeuvre.py", 0.1): "in mm below it, in m above",
     ("set_up/positions.py", 0.002): "the last step of a descent",
     ("set_up/few_poses.py", 50.0): "an exponential that stays finite",
     ("set_up/regression.py", 15): "rounds before the weights change",

@@ -90,6 +90,19 @@ def test_close_stamps_make_no_reset_of_coming_slowly_home(pattern: str) -> None:
     assert steps.left.sum() == pytest.approx((counts[-1] - counts[0]) * TICK)
 
 
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_close_stamps_are_no_speed_that_no_wheel_can_have(pattern: str) -> None:
+    """Nothing is refused: not where the usual interval, after two silent seconds, is a guess."""
+    time = hiccups(pattern)
+    counts = COUNTS * np.arange(time.size)
+    limits = EncoderLimits(max_wheel_speed=2.5 * COUNTS * TICK / PERIOD)
+    live = Live(odometer := Odometer(ROBOT, limits=limits), Ticks(time, counts, counts.copy()))
+    recorded = trajectory(ROBOT, time, counts, counts, limits=limits)
+    assert odometer.tally == recorded.tally
+    assert odometer.tally.accepted == time.size
+    assert live.pose[-1, 0] == recorded.x[-1] == pytest.approx(counts[-1] * TICK, abs=1e-9)
+
+
 def test_a_fast_drive_is_forgotten_after_some_thousand_messages() -> None:
     """Ten turns a second, then hours of a slow drive: a fall is judged by what is usual now."""
     encoder = Encoder(ROBOT)

@@ -15,7 +15,7 @@ from test.evidence import in_evidence
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import save
 from werrimbi_odom.report.document import Document, Paragraph, Shown, Table, paragraphs
-from werrimbi_odom.report.page import as_html, drawing_program, page_html
+from werrimbi_odom.report.html_page import as_html, drawing_program, page_html
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.terminal import as_text
 

@@ -113,7 +113,7 @@ class Result(Generic[Found]):
         """Report page in an iframe, for a notebook."""
         from html import escape
 
-        from werrimbi_odom.report.page import page_html
+        from werrimbi_odom.report.html_page import page_html
 
         page = escape(page_html(self.document()), quote=True)
         return f'<iframe srcdoc="{page}" width="100%" height="800" frameborder="0"></iframe>'

@@ -148,7 +148,7 @@ def _bytes(path: Path) -> bytes:
 def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
     """Write the requested files, then print words and table."""
     from werrimbi_odom.report.fleet import fleet_json, words_of
-    from werrimbi_odom.report.fleet_page import fleet_table, write_fleet_page
+    from werrimbi_odom.report.fleet_document import fleet_table, write_fleet_page
     from werrimbi_odom.report.terminal import as_text
 
     def report(path: Path, made: Mapping[str, str]) -> list[Path]:

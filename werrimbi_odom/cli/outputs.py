@@ -191,7 +191,7 @@ def write_json(path: Path, figures: Mapping[str, Any]) -> None:
 
 
 def made_of(arguments: argparse.Namespace) -> dict[str, str]:
-    """Command, files and options, for `report.page`."""
+    """Command, files and options, for `report.html_page`."""
     made = {"command": shlex.join(["werrimbi", *sys.argv[1:]])}
     for name, word in (
         ("robot", "robot file"),

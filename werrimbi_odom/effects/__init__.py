@@ -8,6 +8,7 @@ those of other packages, and `contract` has the properties ("laws") that every e
 """
 
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.effects.lookup import Collection, all_effects, find, load_file
+from werrimbi_odom.effects.lookup import Collection, all_effects, find
+from werrimbi_odom.effects.user_effects import load_file
 
 __all__ = ["LIBRARY", "Collection", "all_effects", "find", "load_file"]

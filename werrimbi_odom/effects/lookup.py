@@ -8,16 +8,13 @@ that the user gave on the command line.
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
-from types import ModuleType
 from typing import NamedTuple
 
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.effects.user_effect_errors import guarded, line_of, words_of
+from werrimbi_odom.effects.user_effects import guarded, load_file, words_of
 from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.model.effect import Effect
 
@@ -58,7 +55,8 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
 
     A broken package only gives a warning, so that it does not disable the tool. A broken file is an
     error, because the user named it. An effect of a file replaces one of the same name that is
-    installed, which helps the authors of packages, or in a file before it.
+    installed, which helps the authors of packages, or in a file before it. Whether a law keeps what
+    an effect promises is not asked here (`contract.check`).
 
     Raises
     ------
@@ -112,50 +110,6 @@ def find(name: str) -> Effect:
         if effect.name == name:
             return effect
     return all_effects().find(name)
-
-
-def load_file(path: Path) -> tuple[Effect, ...]:
-    """Execute a user's Python file and return the effects that it defines.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or run, or defines no effect; the message names the line.
-    """
-    if not path.is_file():
-        raise InputError(f"{path}: there is no such file")
-    before = {id(effect) for effect in LIBRARY}
-    found: dict[str, Effect] = {}
-    for value in vars(_executed(path)).values():
-        if not isinstance(value, Effect) or id(value) in before:
-            continue  # what it imported, from the library too
-        if found.setdefault(value.name, value) is not value:
-            raise InputError(f"{path}: two effects are called {value.name}")
-    if not found:
-        raise InputError(
-            f"{path}: it defines no effect; write one under @wheel_effect(...), @body_effect(...) "
-            "or @reference_effect(...), as docs/effects.md shows"
-        )
-    return tuple(found.values())
-
-
-def _executed(path: Path) -> ModuleType:
-    name = f"werrimbi_odom_effects_of_{path.stem}"
-    spec = importlib.util.spec_from_loader(name, loader=None, origin=str(path))
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    module.__file__ = str(path)
-    known = sys.modules.get(name)
-    sys.modules[name] = module  # dataclasses and typing look up their module there
-    try:
-        exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:
-        if known is None:
-            del sys.modules[name]
-        raise InputError(f"{path}{line_of(error, str(path))}: {words_of(error)}") from error
-    return module
 
 
 def _package(point: object) -> str:

@@ -166,7 +166,7 @@ class Encoder:
             return self._anchor_anew(reading, duration)
         if rule.top_speed > 0.0 and self._exceeds(last, reading, duration):
             if self._doubted is None or self._exceeds(
-                self._doubted, reading, reading.time - self._doubted.time
+                self._doubted, reading, abs(reading.time - self._doubted.time)
             ):
                 self.tally.implausible += 1
                 self._doubted = reading
@@ -225,7 +225,12 @@ class Encoder:
         return self._last if self._doubted is None else None
 
     def _exceeds(self, start: Reading, end: Reading, duration: float) -> bool:
+        """Whether a wheel was too fast; over the usual interval where stamps are close.
+
+        Else messages that a driver sends at once would be refused, and the next one, which agrees
+        with the last of them, taken for a jump: the travel of them all would be lost.
+        """
         bits = self.robot.encoder_bits
         left = wrapped(end.left - start.left, bits) * self.rule.left_tick
         right = wrapped(end.right - start.right, bits) * self.rule.right_tick
-        return exceeds(self.rule, left, right, duration)
+        return exceeds(self.rule, left, right, lasted_over(duration, self.usual))

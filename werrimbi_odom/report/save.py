@@ -22,7 +22,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.report.document import Document
-from werrimbi_odom.report.page import drawing_program, write_page
+from werrimbi_odom.report.html_page import drawing_program, write_page
 from werrimbi_odom.report.style import KEPT_HERE, Figure
 
 PAGES, PICTURES = (".html", ".htm"), (".pdf", ".png")

@@ -42,8 +42,8 @@ PARAMETERS: tuple[NodeParameter, ...] = (
         "What a lidar sees and publishes on `scan`, with walls that the robot drives through; the "
         "robot begins in the middle.", choices=("none", "living_room", "arena")),
     NodeParameter("enable_tf", False,
-        "Broadcast world -> odom (where the robot began) and world -> base_link_true (the truth) "
-        "on /tf; needs tf2_ros."),
+        "Broadcast world -> odom (where the robot began), world -> base_link_true (the truth) and "
+        "base_link -> base_scan (the lidar's place) on /tf; needs tf2_ros."),
     NodeParameter("robot_file", "",
         "New file to write: the robot as its maker believes it to be, for odom_node."),
 )

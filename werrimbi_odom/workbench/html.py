@@ -18,7 +18,7 @@ from nicegui.elements.mixins.text_element import TextElement
 from nicegui.events import GenericEventArguments
 
 from werrimbi_odom.report.document import Part
-from werrimbi_odom.report.page import as_html, drawing_program
+from werrimbi_odom.report.html_page import as_html, drawing_program
 from werrimbi_odom.workbench.drawings import shown
 
 

@@ -63,6 +63,8 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if name in CALIBRATED:
         if name not in diagnosis.found and diagnosis.runs.headings_alone:
             return _as_twin(diagnosis, name)
+        if name not in (*diagnosis.found, *diagnosis.told.calibrated):
+            return {}  # a rival with a fit of its own, whose other sizes are not these
         value = _calibrated(diagnosis, name)
         if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that is not in the model
             return {}

@@ -34,10 +34,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
-    MULTIPLIERS,
     NUISANCES,
-    Model,
-    changed,
     own_of,
 )
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
@@ -221,8 +218,7 @@ def fitted_beside(
 
 def as_given(point: Point, given: Robot) -> Point:
     """A point with the multipliers of the given robot."""
-    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
-    return replace(point, model=Model(changed(point.model.robot, back), point.model.own))
+    return replace(point, model=point.model.with_sizes_of(given))
 
 
 def _scores_in_place_of_sizes(

@@ -30,7 +30,7 @@ from werrimbi_odom.inference.diagnosis.uncertainty import (
     with_spread,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.effect import applied_of
 from werrimbi_odom.model.robot import Robot
@@ -104,9 +104,7 @@ def plain(fit: Fitted, given: Robot) -> Model:
     """A fitted model, with multipliers that it does not need as given."""
     if fit.calibrated or fit.names:
         return fit.point.model
-    model = fit.point.model
-    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
-    return Model(changed(model.robot, back), model.own)
+    return fit.point.model.with_sizes_of(given)
 
 
 def _as_in(given: Robot, told: Fitted, names: Collection[str]) -> bool:

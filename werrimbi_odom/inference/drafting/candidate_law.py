@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from werrimbi_odom.effects.contract import check_effect
-from werrimbi_odom.effects.lookup import load_file
+from werrimbi_odom.effects.user_effects import load_file
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.start_values import FitDrives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis

@@ -29,7 +29,12 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.gauss_newton import gauss_newton, is_small, moved, step_within
-from werrimbi_odom.inference.fitting.identifiable import Directions, determined, with_held_as_given
+from werrimbi_odom.inference.fitting.identifiable import (
+    CALIBRATED,
+    Directions,
+    determined,
+    with_held_as_given,
+)
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import map_variances, posterior_cost, with_known_noise
 from werrimbi_odom.inference.fitting.start_headings import (
@@ -133,12 +138,16 @@ def fit_model(
     if rounds > 0:
         point = turned_to_all_sides(runs, point)
     directions: Directions | None = None
-    moved = False
+    moved, start = False, point.model.robot
     for _ in range(rounds):
         point = _with_fitted_noise(runs, point)
         design = stacked(runs, point, numbers)
-        directions = determined(design, point.model.robot, directions.held if directions else ())
-        model = with_held_as_given(point.model, given, directions.held, shared_of(numbers))
+        held = directions.held if directions else ()
+        directions = determined(design, point.model.robot, held)
+        model = point.model
+        if moved and any(name in CALIBRATED and name not in held for name in directions.held):
+            model = model.with_sizes_of(start)  # the others moved with it, and stay where they are
+        model = with_held_as_given(model, given, directions.held, shared_of(numbers))
         point, moved = gauss_newton(runs, replace(point, model=model), numbers, directions)
         if not moved:
             break

@@ -220,6 +220,12 @@ class Model:
         )
         return Model(self.robot, own)
 
+    def with_sizes_of(self, robot: Robot) -> Model:
+        """The same model, with the multipliers of another robot."""
+        return Model(
+            changed(self.robot, {name: value_of(robot, name) for name in MULTIPLIERS}), self.own
+        )
+
 
 def value_of(robot: Robot, name: str) -> float:
     """Value of a multiplier, or of ``effect.parameter``."""

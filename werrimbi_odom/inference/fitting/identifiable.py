@@ -170,9 +170,8 @@ def with_held_as_given(
                 strict=True,
             )
         )
-        if names >= set(CALIBRATED):  # exactly
-            changes |= {name: float(getattr(given.robot, name)) for name in MULTIPLIERS}
-    return Model(changed(model.robot, changes), model.own)
+    model = Model(changed(model.robot, changes), model.own)
+    return model.with_sizes_of(given.robot) if names >= set(CALIBRATED) else model  # exactly
 
 
 def _sizes(robot: Robot) -> tuple[float, float, float]:

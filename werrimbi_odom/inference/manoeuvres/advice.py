@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre, strongest
-from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.next_manoeuvre import next_manoeuvre
 from werrimbi_odom.progress import Show, silent
 
 WHEELS_ANGLE = frozenset({"left_angle", "right_angle"})

@@ -11,10 +11,12 @@ docs/evidence.md.
 from werrimbi_odom.inference.rules.calibrations import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.changes import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.comparison import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.drafting import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.events import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.gaps import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.held_or_carried import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.jumps import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.manoeuvres import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.priors import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.records import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.reference_checks import *  # noqa: F401, F403

@@ -13,8 +13,8 @@ from werrimbi_odom.report.adding.as_json import json_of
 from werrimbi_odom.report.adding.document import figures_of
 from werrimbi_odom.report.adding.words import value_told, words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
+from werrimbi_odom.report.html_page import as_html
 from werrimbi_odom.report.number_format import error_words, picked
-from werrimbi_odom.report.page import as_html
 from werrimbi_odom.report.phrases import leg_words
 
 

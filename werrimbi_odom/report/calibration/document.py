@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.adding.document import clouds_of_legs
 from werrimbi_odom.report.document import Document, Part, Shown, Table
-from werrimbi_odom.report.page import table_html
+from werrimbi_odom.report.html_page import table_html
 from werrimbi_odom.report.path_figure import ellipse
 from werrimbi_odom.report.style import BLUE, GREY, ORANGE, Figure, blank, from_above, plain, plot
 

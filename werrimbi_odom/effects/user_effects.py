@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Guards for effects of users: any error in one is reported in one line as its author's.
+"""Effects of users: their files, and guards, by which any error is reported in one line as theirs.
 
 This includes errors beyond `Exception`: an effect that calls `sys.exit` would end the tool
 silently.
@@ -8,14 +8,63 @@ silently.
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.effect import Apply, Effect
+
+
+def load_file(path: Path) -> tuple[Effect, ...]:
+    """Execute a user's Python file and return the effects that it defines.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or run, or defines no effect; the message names the line.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    before = {id(effect) for effect in LIBRARY}
+    found: dict[str, Effect] = {}
+    for value in vars(_executed(path)).values():
+        if not isinstance(value, Effect) or id(value) in before:
+            continue  # what it imported, from the library too
+        if found.setdefault(value.name, value) is not value:
+            raise InputError(f"{path}: two effects are called {value.name}")
+    if not found:
+        raise InputError(
+            f"{path}: it defines no effect; write one under @wheel_effect(...), @body_effect(...) "
+            "or @reference_effect(...), as docs/effects.md shows"
+        )
+    return tuple(found.values())
+
+
+def _executed(path: Path) -> ModuleType:
+    name = f"werrimbi_odom_effects_of_{path.stem}"
+    spec = importlib.util.spec_from_loader(name, loader=None, origin=str(path))
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    module.__file__ = str(path)
+    known = sys.modules.get(name)
+    sys.modules[name] = module  # dataclasses and typing look up their module there
+    try:
+        exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        if known is None:
+            del sys.modules[name]
+        raise InputError(f"{path}{line_of(error, str(path))}: {words_of(error)}") from error
+    return module
 
 
 def guarded(effect: Effect, place: str) -> Effect:

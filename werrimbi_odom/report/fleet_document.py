@@ -21,7 +21,7 @@ from werrimbi_odom.report.fleet import (
     words_of,
 )
 from werrimbi_odom.report.fleet_row import missing_words, next_words
-from werrimbi_odom.report.page import table_html
+from werrimbi_odom.report.html_page import table_html
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.style import Figure
 from werrimbi_odom.report.terminal import as_text
