@@ -109,6 +109,18 @@ def test_a_calibration_that_did_not_help_is_called_so(
     assert "no better than before" in capsys.readouterr().out
 
 
+def test_exchanged_senses_of_few_squares_are_no_proof_that_all_was_right(
+    desk: Path, printed: Printed
+) -> None:
+    """They are too few to be refused, but 134 mm beside 4 mm of scatter are no scatter."""
+    rows = "ccw,0.032,0.031\nccw,0.036,0.029\ncw,0.097,-0.094\ncw,0.091,-0.098\n"
+    (desk / "exchanged.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
+    assert umbmark(desk, table="exchanged.csv") == 0
+    said = printed()
+    assert "do not explain where these squares ended: E_max,syst is 134.4 mm" in said
+    assert "were right" not in said
+
+
 def test_squares_that_end_where_they_should_are_told_as_that(desk: Path, printed: Printed) -> None:
     rows = "cw,0,0\n" * 2 + "ccw,0,0\n" * 2
     (desk / "nothing.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")

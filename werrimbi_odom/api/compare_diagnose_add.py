@@ -247,5 +247,5 @@ def refuse_unearned(added: Added, insist: str) -> None:
     good = [effect.name for effect in added.effects if effect.name not in added.objections]
     if good:
         rest = ",".join(good)
-        text += f", without {' and '.join(added.objections)}: werrimbi add {rest} ..."
+        text += f"; without {' and '.join(added.objections)}: werrimbi add {rest} ..."
     raise InputError(f"{text})")

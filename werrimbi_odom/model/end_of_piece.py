@@ -56,7 +56,7 @@ class PieceRule(NamedTuple):
     path: float
     """Largest distance of the arc's end from the pose, beyond the quantum."""
     flicker: float
-    """Largest backward travel that is no reversal: one count, which may flicker."""
+    """Largest backward travel that is no reversal: one and a half counts, as one may flicker."""
     path_per_travel: float
     """Allowed distance of the arc's end per metre of u, since a count rotates all of the following
     path.

@@ -263,7 +263,7 @@ def _on_all(
 ) -> tuple[FitDrives, Fitted]:
     """Fit the same model to all runs, including the held-out parts."""
     if len(runs) < 2:
-        return drives, fit  # of a single run the last part was held out; the fit keeps to the rest
+        return drives, fit  # parts of a single run were held out; the fit keeps to the rest
     both = [drives, drives_of(judge.holdout, fit.point.model.robot, drives.options)]
     laid = tuple(run for part in both for run in part.laid.runs)
     skipped = tuple(legs for part in both for legs in part.skipped)

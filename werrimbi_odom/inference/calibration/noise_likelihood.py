@@ -106,10 +106,10 @@ class Likelihood:
     def same(self) -> float:
         """Maximum-likelihood k² if both wheels are equal.
 
-        InputError if the reference's noise alone explains the dispersion.
+        InputError if the reference's noise alone explains the dispersion: within the 95 % interval.
         """
         value = self._likeliest(lambda square: self.cost(square, square))
-        if value < 10.0 * _LEAST * self.scale():
+        if value < 10.0 * _LEAST * self.scale() or not self.interval_of_same(value)[0] > 0.0:
             raise InputError(
                 "the runs scatter no more than the reference is said to: nothing is left for the "
                 "wheels. Drive further, or give the reference's true noise"

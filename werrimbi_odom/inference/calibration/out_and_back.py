@@ -125,7 +125,7 @@ def fit_noise(errors: Floats, design: EndErrorDesign) -> NoiseFit:
             "scatter x and y so, and as radians they do not; eyaw_rad is in radians"
         )
     of_both = 0.0 if split_known else math.sqrt(likelihood.interval_of_same(same)[0])
-    if max(of_both, min(left.low, right.low)) > rules.STRANGE_NOISE:
+    if max(of_both, left.low, right.low) > rules.STRANGE_NOISE:
         raise InputError(
             f"k would be {left.value:.2g} and {right.value:.2g} m^0.5, and no rolling wheels err "
             f"by more than {rules.STRANGE_NOISE:g}: are the errors in metres and radians, is "

@@ -143,7 +143,12 @@ def _too_short(comparison: Comparison) -> float:
     if any(measure != "position" for measure, _ in noises):
         return 0.0
     noise = max((each.sigma_xy for _, each in noises), default=0.0)
-    return noise if comparison.main.leg < rules.SHORTEST_OF_POSITIONS * noise else 0.0
+    return noise if _length(comparison.main) < rules.SHORTEST_OF_POSITIONS * noise else 0.0
+
+
+def _length(main: OfLength) -> float:
+    """Length of the legs [m]: longer than asked for where poses are rare, as two a drive."""
+    return max(main.leg, main.median)
 
 
 def _gross(comparison: Comparison, systematic: tuple[Systematic, ...]) -> bool:
@@ -153,14 +158,12 @@ def _gross(comparison: Comparison, systematic: tuple[Systematic, ...]) -> bool:
     figures = main.all.figures
     if not figures.nees > rules.WRONG_NEES:
         return False
-    # Where poses are rare, as two a drive, legs are longer than was asked for.
-    leg = max(main.leg, float(np.median(comparison.legs.errors.length)))
     return (
         any(
             (part.channel, part.per) in shares and abs(part.value) > rules.WRONG_SHARE
             for part in systematic
         )
-        or figures.median_position_m > rules.WRONG_OF_A_LEG * leg
+        or figures.median_position_m > rules.WRONG_OF_A_LEG * _length(main)
         or any(
             item.figures.rmse_yaw_rad > rules.WRONG_SHARE * rules.QUARTER_TURN
             for item in main.by_motion.values()
@@ -186,7 +189,7 @@ def _primary(main: OfLength) -> tuple[Systematic, ...]:
     kept = []
     for (kind, channel), part in largest.items():
         heading = largest.get((kind, "heading"))
-        length = main.leg
+        length = _length(main)
         bent = rules.BENT_BY_HEADING * heading.size * length if heading and kind != "spin" else 0.0
         if channel != "heading" and part.size <= bent:
             continue

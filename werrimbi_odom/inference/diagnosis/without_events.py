@@ -85,9 +85,10 @@ def refit_without_events(
 
     `fit`: from runs, held-out runs and whether it is the first time, to the result and the events
     beside it. `runs`, `holdout`: fitted and held-out drives. Result: the last result, and the
-    events beside it.
+    events beside it. Where these turn out to be no accidents, none is left out: the first result.
     """
-    found, happened = fit(runs, holdout, True)
+    first, happened = fit(runs, holdout, True)
+    found = first
     for _ in range(rules.EVENT_ROUNDS):
         if not happened.left_out:
             break
@@ -96,8 +97,7 @@ def refit_without_events(
             break
         runs, holdout = both
         again, happened = fit(runs, holdout, False)
-        if not happened.many and not happened.systematic:
-            found = again
+        found = first if happened.many or happened.systematic else again
     return found, happened
 
 

@@ -51,7 +51,7 @@ with `{names}`, and a {draft.form} describes it{law}.
 That is what the data show; why it is so they cannot know.
 
 1. Read `{draft.name}.py`: it is short. Its docstring says the law.
-2. Try it before it is installed: every werrimbi command takes `--effects {draft.name}.py`.
+2. Try it before it is installed: werrimbi's commands for drives take `--effects {draft.name}.py`.
 3. Find the physics, measure it with a ruler, and give the effect its name and its law: the name
    stands in the file, in `pyproject.toml` and in your robot file.
 4. `pip install .` here; then robot files may name it{node}.

@@ -27,7 +27,7 @@ def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
     """Verdict, offsets, angles, correction factors, and doubts."""
     exact = (
         "What is written is exact; the paper's equations are of first order. A factor common to "
-        "both radii does not show in squares: compare a long straight line with a tape."
+        "base and both radii does not show in squares: compare a long straight line with a tape."
     )
     return [
         *_verdict(squares, result),
@@ -46,6 +46,13 @@ def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
     base, ratio = result.base, result.ratio
     base_off, radii_off = _significant(base), _significant(ratio)
     size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
+    if not (base_off or radii_off) and result.disagreement_p < rules.SURE_WHEN_ASKED:
+        return paragraphs(
+            [
+                f"Base and radii do not explain where these squares ended: {size}, and x and y "
+                "disagree. Are cw and ccw exchanged, or is y positive to the right?"
+            ]
+        )
     if not (base_off or radii_off):
         right = "Base and radii were right, as far as these squares can tell"
         return paragraphs([f"{right}: {size}, no more than the scatter of the runs explains."])
