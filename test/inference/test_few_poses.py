@@ -73,9 +73,9 @@ def by_tape(run: Run) -> Run:
     return replace(run, reference=replace(run.reference.chosen(ends)))
 
 
-@pytest.mark.parametrize("base", [0.9, 0.97, 1.03, 1.15])
+@pytest.mark.parametrize(("base", "side"), [(0.9, 1.0), (0.97, 2.0), (1.03, 2.0), (1.15, 1.0)])
 def test_squares_that_close_give_the_base_that_closes_them_and_no_multiple_of_it(
-    base: float,
+    base: float, side: float
 ) -> None:
     """Smaller wheels end less far off: radii and base went to a third, or to four times.
 
@@ -84,7 +84,7 @@ def test_squares_that_close_give_the_base_that_closes_them_and_no_multiple_of_it
     robot = WhiteNoiseRobot(0.3 * base, 0.05, 0.05, 5e-4, 5e-4)
     random = np.random.default_rng(1)
     senses = np.repeat([1.0, -1.0], 4)
-    runs = [by_tape(drive(robot, square(2.0, sense), random)) for sense in senses]
+    runs = [by_tape(drive(robot, square(side, sense), random)) for sense in senses]
     entered = replace(robot.entered(0.05), wheel_separation=0.3)
     assert not look_for_mistakes(runs, entered).findings, "wheels of 0.05 mm close a square too"
     laid = concatenated(match_for_fit(runs, entered, 1.0, None))
