@@ -64,10 +64,10 @@ def fit_in_words(result: Calibration) -> list[Part]:
 def _twin_words(result: Calibration) -> str:
     base, left, right = result.twin.values()
     return (
-        "Headings alone hold two numbers, the right and the left radius over the base. The radii's "
-        "mean is left as it was; their ratio and the base are fitted. Or else the base is right as "
-        f"it was ({base:.6f}), and the radii are {left:.6f} and {right:.6f}: no heading can tell. "
-        "A taped distance can."
+        "Headings, and drives that end where they began, hold two numbers, the right and the left "
+        "radius over the base. The radii's mean is left as it was; their ratio and the base are "
+        f"fitted. Or else the base is right as it was ({base:.6f}), and the radii are {left:.6f} "
+        f"and {right:.6f}: these drives cannot tell. A taped distance can."
     )
 
 
