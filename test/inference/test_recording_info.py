@@ -64,3 +64,17 @@ def test_a_drive_out_and_back_is_not_told_as_one_without_a_reversal(
     assert len(lacks) == (says is not None)
     assert all(each.endswith(f"the robot {says}") for each in lacks)
     assert (says is None) == any("reversals" in each for each in can)
+
+
+def test_a_drive_that_was_measured_where_it_began_and_ended_in_one_place_shows_no_size() -> None:
+    """A square by tape: half the wheels, on half the base, end there too."""
+    drive = held(1e-3, 12.0)
+    assert drive.run is not None
+    seen = drive.run.reference
+    assert seen is not None
+    ends = seen.chosen(np.array([0, seen.time.size - 1]))
+    for apart, told in ((0.1, False), (3.0, True)):
+        moved = replace(ends, x=np.array([0.0, apart]), y=np.zeros(2))
+        can, _ = can_tell(replace(drive, run=replace(drive.run, reference=moved)), sizes=True)
+        assert ("the size of the radii" in can) is told
+        assert "the base" in can

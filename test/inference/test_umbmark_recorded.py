@@ -123,7 +123,7 @@ def test_one_sense_or_too_few_are_refused(drives: list[SquareRecording]) -> None
     [
         (
             lambda: cut(driven("cw", 5), 0.7),
-            "run 5: the square is not closed: the heading turns by -",
+            "run 5: the square is not closed: by odometry the heading turns by -",
         ),
         (lambda: driven("ccw", 6, laps=2), "run 6: the square is not closed.*a run of its own"),
         (lambda: driven("eight", 7), "run 7: the square is not closed"),

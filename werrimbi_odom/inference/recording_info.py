@@ -204,11 +204,13 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
             told(long, "the ratio of the radii", f"too little driving{while_so}")
     if sizes or not far:
         told(
-            far and drive.way >= rules.WAY_SHOWS,
+            far and drive.way >= rules.WAY_SHOWS and not _came_back(held),
             "the size of the radii",
-            f"the way is too short{_while_measured(held)}"
-            if far
-            else "no heading tells a distance; tape one",
+            "no heading tells a distance; tape one"
+            if not far
+            else "where it was measured it had come back; tape a distance"
+            if _came_back(held)
+            else f"the way is too short{_while_measured(held)}",
         )
     told(
         far and not few,
@@ -232,6 +234,15 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
 def measured_seldom(held: Held) -> bool:
     """Whether a drive has no more measured numbers than base and radii are."""
     return held.run is not None and not tell_sizes([held.run])
+
+
+def _came_back(held: Held) -> bool:
+    """Whether the positions are near one another, for the way that the robot went between them."""
+    if held.run is None or held.run.reference is None or held.judged is None:
+        return False
+    seen = held.run.reference.chosen(held.run.reference.has_position)
+    apart = np.hypot(np.diff(seen.x), np.diff(seen.y)).sum()
+    return bool(apart <= rules.CLOSED * held.judged.way)
 
 
 def unseen_much(held: Held) -> bool:

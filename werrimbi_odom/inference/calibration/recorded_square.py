@@ -144,9 +144,10 @@ def _sense(name: str, path: _Path) -> int:
     turned = float(path.yaw[-1])
     if abs(abs(turned) - 2.0 * math.pi) > rules.TURN_TOLERANCE:
         raise InputError(
-            f"{name}: the square is not closed: the heading turns by {math.degrees(turned):.0f} "
-            "degrees in all, one lap by 360. Turn the last corner too, and record each lap as a "
-            "run of its own"
+            f"{name}: the square is not closed: by odometry the heading turns by "
+            f"{math.degrees(turned):.0f} degrees in all, one lap by 360. Turn the last corner too, "
+            "and record each lap as a run of its own. If it was one whole lap, the robot file's "
+            "base or radii are far off: `calibrate fit` finds them"
         )
     return 1 if turned > 0.0 else -1
 
