@@ -14,6 +14,7 @@ import pytest
 
 from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_of
+from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT as STEERED
 from test.model.drives import read
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
@@ -103,6 +104,31 @@ def test_a_base_by_squares_that_close_may_be_the_wheels() -> None:
     assert said.found == ("track_width",)
     words = " ".join(as_text(words_of(AdvisedDiagnosis(said, None, ()), NextSteps())).split())
     assert "wheels that are both 2.9 % smaller than entered look the same to them" in words
+
+
+@pytest.mark.parametrize(
+    ("entered", "told"),
+    [
+        ({"wheel_radius": 0.1}, ("wheel_radius_scale",)),
+        ({"wheel_separation": 0.15}, ("track_width",)),
+        ({}, ()),
+    ],
+)
+def test_how_far_drives_ended_from_their_start_tells_sizes_far_off_and_no_wiring(
+    entered: dict[str, float], told: tuple[str, ...]
+) -> None:
+    """Exchanged wheels end as far away: so six wirings fit alike, and no size was told either."""
+    robot, random = WhiteNoiseRobot(0.3, 0.05, 0.05, 5e-4, 5e-4), np.random.default_rng(3)
+    runs = [by_tape(drive(robot, wandering(random, 20.0), random)) for _ in range(12)]
+    blind = [without_yaw(run) for run in runs]
+    file = replace(Robot(0.3, 0.05, 2000.0, 2000.0), **entered)  # type: ignore[arg-type]
+    found = look_for_mistakes(blind, file).findings
+    assert tuple(each.effect for each in found) == told
+    crossed = [
+        replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
+        for run in blind
+    ]
+    assert tuple(each.effect for each in look_for_mistakes(crossed, file).findings) == told
 
 
 def to_and_fro(seed: int) -> Run:

@@ -40,6 +40,9 @@ from werrimbi_odom.model.robot import Robot
 STEPS = 4000
 """Steps in all drives together, some tenths of a second each."""
 
+SAME = 1e-6
+"""Log-likelihoods that differ by rounding."""
+
 NUDGE = 1e-6
 """Share by which a wheel is changed for a derivative."""
 
@@ -60,12 +63,13 @@ def search_sparse(
         return [], None
     drives = _Drives(cuts, track, measured == "pose")
     ticks = ratio_of_ticks(robot)
-    tried = sorted(
-        ((drives.fits(each), i, each) for i, each in enumerate(drives.settings(ticks))),
-        reverse=True,
-    )
-    (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
+    tried = [(drives.fits(each), each) for each in drives.settings(ticks)]
+    given, best = drives.fits(AS_ENTERED), max(value for value, _ in tried)
+    # Of those that predict the same, the first. Distances know sizes, and no left from right.
+    setting = next(each for value, each in tried if value > best - SAME)
     if best < given + rules.SPARSE_MARGIN:
+        return [], None
+    if measured != "pose" and setting.wired.names():
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
@@ -74,11 +78,9 @@ def search_sparse(
     # With a mirrored reference the same signs predict something else.
     upright = [way for way in ways if not way.mirrored]
     same = [setting_of(estimate, way, track) for way in upright]
-    for value, _, other in tried[1:]:
-        if value < best - rules.SPARSE_APART:
-            break
-        if not any(_alike(other, one, measured == "pose") for one in same):
-            return [], None
+    near = (other for value, other in tried if value >= best - rules.SPARSE_APART)
+    if not all(any(_alike(other, one, measured == "pose") for one in same) for other in near):
+        return [], None
 
     def misfit(one: Setting) -> float:
         return math.exp(min((best - drives.fits(one)) / cuts.count, 50.0))
@@ -127,10 +129,10 @@ def _settings(ticks: float = 1.0) -> Iterator[Setting]:
 def _alike(a: Setting, b: Setting, facing: bool) -> bool:
     """Whether two set-ups have the same predictions."""
     one, other = a.numbers(1.0), b.numbers(1.0)
-    same = bool(np.allclose(one[:2], other[:2]))
     if facing:
-        return same and bool(np.isclose(one[2], other[2]))
-    return same and bool(np.isclose(abs(one[2]), abs(other[2])))
+        return bool(np.allclose(one[:3], other[:3]))
+    turned = np.allclose(one[:2], other[:2]) or np.allclose(one[:2], np.negative(other[:2]))
+    return turned and bool(np.isclose(abs(one[2]), abs(other[2])))
 
 
 @dataclass(frozen=True, slots=True)
