@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from test.inference.driven import run_of
+from test.inference.driven import run_by, run_of
 from test.inference.set_up_mistakes import mounted
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
@@ -20,8 +20,9 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.misentered_values import counts_words, factor_words
+from werrimbi_odom.inference.set_up.poses import regressed
 from werrimbi_odom.inference.set_up.positions import windows_of
-from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord
+from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, record_of
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 
@@ -66,6 +67,29 @@ def test_a_lever_arm_beyond_that_of_the_file_is_found_in_turned_axes() -> None:
     assert (arm.values["x"], arm.values["y"]) == pytest.approx((-0.6, -0.5), abs=0.01)
     assert "0.90 m behind the axle's middle and 0.50 m to its right" in arm.words
     assert "with what the robot file holds, reference_lever_arm is x -0.6" in arm.words
+
+
+@pytest.mark.parametrize(("seed", "wobble"), [(0, 0.005), (2, 0.005), (3, 0.01)])
+def test_a_marker_that_goes_round_a_robot_that_spins_is_no_wrong_size(
+    seed: int, wobble: float
+) -> None:
+    """Spins alone: the marker's circle was taken for the wheels', of a robot five times as large.
+
+    `wobble`: of the speed [m/s], as wheels have it whose controllers are two.
+    """
+    speed = wobble * np.random.default_rng(seed).standard_normal(1800)
+    turning = 0.8 * np.clip(4.0 * np.sin(2.0 * np.pi * np.arange(1800) / 240.0), -1.0, 1.0)
+    run = run_by(ROBOT, speed, turning, seed)
+    assert run.reference is not None
+    seen = replace(run, reference=mounted(0.0, 0.06 - 0.02j)(run.reference))
+    assert look_for_mistakes([seen], ROBOT).findings == ()
+
+    record = record_of(seen, ROBOT, None)
+    assert record is not None
+    fit = regressed([record], ROBOT)
+    assert fit is not None
+    assert abs(fit.moving.half_base - 0.175) < 3.0 * fit.moving.half_base_std
+    assert fit.moving.arm.real == pytest.approx(0.06, abs=0.002)
 
 
 def test_a_mount_entered_with_the_wrong_sign_is_told_as_it_is_in_all() -> None:

@@ -201,7 +201,7 @@ def search_round(
     return Round(
         before,
         tuple(ordered),
-        tuple(sensor_first(tried) if runs.own_axes else tried),
+        tuple(sensor_first(tried)),
         cells,
         len(looked_at),
     )
@@ -273,7 +273,8 @@ def without_nested(runs: Concatenated, tried: Sequence[Fitted]) -> list[Fitted]:
 def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
     """Order fits by cost, with a sensor effect first among observational equivalents.
 
-    A lidar that was mounted by hand is askew more often than an axle.
+    A marker or a lidar that was mounted by hand is askew more often than an axle, and what is put
+    in for it leaves the path that is published as it is.
     """
     for fit in tried[1:]:
         twin = always_twins(fit.newest, tried[0].newest)

@@ -82,8 +82,8 @@ Without a limit, a robot that drives straight at one speed with a reversed wheel
 that spins before a gyro with just that bias."""
 
 ARM_TOLD = 0.02
-"""Relative standard deviation of the base up to which a lever arm is fitted beside it: on circles
-base and arm are equivalent, and neither would be determined."""
+"""Relative standard deviation of the base up to which a lever arm that is not sure (`SURE_SIZE`) is
+fitted beside it too. Above, an arm that is not seen would only make the base that is seen worse."""
 
 # ---------------------------------------------------------------------- positions in millimetres
 

@@ -49,7 +49,7 @@ class Moving:
     half_base: complex
     """(B / 2) exp(-i yaw) [m]."""
     arm: complex
-    """exp(-i yaw) (ahead + i left) [m]; 0 where not identifiable."""
+    """exp(-i yaw) (ahead + i left) [m]; 0 where none is fitted beside the base."""
     half_base_std: float
     scatter: float
     """Robust residual dispersion of a cut [m]."""
@@ -84,10 +84,13 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
     alone = robust(gone[:, None], cuts.move)
     if alone is None:
         return None
-    if both is not None and both[1][0] < rules.ARM_TOLD * abs(both[0][0]):
+    if both is not None:
         value, std, scatter = both
-        return Moving(complex(value[0]), complex(value[1]), float(std[0]), scatter)
-    # On circles only, base and lever arm are confounded.
+        base_sure, arm_sure = np.abs(value) > rules.SURE_SIZE * std
+        # On circles only, base and lever arm are confounded. Without the arm, the circle on which a
+        # marker goes round a robot that spins is a base several times too large.
+        if std[0] < rules.ARM_TOLD * abs(value[0]) or arm_sure or not base_sure:
+            return Moving(complex(value[0]), complex(value[1]), float(std[0]), scatter)
     value, std, scatter = alone
     return Moving(complex(value[0]), 0j, float(std[0]), scatter)
 
