@@ -102,7 +102,8 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         show=show,
     )
     given = as_judged(given, diagnosis)
-    if insist and (diagnosis.verdict != "unknown" or diagnosis.one_sided is not None):
+    by_no_law = diagnosis.one_sided is not None or diagnosis.by_events
+    if insist and (diagnosis.verdict != "unknown" or by_no_law):
         raise InputError(_known(diagnosis, given, insist))
 
     def tried_out(found: Draft) -> Added:
@@ -133,6 +134,11 @@ def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
         return (
             f"the {diagnosis.one_sided.side} wheel errs, but the parts of the drives do not agree "
             f"on what its errors go with{force}"
+        )
+    if diagnosis.by_events:
+        return (
+            "what is missing comes at once, with reversals or with starts and stops, and goes with "
+            f"nothing that lasts{force}"
         )
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)

@@ -93,7 +93,8 @@ def json_of(
         "misfit": misfit and {**picked(misfit, "effect share only_in"), **_cell(misfit.cell)},
         "changes": changes_json(changes, diagnosis.robot),
         "events": events_json(diagnosis.happened, diagnosis.robot.track),
-        "events_alike": alike_json(diagnosis.happened),
+        "events_alike": alike_json(diagnosis.happened, diagnosis.left_by),
+        "by_events": diagnosis.by_events,
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 

@@ -6,11 +6,18 @@ from __future__ import annotations
 
 from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.drafting.draft import worth_drafting
+from werrimbi_odom.inference.events.events import Channel, Events
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
-from werrimbi_odom.report.number_format import chance_words, scaled_with_std, two_digits
+from werrimbi_odom.report.events import most_of
+from werrimbi_odom.report.number_format import (
+    chance_words,
+    error_words,
+    scaled_with_std,
+    two_digits,
+)
 
 
 def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
@@ -48,6 +55,8 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines.append("Something is missing that no effect of the library explains.")
     if diagnosis.one_sided is not None:
         return [*lines, *_of_one_wheel(diagnosis.one_sided)]
+    if diagnosis.by_events:
+        return [*lines, *_of_events(diagnosis.happened), *_to_know_more(advised)]
     if cells:
         lines.append(
             f"What is known of it: {dependence_words(cells[0])} ({chance_words(cells[0].p_value)})."
@@ -76,15 +85,52 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
             "part of a second, a reference that loses its place, or one of another drive look so."
         )
-    if (move := advised.manoeuvre) is not None:
-        lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
-    return lines
+    return [*lines, *_to_know_more(advised)]
+
+
+def _to_know_more(advised: AdvisedDiagnosis) -> list[str]:
+    move = advised.manoeuvre
+    return [] if move is None else [f"To know more first, {move.do} ({move.name}): {move.why}."]
 
 
 def mounted_anew(advised: AdvisedDiagnosis) -> bool:
     """Whether places differ, and turns do not, because the reference was mounted otherwise."""
     places = any(remark.what == "places" for remark in advised.diagnosis.remarks)
     return places and any(change.group == "mount" for change in advised.changes)
+
+
+def _of_events(happened: Events) -> list[str]:
+    """What is known of errors that come at once, again and again with the same thing."""
+    common = happened.alike
+    assert common is not None
+    channel = most_of(happened.events)
+    own = [event for event in happened.events if event.channel == channel]
+    sides = [side for side in (1.0, -1.0) if any(side * event.size > 0.0 for event in own)]
+    does, forth, back = _DOES[channel]
+    where = "to either side" if len(sides) == 2 else forth if sides == [1.0] else back
+    where = "to and fro" if len(sides) == 2 and channel == "along" else where
+    least, most = (
+        error_words(pick(abs(event.size) for event in own), own[0].unit) for pick in (min, max)
+    )
+    size = least if least == most else f"{least} to {most}"
+    when = "a reversal" if common.what == "reversal" else "a start or a stop"
+    return [
+        f"What is known of it: it comes at once, {common.count} times of {common.of} with {when}, "
+        f"and {does} by {size} {where}.",
+        "Next: look at what gives way then: castor, gears, couplings, tyres; and at the times of "
+        "counters and reference. `werrimbi draft` writes laws of what goes on for a while, and "
+        "none of what comes at once. Where both paths part, `werrimbi compare` with --report "
+        "shows.",
+    ]
+
+
+_DOES: dict[Channel, tuple[str, str, str]] = {
+    "along": ("throws the robot", "ahead", "back"),
+    "sideways": ("pushes the robot", "to the left", "to the right"),
+    "heading": ("turns the robot", "to the left", "to the right"),
+    "reference": ("moves what the reference sees", "on", "on"),
+}
+"""What an event of a channel does, and where to, by the sign of its size."""
 
 
 def _of_one_wheel(noise: OneSidedNoise) -> list[str]:

@@ -39,7 +39,7 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
         suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(advised), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
-    left_out += events_words(diagnosis.happened, diagnosis.robot.track)
+    left_out += events_words(diagnosis.happened, diagnosis.robot.track, diagnosis.left_by)
     left_out += remarks.without_events(advised) + reference_remarks.coarse_counters(diagnosis)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
