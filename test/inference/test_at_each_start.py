@@ -100,7 +100,7 @@ def test_what_may_be_the_reference_s_or_the_floor_s_proves_no_law(found: Diagnos
         replace(events, events=jumps),
         replace(events, alike=place),
     ):
-        assert with_what_is_no_noise(nothing, other, nothing_left=True).verdict == "none"
+        assert with_what_is_no_noise(nothing, other).verdict == "none"
         told = " ".join(events_words(other, found.robot.track))
         assert "is a law that" not in told  # "there is nothing to add" stands below it
-    assert with_what_is_no_noise(nothing, events, nothing_left=True).verdict == "unknown"
+    assert with_what_is_no_noise(nothing, events).verdict == "unknown"

@@ -131,9 +131,10 @@ def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
     if diagnosis.verdict == "none":
         return f"the verdict is none: the model explains these drives to their noise{force}"
     if diagnosis.one_sided is not None:
+        side = diagnosis.one_sided.side
+        who = "both wheels err" if side == "both" else f"the {side} wheel errs"
         return (
-            f"the {diagnosis.one_sided.side} wheel errs, but the parts of the drives do not agree "
-            f"on what its errors go with{force}"
+            f"{who}, but the parts of the drives do not agree on what these errors go with{force}"
         )
     if diagnosis.by_events:
         return (

@@ -15,7 +15,8 @@ def missing_words(row: Row) -> list[str]:
     said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
     said += [_with_values(row, effect) for effect in row.missing]
     if wheel := _one_wheel(row):
-        said.append(f"the {wheel} wheel errs, by no law")
+        said.append("the wheels err" if wheel == "both" else f"the {wheel} wheel errs")
+        said[-1] += ", by no law"
     elif when := _by_events(row):
         said.append(f"something at each {when}")
     elif row.verdict == "unknown" and row.figures is not None:
@@ -49,7 +50,7 @@ def next_words(row: Row) -> str:
     if row.verdict == "named":
         return f"add {','.join(row.missing)}"
     if wheel := _one_wheel(row):
-        return f"look at the {wheel} wheel"
+        return "look at the wheels" if wheel == "both" else f"look at the {wheel} wheel"
     if row.verdict == "unknown" and not _by_events(row):
         return "draft"
     if row.verdict == "none" and row.figures is not None and row.figures["outdated"]:

@@ -116,7 +116,7 @@ def diagnose(
             alone = again.runs.positions_alone
             wander = wander_of(again.final.point.variances, positions_alone=alone)
             return replace(again, wander=wander)
-    return with_what_is_no_noise(found, happened, nothing_left=nothing_left)
+    return with_what_is_no_noise(found, happened)
 
 
 def _once_more(show: Show, _: float, words: str) -> None:

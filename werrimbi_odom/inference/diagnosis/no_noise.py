@@ -12,13 +12,13 @@ from werrimbi_odom.inference.diagnosis.result import Diagnosis
 from werrimbi_odom.inference.events.events import Events
 
 
-def with_what_is_no_noise(found: Diagnosis, happened: Events, *, nothing_left: bool) -> Diagnosis:
-    """The diagnosis with the events; *unknown* where what is left is no noise, but no law either.
-
-    `nothing_left`: whether nothing was found, and no law of the model leaves anything.
-    """
+def with_what_is_no_noise(found: Diagnosis, happened: Events) -> Diagnosis:
+    """The diagnosis with the events; *unknown* where what is left is no noise, and no law."""
     found = replace(found, happened=happened)
-    if nothing_left and any(cell.p_value < rules.VERY_SURE for cell in found.depends_on):
+    # What one drive alone shows may be of an error that each of them has in its own way.
+    no_law = found.misfit is None or found.misfit.only_in is not None
+    nothing = found.verdict == "none" and no_law
+    if nothing and any(cell.p_value < rules.VERY_SURE for cell in found.depends_on):
         one_sided = one_sided_noise(found.runs, found.final)
         if one_sided is not None:
             return replace(found, verdict="unknown", one_sided=one_sided)

@@ -83,7 +83,8 @@ class Diagnosis:
     """Of a reference that was taken as absolute and is not: then all this is by `local_map`."""
     one_sided: OneSidedNoise | None = None
     """Where errors go with something, and the parts of the drives agree on nothing: that one wheel
-    errs far more than the other. No reference errs so, and the verdict is *unknown*."""
+    errs far more than the other, or that errors last along the path alone. No reference errs so,
+    and the verdict is *unknown*."""
     happened: Events = field(default_factory=Events)
     """Abrupt errors, which no law explains."""
     by_events: bool = False

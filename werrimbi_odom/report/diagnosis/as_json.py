@@ -120,6 +120,7 @@ def _one_sided(noise: OneSidedNoise) -> dict[str, Any]:
     sides = {"left": noise.left, "right": noise.right}
     return {
         "side": noise.side,
+        "along": noise.along,
         **{f"{name}_wheel_noise": picked(each, "value std") for name, each in sides.items()},
     }
 

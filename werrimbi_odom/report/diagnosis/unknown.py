@@ -54,7 +54,7 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines += costs.by_sizes_alone(advised)
     lines.append("Something is missing that no effect of the library explains.")
     if diagnosis.one_sided is not None:
-        return [*lines, *_of_one_wheel(diagnosis.one_sided)]
+        return [*lines, *_of_wheels(diagnosis.one_sided)]
     if diagnosis.by_events:
         return [*lines, *_of_events(diagnosis.happened), *_to_know_more(advised)]
     if cells:
@@ -133,19 +133,32 @@ _DOES: dict[Channel, tuple[str, str, str]] = {
 """What an event of a channel does, and where to, by the sign of its size."""
 
 
-def _of_one_wheel(noise: OneSidedNoise) -> list[str]:
-    """What is known of errors of one wheel that follow no law on which the drives agree."""
-    other = "right" if noise.side == "left" else "left"
-    sizes = (
-        f"{short} = {scaled_with_std(item.value, item.std, 'm^0.5')}"
-        for short, item in (("k_L", noise.left), ("k_R", noise.right))
-    )
+def _of_wheels(noise: OneSidedNoise) -> list[str]:
+    """What is known of errors of wheels that follow no law on which the drives agree."""
+    if noise.along is None:
+        why = ", more than noise is. A reference that errs makes both wheels err alike"
+    else:
+        why = (
+            f": along the path they add up, to {two_digits(noise.along)} times the variance of "
+            "independent ones, and to the side they do not. A reference errs to all sides"
+        )
+    if noise.side == "both":
+        whose = "both wheels err, and for seconds together their"
+        look = "the wheels, their tyres and load"
+    else:
+        other = "right" if noise.side == "left" else "left"
+        sizes = (
+            f"{short} = {scaled_with_std(item.value, item.std, 'm^0.5')}"
+            for short, item in (("k_L", noise.left), ("k_R", noise.right))
+        )
+        whose = (
+            f"the {noise.side} wheel errs {two_digits(noise.times)} times as much as the {other} "
+            f"one ({', '.join(sizes)}), and for seconds together its"
+        )
+        look = f"the {noise.side} wheel, its tyre, axle, motor and encoder"
     return [
-        f"What is known of it: the {noise.side} wheel errs {two_digits(noise.times)} times as much "
-        f"as the {other} one ({', '.join(sizes)}), and for seconds together its errors are alike, "
-        "more than noise is. A reference that errs makes both wheels err alike, so it is the "
-        "robot's.",
-        "The parts of the drives do not agree on what its errors go with, so no law can be written "
-        f"of them. Next: look at the {noise.side} wheel, its tyre, axle, motor and encoder, and at "
-        "what it drove over; where both paths part, `werrimbi compare` with --report shows.",
+        f"What is known of it: {whose} errors are alike{why}, so it is the robot's.",
+        "The parts of the drives do not agree on what these errors go with, so no law can be "
+        f"written of them. Next: look at {look}, and at what the robot drove over; where both "
+        "paths part, `werrimbi compare` with --report shows.",
     ]
