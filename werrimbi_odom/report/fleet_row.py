@@ -49,6 +49,8 @@ def next_words(row: Row) -> str:
     """Next step in a few words; `add` and `draft` are verbs of this tool."""
     if row.verdict == "named":
         return f"add {','.join(row.missing)}"
+    if row.verdict == "unknown" and row.figures is not None and row.figures.get("changes"):
+        return "diagnose the drives since the change"
     if wheel := _one_wheel(row):
         return "look at the wheels" if wheel == "both" else f"look at the {wheel} wheel"
     if row.verdict == "unknown" and not _by_events(row):

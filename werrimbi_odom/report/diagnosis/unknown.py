@@ -50,6 +50,9 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             f"--report draws both paths.{mend}",
         ]
     lines = phrases.set_up_lines(diagnosis)
+    if advised.changes:
+        # What the mean of two robots goes with is no law of either.
+        return lines
     cells = significant(diagnosis)
     lines += costs.by_sizes_alone(advised)
     lines.append("Something is missing that no effect of the library explains.")
