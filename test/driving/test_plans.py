@@ -103,6 +103,10 @@ def test_what_cannot_be_driven_is_said(tmp_path: Path, told: dict[str, object], 
     found.write_text(json.dumps({"verdict": "unknown", "next_manoeuvre": None}))
     with pytest.raises(InputError, match="depend on nothing that was measured"):
         proposed(found, LIMITS)
+    told = {"verdict": "unknown", "next_manoeuvre": None, "changes": [{"group": "radii"}]}
+    found.write_text(json.dumps(told))
+    with pytest.raises(InputError, match="diagnose those since the change alone"):
+        proposed(found, LIMITS)
     with pytest.raises(InputError, match="cannot be read as JSON"):
         proposed(tmp_path / "none.json", LIMITS)
 

@@ -226,3 +226,22 @@ def test_a_wheel_that_errs_by_no_law_is_to_be_looked_at_and_no_law_is_drafted() 
     )
     assert missing_words(worn) == ["the left wheel errs, by no law"]
     assert next_words(worn) == "look at the left wheel"
+
+
+def test_what_comes_at_each_start_is_to_be_driven_and_no_law_is_drafted() -> None:
+    ahead = {"name": "start_stop", "minutes": 8.0}
+    kicked = row(
+        "robot_9", "unknown", 0.003, 0.003, depends_on=[], by_events=True,
+        events_alike={"what": "start or stop"}, next_manoeuvre=ahead,
+    )  # fmt: skip
+    assert missing_words(kicked) == ["something at each start or stop"]
+    assert next_words(kicked) == "drive start stop (8 min)"
+
+
+def test_of_a_robot_that_changed_the_drives_since_are_asked_and_no_law_is_drafted() -> None:
+    place = [{"words": "how far both wheels roll goes with the place on the floor"}]
+    loaded = row(
+        "robot_9", "unknown", 0.002, 0.002, depends_on=place, changes=[{"group": "radii"}],
+        next_manoeuvre=None,
+    )  # fmt: skip
+    assert next_words(loaded) == "diagnose the drives since the change"

@@ -52,6 +52,47 @@ def gripping(seed: int, left: float, right: float) -> Run:
     )  # fmt: skip
 
 
+def changing(seed: int, left: float, right: float) -> Run:
+    """A drive on which radii grow and shrink by a share, once in 40 s; each time from elsewhere."""
+    random = np.random.default_rng(seed)
+    seen = drive(TRUE, wandering(random, 90.0), random, sigma_xy=4e-4, sigma_yaw=1e-3, every=2)
+    ticks = seen.ticks
+    wave = np.sin(2.0 * np.pi * (ticks.time / 40.0 + random.random()))
+    counts = [
+        np.floor(side[0] + np.cumsum(np.diff(side, prepend=side[0]) * (1.0 + share * wave)))
+        for share, side in ((left, ticks.left), (right, ticks.right))
+    ]
+    return replace(
+        seen, name=f"{seed}", path=Path(f"{seed}"),
+        ticks=replace(ticks, left=counts[0], right=counts[1]),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "side", "said"),
+    [
+        (0.0, 0.015, "right", "look at the right wheel"),
+        (0.01, 0.01, "both", "look at the wheels"),
+    ],
+)
+def test_radii_that_come_and_go_are_the_robot_s(
+    left: float, right: float, side: str, said: str
+) -> None:
+    """It was "nothing is missing", and "so errs a reference that wanders"."""
+    runs = [changing(seed, left, right) for seed in range(3)]
+    found = diagnose(runs, TRUE.entered(0.05), EFFECTS)
+    assert (found.verdict, found.found, found.wander) == ("unknown", (), None)
+    assert found.one_sided is not None
+    assert found.one_sided.side == side
+    assert found.one_sided.along is not None
+    told = " ".join(as_text(words_of(AdvisedDiagnosis(found, None, ()), NextSteps())).split())
+    assert said in told
+    assert "along the path" in told
+    assert "wanders" not in told
+    assert "nothing to add" not in told
+    assert json_of(found, None)["one_sided_noise"]["side"] == side
+
+
 @pytest.fixture(scope="module")
 def found() -> Diagnosis:
     """Of a left wheel whose grip comes and goes."""

@@ -38,6 +38,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
     like_noise,
     nearest,
 )
+from werrimbi_odom.report.diagnosis.unknown import unknown_words
 from werrimbi_odom.report.diagnosis.words import words_of
 from werrimbi_odom.report.terminal import as_text
 
@@ -233,13 +234,19 @@ def test_by_scans_a_change_may_be_the_floor_s(
     clock = SimpleNamespace(time=(0.0,))
     drives = tuple(SimpleNamespace(name=name, counters=clock) for name in ("arcs", "lines"))
     runs = SimpleNamespace(runs=drives, own_axes=own_axes)
-    diagnosis = SimpleNamespace(runs=runs, robot=ROBOT, verdict=verdict)
+    set_up = SimpleNamespace(findings=(), wrong=())
+    diagnosis = SimpleNamespace(
+        runs=runs, robot=ROBOT, verdict=verdict, set_up=set_up, of_another_drive=False
+    )
     change = SimpleNamespace(surely_from="arcs", from_run="arcs", group="mount", kind="alone")
     told: Any = SimpleNamespace(diagnosis=diagnosis, changes=(change,))
     steps = NextSteps(again=lambda names: f"werrimbi diagnose {'_'.join(names)}")
     said = " ".join(words._changes(told, steps))
     assert "For what it is now, ask again without arcs:     werrimbi diagnose lines" in said
     assert ("Or the floor is why. What lies on the floor" in said) == or_the_floor
+    # Of the mean of two robots a law was drafted, of a place on the floor where one of them drove.
+    assert ("so what else is missing is not asked" in said) == (verdict == "unknown")
+    assert unknown_words(told, steps) == []
 
 
 @pytest.mark.parametrize(

@@ -102,7 +102,8 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         show=show,
     )
     given = as_judged(given, diagnosis)
-    if insist and (diagnosis.verdict != "unknown" or diagnosis.one_sided is not None):
+    by_no_law = diagnosis.one_sided is not None or diagnosis.by_events
+    if insist and (diagnosis.verdict != "unknown" or by_no_law):
         raise InputError(_known(diagnosis, given, insist))
 
     def tried_out(found: Draft) -> Added:
@@ -130,9 +131,15 @@ def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
     if diagnosis.verdict == "none":
         return f"the verdict is none: the model explains these drives to their noise{force}"
     if diagnosis.one_sided is not None:
+        side = diagnosis.one_sided.side
+        who = "both wheels err" if side == "both" else f"the {side} wheel errs"
         return (
-            f"the {diagnosis.one_sided.side} wheel errs, but the parts of the drives do not agree "
-            f"on what its errors go with{force}"
+            f"{who}, but the parts of the drives do not agree on what these errors go with{force}"
+        )
+    if diagnosis.by_events:
+        return (
+            "what is missing comes at once, with reversals or with starts and stops, and goes with "
+            f"nothing that lasts{force}"
         )
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)

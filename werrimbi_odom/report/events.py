@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from werrimbi_odom.inference.events.common_cause import Alike
-from werrimbi_odom.inference.events.events import Event, Events
+from werrimbi_odom.inference.events.events import Channel, Event, Events
 from werrimbi_odom.report import style
 from werrimbi_odom.report.number_format import from_start, in_unit, picked, with_std
 from werrimbi_odom.report.path_figure import add_path
@@ -21,12 +23,28 @@ from werrimbi_odom.report.style import Figure
 Names = dict[tuple[Path, bool], str]
 """A name for each drive, escaped, by its path and whether it was held out."""
 
+_SUSPECTS: dict[str, dict[str, str]] = {
+    "reversal": {
+        "along": "a castor or of free play (castor_kick, castor_swing, left_backlash, "
+        "right_backlash)",
+    },
+    "start or stop": {
+        "along": "tyres or of clocks (longitudinal_slip, reference_delay)",
+        "heading": "a castor, of free play or of a wheel that starts late (castor_kick, "
+        "left_backlash, right_backlash, encoder_skew)",
+    },
+}
+"""What may be the law behind events, by what they come with and the channel of most of them."""
+
 _TOLD = 6
 """Number of events reported one by one, in the order of their significance."""
 
 
-def events_words(happened: Events, track: float) -> list[str]:
-    """The events in the order of time; empty for none. `track` is the wheel base [m]."""
+def events_words(happened: Events, track: float, left_by: str | None = None) -> list[str]:
+    """The events in the order of time; empty for none.
+
+    `track`: the wheel base [m]. `left_by`: the law of the model, if any, that leaves such errors.
+    """
     events = happened.events
     if not events:
         return []
@@ -43,7 +61,7 @@ def events_words(happened: Events, track: float) -> list[str]:
     if rest:
         lines.append(f"So {'is' if rest == 1 else 'are'} {rest} more, in the report and the JSON.")
     if happened.alike is not None:
-        lines.append(alike_words(happened.alike))
+        lines.append(alike_words(happened.alike, happened, left_by))
     if either(happened):
         lines.append(_EITHER[happened.kind])
     if happened.left_out:
@@ -78,20 +96,32 @@ def event_words(event: Event, track: float, *, either: bool) -> str:
     return f"it was thrown {size} {way} where its wheels were (a bump, a slip)"
 
 
-def alike_words(common: Alike) -> str:
-    """Common cause of the events, and its meaning."""
+def most_of(events: Sequence[Event]) -> Channel:
+    """The channel in which most of the events are largest."""
+    return Counter(event.channel for event in events).most_common(1)[0][0]
+
+
+def alike_words(common: Alike, happened: Events, left_by: str | None = None) -> str:
+    """Common cause of the events that happened, and its meaning; `left_by` as of `events_words`."""
     x, y = common.at
     near = f"{common.count} of {common.of}"
-    if common.what == "reversal":
-        return (
-            f"{near} come with a reversal: that is a law that the model does not hold, of a castor "
-            "or of free play (castor_kick, castor_swing, left_backlash, right_backlash)."
+    if common.what in _SUSPECTS:
+        near = f"{near} come with a {common.what.replace(' or ', ' or a ')}: "
+        channel = most_of(happened.events)
+        if left_by is not None:
+            return (
+                f"{near}the law of {left_by}, whose form or size does not quite fit, leaves such."
+            )
+        if channel == "reference":
+            return (
+                f"{near}then the reference goes wrong (a mount that shakes, stamps that are off)."
+            )
+        other = (
+            "" if happened.kind == "absolute" else "of a reference that corrects itself then, or "
         )
-    if common.what == "start or stop":
-        return (
-            f"{near} come with a start or a stop: that is a law that the model does not hold, of "
-            "tyres or of clocks (longitudinal_slip, reference_delay)."
-        )
+        suspects = _SUSPECTS[common.what]
+        whose = suspects.get(channel, suspects["along"])
+        return f"{near}that is {other}a law that the model does not hold, of {whose}."
     where = {"x": f"x {x:.1f} m", "y": f"y {y:.1f} m", "place": f"x {x:.1f} m, y {y:.1f} m"}
     if common.of_reference:
         return (
@@ -139,13 +169,13 @@ _EITHER = {
 _SIZES = ("along_m", "sideways_m", "heading_rad")
 
 
-def alike_json(happened: Events) -> dict[str, Any] | None:
-    """Common cause of the events; null for none."""
+def alike_json(happened: Events, left_by: str | None = None) -> dict[str, Any] | None:
+    """Common cause of the events; null for none. `left_by` as of `events_words`."""
     common = happened.alike
     if common is None:
         return None
     x, y = common.at
-    words = alike_words(common)
+    words = alike_words(common, happened, left_by)
     return {**picked(common, "what count of p_value"), "x_m": x, "y_m": y, "words": words}
 
 

@@ -15,7 +15,10 @@ def missing_words(row: Row) -> list[str]:
     said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
     said += [_with_values(row, effect) for effect in row.missing]
     if wheel := _one_wheel(row):
-        said.append(f"the {wheel} wheel errs, by no law")
+        said.append("the wheels err" if wheel == "both" else f"the {wheel} wheel errs")
+        said[-1] += ", by no law"
+    elif when := _by_events(row):
+        said.append(f"something at each {when}")
     elif row.verdict == "unknown" and row.figures is not None:
         cells = row.figures["depends_on"]
         said.append(cells[0]["words"] if cells else "no effect of the library")
@@ -36,17 +39,25 @@ def _one_wheel(row: Row) -> str:
     return told["side"] if told else ""
 
 
+def _by_events(row: Row) -> str:
+    """With what abrupt errors come that alone say that something is missing; "" if none do."""
+    told = row.figures if row.figures and row.figures.get("by_events") else None
+    return str(told["events_alike"]["what"]) if told else ""
+
+
 def next_words(row: Row) -> str:
     """Next step in a few words; `add` and `draft` are verbs of this tool."""
     if row.verdict == "named":
         return f"add {','.join(row.missing)}"
+    if row.verdict == "unknown" and row.figures is not None and row.figures.get("changes"):
+        return "diagnose the drives since the change"
     if wheel := _one_wheel(row):
-        return f"look at the {wheel} wheel"
-    if row.verdict == "unknown":
+        return "look at the wheels" if wheel == "both" else f"look at the {wheel} wheel"
+    if row.verdict == "unknown" and not _by_events(row):
         return "draft"
     if row.verdict == "none" and row.figures is not None and row.figures["outdated"]:
         return f"add {row.figures['outdated'][0]['effect']}"
-    if row.verdict == "ambiguous" and row.figures is not None:
+    if row.verdict in ("ambiguous", "unknown") and row.figures is not None:
         move = row.figures["next_manoeuvre"]
         if move is None:
             return "use a ruler"

@@ -11,7 +11,7 @@ Held-out drives have no part in this: they are for reporting only.
 An abrupt error that the final model does not explain is an event. Events without a common cause are
 left out, and the whole search is repeated without them. If a wandering reference explains what is
 left where independent poses were assumed, all is repeated with such a reference. If one wheel took
-what is left, it is no reference's, and something is missing.
+what is left, or events come with the driving, something is missing (`no_noise`).
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from werrimbi_odom.inference.diagnosis.forward_selection import (
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect, lasting
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
-from werrimbi_odom.inference.diagnosis.one_sided_noise import one_sided_noise
+from werrimbi_odom.inference.diagnosis.no_noise import with_what_is_no_noise
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis, Verdict
@@ -116,11 +116,7 @@ def diagnose(
             alone = again.runs.positions_alone
             wander = wander_of(again.final.point.variances, positions_alone=alone)
             return replace(again, wander=wander)
-    if nothing_left and any(cell.p_value < rules.VERY_SURE for cell in found.depends_on):
-        one_sided = one_sided_noise(found.runs, found.final)
-        if one_sided is not None:
-            found = replace(found, verdict="unknown", one_sided=one_sided)
-    return replace(found, happened=happened)
+    return with_what_is_no_noise(found, happened)
 
 
 def _once_more(show: Show, _: float, words: str) -> None:

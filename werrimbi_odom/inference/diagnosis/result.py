@@ -83,9 +83,13 @@ class Diagnosis:
     """Of a reference that was taken as absolute and is not: then all this is by `local_map`."""
     one_sided: OneSidedNoise | None = None
     """Where errors go with something, and the parts of the drives agree on nothing: that one wheel
-    errs far more than the other. No reference errs so, and the verdict is *unknown*."""
+    errs far more than the other, or that errors last along the path alone. No reference errs so,
+    and the verdict is *unknown*."""
     happened: Events = field(default_factory=Events)
     """Abrupt errors, which no law explains."""
+    by_events: bool = False
+    """Whether nothing but these says that something is missing: they come with reversals, or with
+    starts and stops. The verdict is *unknown*."""
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that explain as much in place of one that the file holds,
     by its name."""
@@ -97,6 +101,14 @@ class Diagnosis:
     contradict."""
     ahead_or_behind: bool = False
     """Whether the measured point may as well lie as far on the other side of the axle."""
+
+    @property
+    def left_by(self) -> str | None:
+        """The law of the robot file, if any, whose form or size is not quite right."""
+        if self.outdated:
+            return self.outdated[0]
+        misfit = self.misfit
+        return misfit.effect if misfit is not None and misfit.only_in is None else None
 
     @property
     def of_another_drive(self) -> bool:

@@ -19,7 +19,7 @@ from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.inference.diagnosis.paired_comparison import Unit, error_of, promised_of
-from werrimbi_odom.inference.distributions import chi2_survival
+from werrimbi_odom.inference.distributions import chi2_survival, fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
 
@@ -99,6 +99,34 @@ def what_is_left(
 def neighbours_are_alike(runs: Concatenated, point: Point) -> bool:
     """Whether neighbouring legs of a fit err alike in a channel, beyond chance."""
     return any(size > 0.0 for size in _beyond_chance(_neighbours(runs, point)).values())
+
+
+def lasts_along_alone(runs: Concatenated, point: Point) -> float | None:
+    """How much more errors add up along the path than to the side, if beyond chance; else None.
+
+    The error of a reference has no direction along the path: what makes its errors last from leg to
+    leg along it does so to the side too. So whitened innovations are added up over stretches of the
+    drives: the variance of the sums, in that of single legs, is held against the same of those to
+    the side (Fisher's F).
+    """
+    found = unexpected(runs, point)
+    white = found.whitened()[:, :2]
+    told = np.asarray(found.known[:, :2].all(axis=1))
+    each = max(int(np.count_nonzero(told)) // rules.STRETCHES, 2)
+    sums = []
+    for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
+        own = white[first:last][told[first:last]]
+        whole = own.shape[0] // each
+        sums.append(own[: whole * each].reshape(whole, each, 2).sum(axis=1))
+    single = np.sum(white[told] ** 2, axis=0)
+    together = np.concatenate(sums)
+    count = together.shape[0]
+    if count < 2 or not single.all():
+        return None
+    along, sideways = np.sum(together**2, axis=0) / single
+    ratio = float(along / sideways)
+    sure = fisher_survival(ratio, count, count) < rules.SURE_WHEN_ASKED
+    return ratio if sure and ratio > rules.LASTS_ALONG else None
 
 
 def _beyond_chance(neighbours: Mapping[str, NeighbourCorrelation]) -> dict[str, float]:

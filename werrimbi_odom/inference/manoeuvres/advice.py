@@ -104,13 +104,16 @@ def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosi
             diagnosis, leg, open_at = again, shorter, leg
     show(0.97, "the next step")
     effects = given.collection.effects
+    changes = changes_between(diagnosis, effects)
+    # What the mean of two robots goes with is no law of either, and no reason to drive.
+    waits = diagnosis.verdict == "unknown" and bool(changes)
     return AdvisedDiagnosis(
         diagnosis,
-        next_manoeuvre(diagnosis),
+        None if waits else next_manoeuvre(diagnosis),
         detection_limits(diagnosis, effects),
         leg,
         bool(given.holdout),
-        changes_between(diagnosis, effects),
+        changes,
         open_at,
     )
 

@@ -52,6 +52,15 @@ _VARYING = {
 
 def for_the_unknown(diagnosis: Diagnosis) -> ProposedManoeuvre | None:
     """Vary what the error depends on, and keep all else constant."""
+    if diagnosis.by_events:
+        ideal = next(item for item in MANOEUVRES if item.name == "start_stop")
+        return ProposedManoeuvre(
+            ideal.name,
+            "many starts of either sense by themselves show to which side the error goes, and "
+            "whether it grows with how hard they are",
+            f"drive {ideal.words}",
+            rules.MINUTES_OF_A_LAW,
+        )
     found = strongest(diagnosis)
     if found is None:
         return None

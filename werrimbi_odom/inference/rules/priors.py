@@ -47,6 +47,16 @@ softest on tiles to a typical one, six (`TYPICAL_WHEEL_NOISE`). Chong and Kleema
 reference's error makes it, whatever it is, only if errors along the path and in heading are
 correlated by (6² - 1) / (6² + 1) = 0.95; of one that wanders they are independent."""
 
+PAIR_OF_WHEELS = 2.0
+"""Ratio of the noise of two wheels above which, surely, errors are told of one of them. Chong and
+Kleeman's two are 1.45, so twice is still a pair."""
+
+STRETCHES, LASTS_ALONG = 60, 2.0
+"""Stretches into which drives are cut to see whether errors add up along the path; and by how much
+more their variance grows than that of errors to the side, if they are no noise of wheels: over such
+ways the covariance is then too small by half. With sixty stretches chance shows that in one case in
+two hundred (Fisher's F). Ten minutes are stretches of ten seconds."""
+
 LEAST_WHEEL_NOISE = 1e-5
 """Least start value of a fit [m^0.5]: a tenth of the least noise of a rolling wheel, if the robot
 file has none. Without noise the first step would have no weights."""

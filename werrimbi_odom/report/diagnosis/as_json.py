@@ -93,7 +93,8 @@ def json_of(
         "misfit": misfit and {**picked(misfit, "effect share only_in"), **_cell(misfit.cell)},
         "changes": changes_json(changes, diagnosis.robot),
         "events": events_json(diagnosis.happened, diagnosis.robot.track),
-        "events_alike": alike_json(diagnosis.happened),
+        "events_alike": alike_json(diagnosis.happened, diagnosis.left_by),
+        "by_events": diagnosis.by_events,
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 
@@ -119,6 +120,7 @@ def _one_sided(noise: OneSidedNoise) -> dict[str, Any]:
     sides = {"left": noise.left, "right": noise.right}
     return {
         "side": noise.side,
+        "along": noise.along,
         **{f"{name}_wheel_noise": picked(each, "value std") for name, each in sides.items()},
     }
 

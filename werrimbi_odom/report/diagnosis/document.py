@@ -47,6 +47,8 @@ def document_of(advised: AdvisedDiagnosis, steps: NextSteps | None = None) -> Do
         "ambiguous": f"What is missing: {' or '.join(diagnosis.rivals)}",
         "unknown": "Something is missing that the library does not hold",
     }[diagnosis.verdict]
+    if diagnosis.verdict == "unknown" and advised.changes:
+        title = "Not the same in all of these drives"
     if diagnosis.set_up.wrong:
         mistakes = ", ".join(item.effect for item in diagnosis.set_up.wrong)
         title = f"What is set up wrongly: {mistakes}"

@@ -6,11 +6,18 @@ from __future__ import annotations
 
 from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.drafting.draft import worth_drafting
+from werrimbi_odom.inference.events.events import Channel, Events
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
-from werrimbi_odom.report.number_format import chance_words, scaled_with_std, two_digits
+from werrimbi_odom.report.events import most_of
+from werrimbi_odom.report.number_format import (
+    chance_words,
+    error_words,
+    scaled_with_std,
+    two_digits,
+)
 
 
 def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
@@ -43,11 +50,16 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             f"--report draws both paths.{mend}",
         ]
     lines = phrases.set_up_lines(diagnosis)
+    if advised.changes:
+        # What the mean of two robots goes with is no law of either.
+        return lines
     cells = significant(diagnosis)
     lines += costs.by_sizes_alone(advised)
     lines.append("Something is missing that no effect of the library explains.")
     if diagnosis.one_sided is not None:
-        return [*lines, *_of_one_wheel(diagnosis.one_sided)]
+        return [*lines, *_of_wheels(diagnosis.one_sided)]
+    if diagnosis.by_events:
+        return [*lines, *_of_events(diagnosis.happened), *_to_know_more(advised)]
     if cells:
         lines.append(
             f"What is known of it: {dependence_words(cells[0])} ({chance_words(cells[0].p_value)})."
@@ -76,9 +88,12 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
             "part of a second, a reference that loses its place, or one of another drive look so."
         )
-    if (move := advised.manoeuvre) is not None:
-        lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
-    return lines
+    return [*lines, *_to_know_more(advised)]
+
+
+def _to_know_more(advised: AdvisedDiagnosis) -> list[str]:
+    move = advised.manoeuvre
+    return [] if move is None else [f"To know more first, {move.do} ({move.name}): {move.why}."]
 
 
 def mounted_anew(advised: AdvisedDiagnosis) -> bool:
@@ -87,19 +102,66 @@ def mounted_anew(advised: AdvisedDiagnosis) -> bool:
     return places and any(change.group == "mount" for change in advised.changes)
 
 
-def _of_one_wheel(noise: OneSidedNoise) -> list[str]:
-    """What is known of errors of one wheel that follow no law on which the drives agree."""
-    other = "right" if noise.side == "left" else "left"
-    sizes = (
-        f"{short} = {scaled_with_std(item.value, item.std, 'm^0.5')}"
-        for short, item in (("k_L", noise.left), ("k_R", noise.right))
+def _of_events(happened: Events) -> list[str]:
+    """What is known of errors that come at once, again and again with the same thing."""
+    common = happened.alike
+    assert common is not None
+    channel = most_of(happened.events)
+    own = [event for event in happened.events if event.channel == channel]
+    sides = [side for side in (1.0, -1.0) if any(side * event.size > 0.0 for event in own)]
+    does, forth, back = _DOES[channel]
+    where = "to either side" if len(sides) == 2 else forth if sides == [1.0] else back
+    where = "to and fro" if len(sides) == 2 and channel == "along" else where
+    least, most = (
+        error_words(pick(abs(event.size) for event in own), own[0].unit) for pick in (min, max)
     )
+    size = least if least == most else f"{least} to {most}"
+    when = "a reversal" if common.what == "reversal" else "a start or a stop"
     return [
-        f"What is known of it: the {noise.side} wheel errs {two_digits(noise.times)} times as much "
-        f"as the {other} one ({', '.join(sizes)}), and for seconds together its errors are alike, "
-        "more than noise is. A reference that errs makes both wheels err alike, so it is the "
-        "robot's.",
-        "The parts of the drives do not agree on what its errors go with, so no law can be written "
-        f"of them. Next: look at the {noise.side} wheel, its tyre, axle, motor and encoder, and at "
-        "what it drove over; where both paths part, `werrimbi compare` with --report shows.",
+        f"What is known of it: it comes at once, {common.count} times of {common.of} with {when}, "
+        f"and {does} by {size} {where}.",
+        "Next: look at what gives way then: castor, gears, couplings, tyres; and at the times of "
+        "counters and reference. `werrimbi draft` writes laws of what goes on for a while, and "
+        "none of what comes at once. Where both paths part, `werrimbi compare` with --report "
+        "shows.",
+    ]
+
+
+_DOES: dict[Channel, tuple[str, str, str]] = {
+    "along": ("throws the robot", "ahead", "back"),
+    "sideways": ("pushes the robot", "to the left", "to the right"),
+    "heading": ("turns the robot", "to the left", "to the right"),
+    "reference": ("moves what the reference sees", "on", "on"),
+}
+"""What an event of a channel does, and where to, by the sign of its size."""
+
+
+def _of_wheels(noise: OneSidedNoise) -> list[str]:
+    """What is known of errors of wheels that follow no law on which the drives agree."""
+    if noise.along is None:
+        why = ", more than noise is. A reference that errs makes both wheels err alike"
+    else:
+        why = (
+            f": along the path they add up, to {two_digits(noise.along)} times the variance of "
+            "independent ones, and to the side they do not. A reference errs to all sides"
+        )
+    if noise.side == "both":
+        whose = "both wheels err, and for seconds together their"
+        look = "the wheels, their tyres and load"
+    else:
+        other = "right" if noise.side == "left" else "left"
+        sizes = (
+            f"{short} = {scaled_with_std(item.value, item.std, 'm^0.5')}"
+            for short, item in (("k_L", noise.left), ("k_R", noise.right))
+        )
+        whose = (
+            f"the {noise.side} wheel errs {two_digits(noise.times)} times as much as the {other} "
+            f"one ({', '.join(sizes)}), and for seconds together its"
+        )
+        look = f"the {noise.side} wheel, its tyre, axle, motor and encoder"
+    return [
+        f"What is known of it: {whose} errors are alike{why}, so it is the robot's.",
+        "The parts of the drives do not agree on what these errors go with, so no law can be "
+        f"written of them. Next: look at {look}, and at what the robot drove over; where both "
+        "paths part, `werrimbi compare` with --report shows.",
     ]

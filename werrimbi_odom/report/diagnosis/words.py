@@ -39,7 +39,7 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
         suspect += [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*_shorter(advised), *suspect, *left_out_words(diagnosis.left_out)]
     left_out += jumps_words(diagnosis.left_out)
-    left_out += events_words(diagnosis.happened, diagnosis.robot.track)
+    left_out += events_words(diagnosis.happened, diagnosis.robot.track, diagnosis.left_by)
     left_out += remarks.without_events(advised) + reference_remarks.coarse_counters(diagnosis)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
@@ -65,7 +65,6 @@ def _changes(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     if not changes:
         return []
     unknown = advised.diagnosis.verdict == "unknown"
-    alone = ["That alone may be why no effect explains them all."] if unknown else []
     floor = [] if unknown else reference_remarks.floor_not_asked(advised.diagnosis)
     what, one = "The robot", "one robot, the mean of both"
     command: list[str] = []
@@ -77,11 +76,16 @@ def _changes(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         )
     else:
         now, command = _as_it_is_now(advised, steps)
+    follows = (
+        "That alone may be why no effect explains them all, so what else is missing is not asked."
+        if unknown
+        else f"What follows takes them for {one}."
+    )
     return [
         f"{what} was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
         *(f"Or the floor is why. {words}" for words in floor),
-        " ".join([f"What follows takes them for {one}.", *alone, now]),
+        f"{follows} {now}",
         *command,
         "",
     ]
