@@ -32,6 +32,7 @@ from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.motion_states import LOST, SLID, driven
+from werrimbi_odom.inference.legs.reference_lapses import without_lapses
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -67,7 +68,8 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         spans = driven(counters, robot, found).spans
         in_time, at_rest = without_bias(in_time, spans, counters, robot)
     seen = replace(seen, yaw=in_time.yaw)
-    return replace(run, reference=seen, no_driving=found, at_rest=at_rest)
+    run = replace(run, reference=seen, no_driving=found, at_rest=at_rest)
+    return without_lapses(run, counters, robot, clock_offset(robot))
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

@@ -151,6 +151,12 @@ wheels' motion or of the reference's a moment before and after; and longest typi
 that test. Chosen: stamps with a jitter of half an interval make 1.5 of one, and a hand does not
 move a robot within three steps of 0.15 s."""
 
+NO_DRIVING_LEAP_OF_DIGITS = 1.5
+"""Step, in units of the last digit of the reference, up to which it is none: a value that is
+rounded steps by one unit more or less than it moved. Chosen: the midpoint between one unit and two.
+It holds where more than half of the steps are as usual to the last digit; the unit is then the
+median of the steps that are not zero."""
+
 NO_DRIVING_AT_ONCE = 0.75
 """Largest share of what is in doubt that may be in one window: a lost track or a failed match is
 over within one (a share of 1), and is found as a jump. A hand that moved a robot ever faster, until
