@@ -3,50 +3,24 @@
 """Lapses of a reference: from one pose to the next it is elsewhere, and later it comes back.
 
 So errs a tracker that exchanged two markers, or a scan match at the wrong place. Both leaps are
-seen from the reference and the wheels, whatever model is true; the poses between are wrong, so they
-are blanked. Single wrong poses: `stray_poses`.
+seen from the reference and the wheels, whatever model is true; the poses between are wrong.
+Single wrong poses: `stray_poses`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.files.run import NoDriving, Reference
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.measured_motion import runs_of
 from werrimbi_odom.inference.legs.windows import leaps_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-
-
-def without_lapses(run: Run, counters: Counters, robot: Robot, delay: float) -> Run:
-    """Take the poses of its reference's lapses out of a run, and list them with its stretches.
-
-    `delay`: of the reference behind the wheels, by the robot file [s]. Another delay, found later,
-    moves no pose out of a lapse or into one: the wrong poses are blanked.
-    """
-    seen = run.reference
-    if seen is None or seen.own_axes:
-        return run
-    found = lapses(counters, seen.earlier(delay), robot)
-    if not found:
-        return run
-    taken_out = [(part.begin + delay, part.end + delay) for part in found]
-    wrong = np.zeros(seen.time.shape, dtype=np.bool_)
-    for begin, end in taken_out:
-        wrong |= (seen.time > begin) & (seen.time < end)
-    x, y, yaw = (np.where(wrong, np.nan, each) for each in (seen.x, seen.y, seen.yaw))
-    return replace(
-        run,
-        reference=replace(seen, x=x, y=y, yaw=yaw),
-        no_driving=tuple(sorted([*(run.no_driving or ()), *found])),
-        taken_out=(*run.taken_out, *taken_out),
-    )
 
 
 def lapses(counters: Counters, reference: Reference, robot: Robot) -> list[NoDriving]:

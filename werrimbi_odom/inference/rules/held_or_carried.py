@@ -196,6 +196,13 @@ are reported within half a second."""
 NO_DRIVING_TREMBLES = 1e-3
 """Travel of a wheel [m] up to which it stands: the counts of a lifted wheel tremble by less."""
 
+NOISY_PHASE, NOISY_PHASE_LASTS = 3.0, 5.0
+"""Scatter of the reference relative to the rest of the drive, above which it is in a phase of its
+own, and the time [s] over whose poses that is asked. Chosen: errors three times as large have nine
+times the variance, which no one noise of a drive describes. The median of twenty-one poses in both
+coordinates is known to a quarter, so three times is far beyond its chance, and its root, to which a
+phase reaches, is three of its standard deviations."""
+
 REST_LASTS = 0.5
 """Shortest rest [s] that is reported as standing: less is a change of direction."""
 
