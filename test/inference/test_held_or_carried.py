@@ -15,6 +15,7 @@ from test.cli.commands import ROBOT_FILE
 from test.inference.driven import NOISE_XY, NOISE_YAW, of_headings, parts, run_by, run_of
 from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
+from test.white_noise_robot import WhiteNoiseRobot, drive
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.read_run import read_run
@@ -278,6 +279,20 @@ def test_an_end_error_is_not_that_of_a_hand(tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
     told = wo.odom(wo.read_robot(tmp_path / "robot.yaml"), tmp_path / "run").to_dict()["notes"]
     assert any("the robot moved and its wheels did not" in note for note in told)
+
+
+@pytest.mark.parametrize("unit", [0.5, 1.0, 2.0])
+def test_a_heading_in_whole_degrees_holds_no_robot_that_turns_slowly(unit: float) -> None:
+    """Each of its steps is more than twice what the wheels did meanwhile."""
+    speed, turning = np.full(1200, 0.3), np.zeros(1200)
+    speed[400:], turning[400:800], turning[800:] = 0.0, 0.15, -0.2
+    machine, random = WhiteNoiseRobot(), np.random.default_rng(0)
+    run = drive(machine, (speed, turning), random, every=1, sigma_yaw=1e-3)
+    seen = run.reference
+    assert seen is not None
+    rounded = np.radians(unit * np.round(np.degrees(seen.yaw) / unit))
+    run = replace(run, reference=replace(seen, yaw=rounded))
+    assert with_no_driving(run, machine.entered()).no_driving == ()
 
 
 def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:

@@ -20,6 +20,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.agreement import Agreement, agreement_of_turns
+from werrimbi_odom.inference.legs.blanked_poses import without_useless_poses
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.displacement_agreement import agreement_of_displacements
 from werrimbi_odom.inference.legs.even_stamps import (
@@ -60,14 +61,22 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         counters = counters_of(run, robot, limits)
     except InputError:
         return run  # cutting into legs raises the error
-    in_time = seen.earlier(clock_offset(robot))
+    delay = clock_offset(robot)
+    seen, useless = without_useless_poses(seen, counters, robot, delay)
+    in_time = seen.earlier(delay)
     found = no_driving(counters, in_time, robot)
     at_rest = None
     if not seen.has_position.any():  # a gyro
         spans = driven(counters, robot, found).spans
         in_time, at_rest = without_bias(in_time, spans, counters, robot)
     seen = replace(seen, yaw=in_time.yaw)
-    return replace(run, reference=seen, no_driving=found, at_rest=at_rest)
+    return replace(
+        run,
+        reference=seen,
+        no_driving=tuple(sorted([*found, *useless])),
+        at_rest=at_rest,
+        taken_out=(*run.taken_out, *((part.begin + delay, part.end + delay) for part in useless)),
+    )
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

@@ -161,18 +161,31 @@ def _noise(seen: NDArray[np.complex128], stands: NDArray[np.bool_], *, ways: boo
     return float(np.median(np.abs(each)) * np.sqrt(2.0 / 20.0))
 
 
-def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[np.complex128]:
-    """Remove jumps (a localiser that relocalised) from the steps between reference poses.
+def leaps_of(
+    seen: NDArray[np.complex128], by_wheels: Floats
+) -> tuple[NDArray[np.bool_], NDArray[np.complex128]]:
+    """Jumps (a localiser that relocalised) among the steps between reference poses, (n,) each.
 
     A jump is a single step that exceeds the noise, its neighbours and the wheels' motion. Moving a
-    robot by hand takes longer than one to three steps.
+    robot by hand takes longer than one to three steps. Second result: what each step would usually
+    be, by its neighbours.
     """
     reach = 2 * rules.JUMP_NEIGHBOURS + 1
     usual = median_filter(seen.real, reach) + 1j * median_filter(seen.imag, reach)
     left = np.abs(seen - usual)
     moved = maximum_filter1d(np.maximum(np.abs(usual), by_wheels), reach)
     scatter = rules.JUMP_SCATTER * MEDIAN_TO_SIGMA * float(np.median(left))
-    return np.where(left > np.maximum(scatter, rules.NO_DRIVING_LEAP * moved), usual, seen)
+    if scatter == 0.0 and seen.any():
+        # Of a reading in whole degrees, say, most steps are as usual, and the others off by one.
+        steps = np.abs(seen)
+        scatter = rules.NO_DRIVING_LEAP_OF_DIGITS * float(np.median(steps[steps > 0.0]))
+    return left > np.maximum(scatter, rules.NO_DRIVING_LEAP * moved), usual
+
+
+def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[np.complex128]:
+    """Steps between reference poses without jumps (`leaps_of`)."""
+    leaps, usual = leaps_of(seen, by_wheels)
+    return np.where(leaps, usual, seen)
 
 
 def _over(values: Floats, steps: int) -> Floats:

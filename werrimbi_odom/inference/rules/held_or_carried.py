@@ -151,6 +151,12 @@ wheels' motion or of the reference's a moment before and after; and longest typi
 that test. Chosen: stamps with a jitter of half an interval make 1.5 of one, and a hand does not
 move a robot within three steps of 0.15 s."""
 
+NO_DRIVING_LEAP_OF_DIGITS = 1.5
+"""Step, in units of the last digit of the reference, up to which it is none: a value that is
+rounded steps by one unit more or less than it moved. Chosen: the midpoint between one unit and two.
+It holds where more than half of the steps are as usual to the last digit; the unit is then the
+median of the steps that are not zero."""
+
 NO_DRIVING_AT_ONCE = 0.75
 """Largest share of what is in doubt that may be in one window: a lost track or a failed match is
 over within one (a share of 1), and is found as a jump. A hand that moved a robot ever faster, until
@@ -189,6 +195,13 @@ are reported within half a second."""
 
 NO_DRIVING_TREMBLES = 1e-3
 """Travel of a wheel [m] up to which it stands: the counts of a lifted wheel tremble by less."""
+
+NOISY_PHASE, NOISY_PHASE_LASTS = 3.0, 5.0
+"""Scatter of the reference relative to the rest of the drive, above which it is in a phase of its
+own, and the time [s] over whose poses that is asked. Chosen: errors three times as large have nine
+times the variance, which no one noise of a drive describes. The median of twenty-one poses in both
+coordinates is known to a quarter, so three times is far beyond its chance, and its root, to which a
+phase reaches, is three of its standard deviations."""
 
 REST_LASTS = 0.5
 """Shortest rest [s] that is reported as standing: less is a change of direction."""
