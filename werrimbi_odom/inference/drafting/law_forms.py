@@ -77,9 +77,8 @@ class Seen:
     channels: tuple[str, ...] = ()
     """Extra channels that it reads."""
     smooth: str = ""
-    """Python code for the span of a change per step (acceleration) in laws that are no line: changes
-    add up to the same however often counters are read, but not their squares, nor what has an edge.
-    """
+    """Python code for the span of a change per step (acceleration) in laws that are no line. Unlike
+    the changes, their squares do not add up to the same however often counters are read."""
     digits: int = 4
     """Significant digits that tell its values apart."""
 
