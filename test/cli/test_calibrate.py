@@ -16,7 +16,9 @@ from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.report.calibration.fit_words import fit_in_words
+from werrimbi_odom.report.terminal import as_text
 
 
 @pytest.mark.parametrize("kind", ["umbmark", "noise"])
@@ -104,6 +106,14 @@ def test_one_leg_on_which_the_reference_jumped_is_told_as_one() -> None:
     one = np.arange(found.excluded[0].size) == 3
     said = [getattr(part, "text", "") for part in fit_in_words(replace(found, excluded=(one,)))]
     assert "1 leg on which the reference jumped was left out." in said
+
+
+def test_a_noise_that_is_not_determined_is_below_the_end_of_its_interval() -> None:
+    """A true 4e-4 was "below 2e-04": twice a deviation that is one of the logarithm."""
+    found = wo.calibrate_fit(wo.read_robot(RECORDING / "robot.yaml"), RECORDING).found
+    noise = NoiseEstimate(1.4e-4, 0.58, determined=False)
+    said = as_text(fit_in_words(replace(found, noises={"left_wheel_noise": noise})))
+    assert "not determined (below 4.4e-04 m^0.5)" in said
 
 
 @with_recordings

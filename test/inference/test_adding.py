@@ -70,6 +70,21 @@ def test_a_size_is_stated_no_finer_than_its_law() -> None:
         assert 0.028 * value < each.std < 0.06 * value
 
 
+def test_what_moved_beside_an_added_effect_is_told() -> None:
+    """A delay that stood in for backlash went from 60.8 to 60.0 ms, and nothing was said of it."""
+    true = replace(PLAIN, effects=(find("track_width").using(multiplier=1.01),))
+    given = replace(PLAIN, effects=(find("reference_delay").using(delay=0.006),))
+    found = add_effects([find("track_width")], runs_of(true, (1, 2), 30), given)
+    ((name, before, now),) = found.moved
+    assert (name, before) == ("reference_delay.delay", 0.006)
+    assert now.value == pytest.approx(0.0, abs=0.001)
+    said = " ".join(as_text(words_of(found)).split())
+    assert "of what the file held: reference_delay.delay from 6.0" in said
+    assert json_of(found)["moved"]["reference_delay.delay"]["before"] == 0.006
+    still = replace(found, moved=())
+    assert "of what the file held" not in as_text(words_of(still))
+
+
 @pytest.mark.evidence
 @pytest.mark.parametrize("turning", [0.4, in_evidence(1.0)])
 def test_a_slip_has_the_moment_of_inertia_beside_it_where_the_drives_tell_it(

@@ -182,6 +182,22 @@ def test_a_wheel_noise_that_only_the_few_longest_legs_show_is_nothing_systematic
     assert "times too small over legs of 8 m" in words
 
 
+@pytest.mark.parametrize("every", [15, 20])
+def test_a_reference_that_scatters_for_a_while_is_no_noise_of_the_wheels(every: int) -> None:
+    """Satellites float for a third of the drive: "k were 60 times", where longer legs left 18."""
+    run = recorded(60, every=every)
+    assert run.reference is not None
+    time = run.reference.time - run.reference.time[0]
+    off = np.random.default_rng(0).normal(0.0, 0.01, (2, time.size))
+    off[:, (time < 20.0) | (time > 60.0)] = 0.0
+    places = {"x": run.reference.x + off[0], "y": run.reference.y + off[1]}
+    found = compare([with_reference(run, **places)], RIGHT)
+    assert verdict_of(found).noise == "comes and goes"
+    words = flat(found)
+    assert "which no noise of the wheels does" in words
+    assert "wheels' noise k were" not in words
+
+
 def test_a_wheel_noise_ten_times_too_large_makes_it_too_large(runs: tuple[Run, ...]) -> None:
     unsure = replace(RIGHT, left_wheel_noise=5e-3, right_wheel_noise=5e-3)
     words = flat(compare(runs, unsure))

@@ -68,12 +68,22 @@ PAYLOAD = Seen(
     channels=("payload_kg",),
 )
 
+ACCELERATION = Seen(
+    "acceleration",
+    "m/s^2",
+    lambda side: "steady(drive.speed.change / drive.duration)",
+    middle=0.001,
+    low=-0.8,
+    high=0.9,
+    smooth="steady(0.5 * (drive.left_acceleration + drive.right_acceleration))",
+)
+
 
 @pytest.mark.parametrize(
     ("seen", "amount"),
     [
         pytest.param(seen, amount, marks=[pytest.mark.evidence] * ((row + column) % 4 > 0))
-        for row, seen in enumerate((SPEED, HEADING, TIME, PAYLOAD))
+        for row, seen in enumerate((SPEED, HEADING, TIME, PAYLOAD, ACCELERATION))
         for column, amount in enumerate(AMOUNTS)
     ],
     ids=lambda item: item.name if isinstance(item, Seen) else f"{item.channel}-{item.per}",

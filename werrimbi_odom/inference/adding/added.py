@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
+from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, Moved
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import Consistency
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
@@ -91,6 +91,8 @@ class Added:
     """In the order of the request."""
     fitted: Mapping[str, Mapping[str, FittedParameter]]
     """Fitted parameters of each effect."""
+    moved: tuple[Moved, ...]
+    """Values of effects that the given file held already, which moved by more than their ±."""
     also: tuple[str, ...]
     """Set-up mistakes that were corrected with them."""
     given: Robot

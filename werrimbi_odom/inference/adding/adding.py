@@ -22,6 +22,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, JudgedSide
 from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
 from werrimbi_odom.inference.adding.fitted_parameters import (
+    moved_values,
     parameters_of,
     std_of,
     to_write,
@@ -158,6 +159,7 @@ def add_effects(
             )
             for effect in effects
         },
+        moved=moved_values([effect.name for effect in effects], known, robot),
         also=tuple(name for name in also if name not in chances),
         given=robot,
         robot=final,

@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -102,6 +102,29 @@ def with_other_sign(
         else replace(item, or_else=of_other_sign(fit, name, key))
         for key, item in found.items()
     }
+
+
+class Moved(NamedTuple):
+    """A value of an effect that the robot file held before, which the fit moved."""
+
+    name: str
+    """EFFECT.NAME"""
+    before: float
+    now: FittedParameter
+
+
+def moved_values(asked: Collection[str], fit: Fitted, given: Robot) -> tuple[Moved, ...]:
+    """Values of the given file's other effects that moved by more than their standard deviation."""
+    held = {item.name for item in fit.point.model.robot.effects}
+    found = []
+    for applied in given.effects:
+        if applied.name in {*asked, *CALIBRATED} or applied.name not in held:
+            continue
+        for name, item in parameters_of(applied.effect, fit, given).items():
+            before = applied.values[name]
+            if item.std and item.value is not None and abs(item.value - before) > item.std:
+                found.append(Moved(f"{applied.name}.{name}", before, item))
+    return tuple(found)
 
 
 def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> Remark:

@@ -231,7 +231,8 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     """Verdict on the noise by the dispersion of the legs; `too small` if one factor explains it.
 
     The factor is estimated at the longest leg length with many legs, or where that shows nothing
-    at the length whose NEES is largest, and compared with that at the requested length. The result
+    at the length whose NEES is largest, and compared with that at the requested length, and with
+    the most that longer legs leave open, as the noise of a wheel adds up along them. The result
     is never too small or too large unless NEES is, at some length.
     """
     many = [item for item in comparison.lengths if item.all.figures.count >= rules.MANY_LEGS]
@@ -254,7 +255,12 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     if factor.determined:
         if factor.low > rules.ALIKE * short.high:
             return "grows" if longest.leg > main.leg else "comes and goes", factor, longest.leg
-        if short.low > rules.ALIKE * factor.high:
+        beyond = (item.all for item in comparison.lengths if item.leg > longest.leg)
+        most = min(
+            (each.noise.high for each in beyond if each.figures.count >= rules.FEWEST_LEGS),
+            default=np.inf,
+        )
+        if short.low > rules.ALIKE * factor.high or factor.low > rules.ALIKE * most:
             return "comes and goes", factor, longest.leg
         return "too small", factor, longest.leg
     growing = trend_of(scatter) == "longer" or longest.leg > main.leg

@@ -114,6 +114,13 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
         names = ", ".join(dict.fromkeys(cell.name for cell in cells))
         raise InputError(f"no law can be drafted that is a line, step or curve in {names}")
     least = min(option.fit.total for option in options)
+    if not least < final.total:  # as likely without it, for what its parameters cost
+        names = ", ".join(dict.fromkeys(option.plan.claim.variable for option in options))
+        raise InputError(
+            f"no simple law of {names} explains the errors, though they go with it: what was "
+            "fitted is nothing beside its ±. `depends_on` in the JSON of `werrimbi diagnose` has "
+            "the curve"
+        )
     near = [option for option in options if option.fit.total < least + rules.RIVAL]
     best = min(near, key=lambda option: (option.plan.form.numbers, option.fit.total))
     show(0.95, "writing")

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 
 INDENT = "    "
+_SQUARED = {"s/m*s/m": "s^2/m^2", "1/m/m": "1/m^2", "1/s/s": "1/s^2", "s^2/m*s^2/m": "s^4/m^2"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +76,9 @@ class Seen:
     per_run: bool = False
     channels: tuple[str, ...] = ()
     """Extra channels that it reads."""
-    rate: bool = False
-    """Whether it is a change per step (acceleration), for which only a line is possible."""
+    smooth: str = ""
+    """Python code for the span of a change per step (acceleration) in laws that are no line. Unlike
+    the changes, their squares do not add up to the same however often counters are read."""
     digits: int = 4
     """Significant digits that tell its values apart."""
 
@@ -98,6 +100,8 @@ class Form:
     """Number of free parameters."""
     constants: tuple[str, ...] = ()
     quadrature: tuple[str, str] | None = None
+    span: str = ""
+    """Python code for the span of the variable, where it is not as in `Seen`."""
     needs_span: bool = False
     harmonic: int = 0
     """Harmonic of a wave with a phase of each run; 0 for any other form."""
@@ -136,10 +140,10 @@ def forms_of(seen: Seen, amount: Amount, size: float) -> tuple[Form, ...]:
     if seen.waves:
         return (_wave(seen, amount, size),)
     forms = [_line(seen, amount, size)]
-    if seen.rate or (seen.name == "direction" and not seen.channels):
-        return tuple(forms)
-    if seen.from_zero:
+    if seen.from_zero or seen.smooth:
         forms.append(_square(seen, amount, size))
+    if seen.smooth or (seen.name == "direction" and not seen.channels):
+        return tuple(forms)
     forms.append(_step(seen, amount, size))
     if len(seen.knots) > 2:
         forms.append(_curve(seen, amount, size))
@@ -176,14 +180,15 @@ def _line(seen: Seen, amount: Amount, size: float) -> Form:
 def _square(seen: Seen, amount: Amount, size: float) -> Form:
     growth = 2.0 * size / max(abs(seen.low), abs(seen.high), 1e-9) ** 2
     unit = unit_per(unit_per(unit_of(amount), seen.unit), seen.unit)
-    unit = {"s/m*s/m": "s^2/m^2", "1/m/m": "1/m^2", "1/s/s": "1/s^2"}.get(unit, unit)
+    unit = _SQUARED.get(unit, unit)
     says = f"the share where {seen.name} is 1 {seen.unit}"
     return Form(
         "square",
         (Declared("growth", unit, 0.0, growth, wide(growth), says),),
-        lambda side: f"growth * mean_square({seen.span(side)})",
+        lambda side: f"growth * mean_square({seen.smooth or seen.span(side)})",
         f"share = growth * {seen.name}^2",
         1,
+        span=seen.smooth,
         needs_span=True,
     )
 

@@ -165,7 +165,7 @@ def _share(variable: str, seen: Seen, form: Form, side: str) -> list[str]:
     if not form.needs_span:
         return [f"{variable} = {form.expression(side)}"]
     seen_as = "seen" if variable == "share" else f"{side}_seen"
-    span = seen.span(side)
+    span = form.span or seen.span(side)
     lines = [f"{seen_as} = {span}"]
     if form.harmonic:
         times = "" if form.harmonic == 1 else f"{form.harmonic} * "

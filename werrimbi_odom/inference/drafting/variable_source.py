@@ -28,6 +28,8 @@ STEADY = {
 }
 """Variables that are constant during a step, as Python code for the left and right wheel."""
 
+_SMOOTH = "steady(0.5 * (drive.left_acceleration + drive.right_acceleration))"
+
 SPANS = {
     "time": "drive.time",
     "distance": "drive.distance",
@@ -71,7 +73,7 @@ def seen_as(variable: Variable) -> Seen | None:
             plain,
             span=lambda side: f"steady({left if side == 'left' else right})",
             per_wheel=left != right,
-            rate=name == "acceleration",
+            smooth=_SMOOTH if name == "acceleration" else "",
         )
     if name.startswith(("left_wheel_angle", "right_wheel_angle")):  # of one, whichever it acts on
         wheel = name.partition("_")[0]

@@ -29,9 +29,12 @@ def gauss_newton(
         design = stacked(runs, point, numbers, prediction)
         best = min(best, float(np.sum(design.white**2)))
         step = step_within(design, ways)
+        inside = _without_stopped(ways, point.model, design, step)
+        if inside is not ways:
+            step = step_within(design, inside)
         if is_small(design, step):
             return point, number > 0
-        for shorter in _shorter_steps(design, ways, step):
+        for shorter in _shorter_steps(design, inside, step):
             tried = replace(point, model=moved(point.model, design, shorter))
             ahead = replace(prediction, relative=predicted_on_path(tried.model, runs))
             if not turns_over(prediction.relative, ahead.relative):
@@ -44,6 +47,22 @@ def gauss_newton(
         if gained < 1e-3:
             return point, number > 0
     return point, True
+
+
+def _without_stopped(ways: Directions, model: Model, design: Design, step: Floats) -> Directions:
+    """The directions without parameters that are at a bound which the step would cross.
+
+    Cut off at the bound, such a step is one of the others for a parameter that does not move: the
+    fit crawls.
+    """
+    stopped = np.zeros(step.size, dtype=np.bool_)
+    for index, ((number, run), move) in enumerate(zip(design.columns, step.tolist(), strict=True)):
+        value = model.value(number, max(run, 0))
+        low, high = number.bounds_about(value)
+        stopped[index] = (value <= low and move < 0.0) or (value >= high and move > 0.0)
+    alone = np.count_nonzero(ways.matrix, axis=0) == 1
+    free = ~(alone & np.any(ways.matrix[stopped] != 0.0, axis=0))
+    return ways if free.all() else replace(ways, matrix=ways.matrix[:, free])
 
 
 def is_small(design: Design, step: Floats) -> bool:

@@ -58,8 +58,6 @@ class NoiseEstimate:
     @property
     def std(self) -> float:
         """Standard deviation to report with the value (`upper_part`)."""
-        if not self.determined:
-            return self.value * self.share
         return upper_part(self.value, self.share)
 
 
@@ -225,8 +223,8 @@ def noise_estimates(
         sigmas[moving] = np.exp(0.5 * logs)
     share = np.zeros(len(_ALL))
     shares = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    for index, log in most.items():  # so that two standard deviations reach that far
-        shares[index] = 0.5 * np.exp(log) / sigmas[moving][index]
+    for index, log in most.items():  # so that the interval reaches that far
+        shares[index] = (log - np.log(sigmas[moving][index])) / NORMAL_95
     share[moving] = shares
     told = moving | np.isin(
         _ALL, [name for name, known in zip(NOISES[2:], held, strict=True) if known]

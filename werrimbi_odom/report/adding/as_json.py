@@ -26,6 +26,10 @@ def json_of(added: Added) -> dict[str, Any]:
             }
             for name, item in added.parameters.items()
         },
+        "moved": {
+            each.name: {"before": each.before, **picked(each.now, "value std")}
+            for each in added.moved
+        },
         "train": _side(added, added.train),
         "holdout": {
             **_side(added, added.holdout),

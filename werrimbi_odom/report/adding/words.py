@@ -14,7 +14,13 @@ from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_wor
 from werrimbi_odom.report.diagnosis.remarks import little_words
 from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_words
-from werrimbi_odom.report.number_format import each_its_own, listed, quantity, scaled_with_std
+from werrimbi_odom.report.number_format import (
+    each_its_own,
+    in_unit,
+    listed,
+    quantity,
+    scaled_with_std,
+)
 from werrimbi_odom.report.phrases import (
     either_side,
     jumps_words,
@@ -29,7 +35,7 @@ def words_of(added: Added) -> list[Part]:
     return [
         *paragraphs([_headline(added)]),
         *_parameters(added),
-        *paragraphs([_sizes(added)], apart=True),
+        *paragraphs([_sizes(added), *_moved(added)], apart=True),
         _errors(added),
         *paragraphs(_remarks(added)),
     ]
@@ -74,6 +80,21 @@ def _sizes(added: Added) -> str:
     if not words:
         return "Base and radii stay as the robot file has them."
     return f"On the robot: {words}. It is written as the robot file's multipliers."
+
+
+def _moved(added: Added) -> list[str]:
+    """What else the file holds another value of now."""
+    told = []
+    for name, before, now in added.moved:
+        ends = [
+            in_unit(value, now.std or math.nan, now.declared.unit)
+            for value in (before, now.value or 0.0)
+        ]
+        (old, its), (new, unit) = ends
+        told.append(
+            f"{name} from {old.partition(' ±')[0]} {its}".rstrip() + f" to {new} {unit}".rstrip()
+        )
+    return [f"Fitted anew with it, of what the file held: {listed(told)}."] if told else []
 
 
 def value_told(item: FittedParameter) -> str:

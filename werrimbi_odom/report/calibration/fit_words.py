@@ -100,7 +100,7 @@ def _values(result: Calibration) -> Table:
     for name, noise in result.noises.items():
         unit = _UNITS[name]
         before = getattr(result.fit.robot, name, None)
-        value = f"not determined (below {2.0 * noise.std:.0e} {unit})"
+        value = f"not determined (below {noise.interval[1]:.1e} {unit})"
         if noise.determined and result.trusted:
             value = scaled_with_std(noise.value, noise.std, unit)
         elif noise.determined:
