@@ -19,7 +19,7 @@ from werrimbi_odom.inference.legs.even_stamps import (
     with_even_scan_stamps,
     with_even_stamps,
 )
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.robot import Robot
 
 PERIOD = 0.2

@@ -13,7 +13,7 @@ from test.inference.test_held_or_carried import held
 from test.inference.test_late_clock import later
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Run, Ticks
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 
 TURNED = (12.4, 16.0, 16.3, 13.5, 12.9, 13.5, 13.1, 13.1, 14.0, 15.5)
 """A Roomba's turn by its one turning wheel in each second [degrees]; its gyro saw 17.4 in all."""

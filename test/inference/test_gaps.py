@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_for_fit
 from werrimbi_odom.inference.legs.gaps import STUCK, gaps_in
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 

@@ -20,8 +20,8 @@ from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import at_edges
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 

@@ -27,9 +27,10 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.agreement import Agreement
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.legs.held_or_carried import _stretches, with_no_driving
+from werrimbi_odom.inference.legs.held_or_carried import _stretches
 from werrimbi_odom.inference.legs.measured_motion import judged_motion
 from werrimbi_odom.inference.legs.motion_states import LOST, driven
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.legs.windows import Windows
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words

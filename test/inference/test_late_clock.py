@@ -29,8 +29,8 @@ from werrimbi_odom.inference.diagnosis.effect_support import able
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import at_edges
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.records import record_of
 

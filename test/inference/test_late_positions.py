@@ -16,7 +16,8 @@ import pytest
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import NoDriving, Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.prepared_runs import prepare
-from werrimbi_odom.inference.legs.held_or_carried import HELD, with_no_driving
+from werrimbi_odom.inference.legs.held_or_carried import HELD
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 
 RATE = 20
 NOISE = 6e-3

@@ -20,8 +20,8 @@ from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.legs import count_interpolation
 from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, every_pose, match
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, divided
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 

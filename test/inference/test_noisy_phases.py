@@ -14,7 +14,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.report.phrases import left_out_words
 
 MACHINE = WhiteNoiseRobot()

@@ -31,8 +31,8 @@ from werrimbi_odom.inference.comparison.prepared_runs import (
 )
 from werrimbi_odom.inference.legs.cutting import with_stated_noise
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.calibration.document import leg_figure, noise_figure
 from werrimbi_odom.report.calibration.fit_words import fit_in_words, fit_json

@@ -19,8 +19,8 @@ from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_pose
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.motion_states import driven
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
 from werrimbi_odom.inference.set_up.search import knows_left, mistakes_without_sizes

@@ -23,7 +23,7 @@ from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run, Ticks, by_hand
 from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
 from werrimbi_odom.files.text_files import replacing
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.end_of_piece import PieceTolerance

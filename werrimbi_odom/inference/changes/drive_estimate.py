@@ -28,7 +28,7 @@ from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -30,9 +30,9 @@ from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.cutting import cut_for_fit, ends_in
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, MatchedRun, divided
 from werrimbi_odom.inference.legs.matched_run import joined as joined_legs
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 

@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.run_phases import fitted_per_run, model_in_runs
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes, on_the_clock_of
 from werrimbi_odom.model.robot import Robot
 

@@ -10,31 +10,20 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.files.run import NoDriving, Reference
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.agreement import Agreement, agreement_of_turns
-from werrimbi_odom.inference.legs.blanked_poses import without_useless_poses
-from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
+from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.displacement_agreement import agreement_of_displacements
-from werrimbi_odom.inference.legs.even_stamps import (
-    in_packets_of,
-    stamped_together,
-    with_even_scan_stamps,
-)
 from werrimbi_odom.inference.legs.gaps import as_stuck
-from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
-from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
-from werrimbi_odom.inference.legs.motion_states import LOST, SLID, driven
+from werrimbi_odom.inference.legs.motion_states import LOST, SLID
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
-from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -43,40 +32,6 @@ _GRID = 0.1  # grid on which held and carried are told apart [s]
 HELD = "the wheels turned and the robot did not: held, or against a wall"
 CARRIED = "the robot moved and its wheels did not: carried, or pushed"
 BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
-
-
-def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
-    """Attach to a run its stretches without driving, found once and kept by its parts.
-
-    Scan stamps are corrected first (`even_stamps`); a gyro's bias is removed last (`gyro_bias`).
-    The delay that the robot file states is allowed for: a gyro that is late still turns while the
-    wheels stand already.
-    """
-    if run.no_driving is not None or run.reference is None:
-        return run
-    seen, together = with_even_scan_stamps(run.reference), stamped_together(run)
-    seen = replace(in_packets_of(run, seen) if together else seen, stamped_together=together)
-    run = replace(run, reference=seen)
-    try:
-        counters = counters_of(run, robot, limits)
-    except InputError:
-        return run  # cutting into legs raises the error
-    delay = clock_offset(robot)
-    seen, useless = without_useless_poses(seen, counters, robot, delay)
-    in_time = seen.earlier(delay)
-    found = no_driving(counters, in_time, robot)
-    at_rest = None
-    if not seen.has_position.any():  # a gyro
-        spans = driven(counters, robot, found).spans
-        in_time, at_rest = without_bias(in_time, spans, counters, robot)
-    seen = replace(seen, yaw=in_time.yaw)
-    return replace(
-        run,
-        reference=seen,
-        no_driving=tuple(sorted([*found, *useless])),
-        at_rest=at_rest,
-        taken_out=(*run.taken_out, *((part.begin + delay, part.end + delay) for part in useless)),
-    )
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

@@ -21,7 +21,7 @@ from werrimbi_odom.files.mislabelled_columns import YAW_IN_DEGREES
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import effective_track, skids_in_turns
-from werrimbi_odom.inference.legs.held_or_carried import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.set_up.clock_offset_search import lag_of
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
