@@ -73,6 +73,12 @@ def test_a_sound_reference_one_wrong_pose_and_a_place_that_is_lost_are_no_lapse(
     assert found_in(exchanged(run, 20.01, 40.0)) == (), "which third was wrong, nobody knows"
 
 
+def test_a_reference_that_has_not_come_back_as_the_drive_ends_is_no_lapse(run: Run) -> None:
+    """Which of its two places was wrong nobody knows."""
+    last = float(seen_of(run).time[-1])
+    assert all(part.why != "gap" for part in found_in(exchanged(run, last - 0.7, last + 1.0)))
+
+
 def test_what_a_reference_does_once_a_second_is_no_lapse(run: Run) -> None:
     for second in range(5, 55):
         run = exchanged(run, second + 0.01, second + 0.31, 0.1, 0.0)

@@ -126,7 +126,11 @@ ELSEWHERE = {
     "manoeuvres/expected_evidence.py": {"_RELUCTANT": "a rank, by the noise", "_WILLING": "a rank"},
     "set_up/clock_offset_search.py": {"_PERIOD": "of a grid"},
     "set_up/regression.py": {"_LARGE": "the usual one of Tukey's biweight"},
-    "set_up/few_poses.py": {"STEPS": "time that it takes", "NUDGE": "of a derivative"},
+    "set_up/few_poses.py": {
+        "STEPS": "time that it takes",
+        "NUDGE": "of a derivative",
+        "SAME": "rounding",
+    },
 }
 """Named numbers that decide nothing, by file, each with what it is."""
 

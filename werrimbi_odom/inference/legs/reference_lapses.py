@@ -92,9 +92,9 @@ def _away(
             continue
         left = np.abs(np.cumsum(sizes[number:]))
         back = np.flatnonzero(left < rules.JUMP_LASTS * leap)
-        last = at[number + int(back[0])][1] + 1 if back.size else time.size
+        last = at[number + int(back[0])][1] + 1 if back.size else math.inf  # never
         if rules.STRAY_AT_ONCE < last - first - 1 < most:
-            found.append((first, last, leap))
+            found.append((first, int(last), leap))
     # What a reference does all the time, as one that is corrected once a second, is no lapse.
     if sum(last - first for first, last, _ in found) > most:
         return []
