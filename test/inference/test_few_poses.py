@@ -131,6 +131,32 @@ def test_how_far_drives_ended_from_their_start_tells_sizes_far_off_and_no_wiring
     assert tuple(each.effect for each in look_for_mistakes(crossed, file).findings) == told
 
 
+def test_one_drive_that_ended_anywhere_makes_no_wiring_likelier() -> None:
+    """Its tyres slipped: of seven drives by tape it alone spoke for exchanged wheels."""
+    robot, random = WhiteNoiseRobot(0.35, 0.05, 0.05, 5e-4, 5e-4), np.random.default_rng(204)
+    runs = [
+        by_tape(drive(robot, square(1.0, sense), random)) for sense in (1.0, -1.0, 1.0, -1.0, 1.0)
+    ]
+    sound, slipped = (by_tape(drive(robot, wandering(random, 40.0), random)) for _ in range(2))
+    seen = slipped.reference
+    assert seen is not None
+    x, y, yaw = (np.array([0.0, random.uniform(-far, far)]) for far in (4.0, 4.0, 3.0))
+    slipped = replace(slipped, reference=replace(seen, x=x, y=y, yaw=yaw))
+    assert not look_for_mistakes([*runs, sound, slipped], robot.entered(0.05)).findings
+
+
+def test_the_last_pose_may_come_after_the_last_count() -> None:
+    """Of coarse counters; it ended in an IndexError."""
+    random = np.random.default_rng(5)
+    robot = WhiteNoiseRobot(ticks_per_revolution=60.0)
+    run = by_tape(drive(robot, wandering(random, 20.0), random))
+    seen = run.reference
+    assert seen is not None
+    late = replace(run, reference=replace(seen, time=seen.time + np.array([0.0, 0.1])))
+    laid = concatenated(match_for_fit([late], robot.entered(0.05), 1.0, None))
+    assert np.isfinite(laid.drive(robot.entered(0.05)).speed.end).all()
+
+
 def to_and_fro(seed: int) -> Run:
     """Along a line, forwards and backwards, one to six times; a pose before and one after."""
     random, rate = np.random.default_rng(seed), 20

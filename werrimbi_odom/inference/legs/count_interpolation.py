@@ -77,8 +77,8 @@ class Counters:
         return np.append(np.arange(0, last, self.every), last)
 
     def message_at(self, time: Floats) -> NDArray[np.intp]:
-        """Index of the first node at or after some instants."""
-        return np.searchsorted(self.time[self.nodes], time)
+        """Index of the first node at or after some instants; of the last for any after it."""
+        return np.minimum(np.searchsorted(self.time[self.nodes], time), self.nodes.size - 1)
 
     @property
     def are_coarse(self) -> bool:

@@ -69,6 +69,10 @@ def search_sparse(
     setting = next(each for value, each in tried if value > best - SAME)
     if best < given + rules.SPARSE_MARGIN:
         return [], None
+    # One drive with a slip may end anywhere: without the one that says most, it must hold too.
+    said = drives.fit_of_each(setting) - drives.fit_of_each(AS_ENTERED)
+    if said.sum() - said.max() < rules.SPARSE_APART:
+        return [], None
     if measured != "pose" and setting.wired.names():
         return [], None
     left, right, half_base, _ = setting.numbers(track)
@@ -153,7 +157,11 @@ class _Drives:
         )
 
     def fits(self, setting: Setting) -> float:
-        """Log-likelihood of all drives: wheels off by some share, and noisy, under this set-up."""
+        """Log-likelihood of all drives under a set-up."""
+        return float(self.fit_of_each(setting).sum())
+
+    def fit_of_each(self, setting: Setting) -> Floats:
+        """Log-likelihood of each cut: wheels off by some share, and noisy, under this set-up."""
         left, right, half_base, arm = setting.numbers(self.track)
         cuts = self.cuts
         off, of_heading = errors(cuts, left, right, half_base, arm)
@@ -180,8 +188,8 @@ class _Drives:
                 value += _log_wrapped(of_heading.real, of_turn)
             else:
                 value = _log_radius(np.abs(cuts.move), np.abs(cuts.move - off), of_move)
-            values.append(float(np.sum(value)))
-        return max(values)
+            values.append(value)
+        return max(values, key=np.sum)
 
     def _extent(self, left: float, right: float) -> Floats:
         """Root mean square distance of the path from each drive's start, in halves of the base."""
