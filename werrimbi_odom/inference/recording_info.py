@@ -19,6 +19,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.fitting.prediction import tell_lengths
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
 from werrimbi_odom.inference.seldom_measured import tell_sizes
@@ -241,8 +242,7 @@ def _came_back(held: Held) -> bool:
     if held.run is None or held.run.reference is None or held.judged is None:
         return False
     seen = held.run.reference.chosen(held.run.reference.has_position)
-    apart = np.hypot(np.diff(seen.x), np.diff(seen.y)).sum()
-    return bool(apart <= rules.CLOSED * held.judged.way)
+    return not tell_lengths(np.hypot(np.diff(seen.x), np.diff(seen.y)), held.judged.way)
 
 
 def unseen_much(held: Held) -> bool:

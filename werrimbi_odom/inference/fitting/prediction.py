@@ -49,6 +49,14 @@ class Prediction:
     """Heading change of each leg, shape (m,), [rad]."""
 
 
+def tell_lengths(apart: Floats, way: Floats | float) -> bool:
+    """Whether drives tell a radius: whether they ended elsewhere than where they began (`CLOSED`).
+
+    `apart`, `way`: distances between measured places, and driven from one to the next [m].
+    """
+    return float(np.sum(apart)) > rules.CLOSED * float(np.sum(way))
+
+
 def measures_lengths(runs: Concatenated, prediction: Prediction) -> bool:
     """Whether the reference measured lengths that a radius could be told by.
 
@@ -56,7 +64,7 @@ def measures_lengths(runs: Concatenated, prediction: Prediction) -> bool:
     """
     apart = np.hypot(*(runs.finish - runs.start)[:, :2].T)
     known = np.isfinite(apart) & ~runs.gap
-    return float(apart[known].sum()) > rules.CLOSED * float(prediction.length[known].sum())
+    return tell_lengths(apart[known], prediction.length[known])
 
 
 def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:

@@ -172,5 +172,6 @@ def with_columns_per_run(
                 columns.append((number, index))
                 parts.append(column * (runs.run_of_leg == index)[:, None])
     wide = np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
-    sized = measures_lengths(runs, predict_all(model, runs))
+    # Once for these runs: a step of a fit does without a whole prediction.
+    sized = runs.cache.known("sized", lambda: measures_lengths(runs, predict_all(model, runs)))
     return Design(white, wide, tuple(columns), sized)

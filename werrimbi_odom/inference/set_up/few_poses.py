@@ -18,6 +18,7 @@ import numpy as np
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.comparison.residuals import Measure
+from werrimbi_odom.inference.fitting.prediction import tell_lengths
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Setting,
@@ -64,14 +65,12 @@ def search_sparse(
     drives = _Drives(cuts, track, measured == "pose")
     ticks = ratio_of_ticks(robot)
     tried = [(drives.fits(each), each) for each in drives.settings(ticks)]
-    given, best = drives.fits(AS_ENTERED), max(value for value, _ in tried)
+    best = max(value for value, _ in tried)
     # Of those that predict the same, the first. Distances know sizes, and no left from right.
     setting = next(each for value, each in tried if value > best - SAME)
-    if best < given + rules.SPARSE_MARGIN:
-        return [], None
+    more = drives.fit_of_each(setting) - drives.fit_of_each(AS_ENTERED)
     # One drive with a slip may end anywhere: without the one that says most, it must hold too.
-    said = drives.fit_of_each(setting) - drives.fit_of_each(AS_ENTERED)
-    if said.sum() - said.max() < rules.SPARSE_APART:
+    if more.sum() < rules.SPARSE_MARGIN or more.sum() - more.max() < rules.SPARSE_APART:
         return [], None
     if measured != "pose" and setting.wired.names():
         return [], None
@@ -149,11 +148,11 @@ class _Drives:
         """Those that these drives may tell: both wheels' size only if they end somewhere else."""
         cuts = self.cuts
         way = cuts.summed(0.5 * np.abs(cuts.left + cuts.right))
-        closed = np.abs(cuts.move).sum() <= rules.CLOSED * way.sum()
+        sized = tell_lengths(np.abs(cuts.move), way)
         return (
             each
             for each in _settings(ticks)
-            if not (closed and each.left == each.right and each.left != 1.0)
+            if sized or each.left != each.right or each.left == 1.0
         )
 
     def fits(self, setting: Setting) -> float:
