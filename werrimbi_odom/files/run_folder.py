@@ -16,6 +16,7 @@ from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.own_headings import words_about_own_headings
 from werrimbi_odom.files.row_order import in_order
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
+from werrimbi_odom.files.separate_headings import one_kind_of_row
 from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable, replacing
 from werrimbi_odom.model.encoder_online import Counts
@@ -186,7 +187,9 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         remarks += (f"{path.name}: its rows are not in the order of time; they are sorted by t_s",)
     remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
     remarks += _whole_seconds(table, reference.time)
-    return (reference if keep.all() else reference.chosen(keep)), remarks
+    reference, alike = one_kind_of_row(reference if keep.all() else reference.chosen(keep))
+    remarks += (f"{path.name}: {alike}",) if alike else ()
+    return reference, remarks
 
 
 def _on_time(reference: Reference) -> tuple[NDArray[np.bool_], list[str]]:
