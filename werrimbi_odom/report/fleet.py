@@ -53,7 +53,7 @@ class Row:
         if self.figures is None:
             return math.nan, math.nan
         sides = self.figures["holdout"]
-        return _number(sides["before"]), _number(sides["after"])
+        return number(sides["before"]), number(sides["after"])
 
     def values(self, effect: str) -> Mapping[str, Mapping[str, Any]]:
         """Fitted parameters of an effect by name: `value`, `std`, `unit`, `per_run`."""
@@ -108,14 +108,18 @@ def fleet_json(fleet: Fleet) -> dict[str, Any]:
 def believed(parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
     """Parameters of an effect that a table shows.
 
-    Without per-run parameters and those that are not significant; if none is significant, with all
-    shared ones.
+    Without those that are per-run, not determined, or not significant; if none is significant, with
+    all that are shared and determined.
     """
-    shared = {name: item for name, item in parameters.items() if not item["per_run"]}
+    shared = {
+        name: item
+        for name, item in parameters.items()
+        if not item["per_run"] and item["value"] is not None
+    }
     sure = {
         name: item
         for name, item in shared.items()
-        if not abs(_number(item["value"])) < 2.0 * _number(item["std"])
+        if not abs(number(item["value"])) < 2.0 * number(item["std"])
     }
     return sure or shared
 
@@ -126,7 +130,7 @@ def ordered(rows: Sequence[Row], names: Sequence[str]) -> tuple[Row, ...]:
     return tuple(sorted(rows, key=lambda row: place[row.robot]))
 
 
-def _number(value: float | None) -> float:
+def number(value: float | None) -> float:
     """A number from JSON; NaN for null."""
     return math.nan if value is None else float(value)
 
@@ -251,7 +255,7 @@ def error_words(row: Row) -> str:
     if not math.isnan(before):
         return f"{_millimetres(before)} → {_millimetres(after)}"
     turns = {} if row.figures is None else row.figures["holdout"].get("rmse_yaw_rad", {})
-    before, after = (_number(turns.get(side)) for side in ("before", "after"))
+    before, after = (number(turns.get(side)) for side in ("before", "after"))
     if math.isnan(before):
         return ""
     return f"{leg_error(before, 'rad')} → {leg_error(after, 'rad')}"
