@@ -225,7 +225,7 @@ def test_a_drive_that_was_read_and_cannot_be_used_leaves_the_others(months: Path
     found = wo.history(robot, [drives[0], blind]).found
     assert [drive.run.name for drive in found.drives] == ["drive_0"]
     assert [each.run for each in found.unusable] == [Path("blind")]
-    with pytest.raises(InputError, match="no drive can be used; blind: .*no reference"):
+    with pytest.raises(InputError, match=r"no drive can be used; blind: .*no reference"):
         wo.history(robot, blind)
 
 

@@ -99,8 +99,11 @@ def _item(path: Path) -> Item:
 
 
 def _unpacked(item: Item, folder: Path) -> Path:
-    folder.mkdir()
-    place = folder / item.name
+    """Below `folder`, in folders of the user's names: they tell drives of one name apart."""
+    given = Path(item.path)
+    above = [part for part in given.parts[:-1] if part not in (given.anchor, "..")]
+    place = folder.joinpath(*above, item.name)
+    place.parent.mkdir(parents=True)
     if isinstance(item.files, bytes):
         place.write_bytes(item.files)
     elif item.files is not None:
