@@ -23,6 +23,7 @@ from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure
+from werrimbi_odom.report.comparison.document import angle_told, length_told
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.workbench.session import ModelVersion
 
@@ -122,12 +123,21 @@ def leg_told(comparison: Comparison, index: int) -> str:
     """Hover text of one leg in two lines."""
     legs = comparison.legs
     run = comparison.runs[legs.run[index]].run.name
-    along, sideways, heading = legs.errors.error[index]
+    told = ", ".join(f"{name} {size}" for name, size in errors_told(comparison, index).items())
     return (
         f"{style.escaped(run)}, {leg_when(comparison, index)}, {legs.errors.kind[index]}<br>"
-        f"measured − predicted: along {1e3 * along:+.1f} mm, "
-        f"sideways {1e3 * sideways:+.1f} mm, heading {np.degrees(heading):+.2f}°"
+        f"measured − predicted: {told}"
     )
+
+
+def errors_told(comparison: Comparison, index: int) -> dict[str, str]:
+    """Errors of one leg by their names; a dash for what was not measured."""
+    along, sideways, heading = comparison.legs.errors.error[index].tolist()
+    return {
+        "along": length_told(along, signed=True),
+        "sideways": length_told(sideways, signed=True),
+        "heading": angle_told(heading, signed=True),
+    }
 
 
 def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
