@@ -112,6 +112,8 @@ def test_a_run_of_arrays_is_read_again_without_loss(robot: Any, tmp_path: Path) 
         wo.write_run(folder, TIME, LEFT, RIGHT)
     with pytest.raises(wo.InputError, match=r"four columns, .* has the shape \(200, 3\)"):
         wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, np.zeros((ROWS, 3)))
+    with pytest.raises(wo.InputError, match="reference has no poses"):  # no verb would take it
+        wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, np.zeros((0, 4)))
 
 
 def test_a_channel_takes_no_counters_place(robot: Any, tmp_path: Path) -> None:
@@ -127,6 +129,11 @@ def test_a_channel_takes_no_counters_place(robot: Any, tmp_path: Path) -> None:
         with pytest.raises(wo.InputError, match="a column of a table cannot be called"):
             wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, channels={name: np.ones(ROWS)})
     assert not (tmp_path / "other").exists()
+
+
+def test_without_any_recording_there_is_nothing_to_look_into() -> None:
+    with pytest.raises(wo.InputError, match="no recordings were given"):
+        wo.info([])
 
 
 def test_what_a_mask_hides_was_not_measured() -> None:

@@ -118,4 +118,6 @@ def _poses(reference: ArrayLike) -> Floats:
             "reference must have a row for each pose and four columns, t [s], x [m], y [m] and "
             f"yaw [rad], and has the shape {found.shape}"
         )
+    if found.size == 0:
+        raise InputError("reference has no poses; give none for a drive that nothing measured")
     return found.astype(np.float64).T
