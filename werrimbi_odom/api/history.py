@@ -89,22 +89,7 @@ def history(
     InputError
         If no drive is usable; the message gives the reason for the first.
     """
-    return history_of(
-        robot, runs, how_of(**options), like=like, cache=cache, spread=spread, show=show
-    )
-
-
-def history_of(
-    robot: RobotFile,
-    runs: Drives,
-    how: DriveOptions,
-    *,
-    like: RobotFile | None,
-    cache: str | Path | None,
-    spread: Spread | None,
-    show: Show,
-) -> Result[History]:
-    """`history` for the command line."""
+    how = how_of(**options)
     given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
     if not given:
         raise InputError("no drives were given")
