@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -87,9 +88,6 @@ class Fleet:
 
 def fleet_json(fleet: Fleet) -> dict[str, Any]:
     """Complete result as JSON."""
-    verdicts: dict[str, int] = {}
-    for row in fleet.rows:
-        verdicts[row.verdict] = verdicts.get(row.verdict, 0) + 1
     return {
         "robots": [
             {"robot": row.robot, "error": row.error}
@@ -100,7 +98,7 @@ def fleet_json(fleet: Fleet) -> dict[str, Any]:
         "missing": {
             effect: [row.robot for row in rows] for effect, rows in fleet.by_effect.items()
         },
-        "verdicts": dict(sorted(verdicts.items())),
+        "verdicts": dict(sorted(Counter(row.verdict for row in fleet.rows).items())),
         "left": list(fleet.left),
     }
 
@@ -155,10 +153,7 @@ def headline(fleet: Fleet) -> str:
     verdicts = [row.verdict for row in fleet.rows]
     if count := verdicts.count("none"):
         parts.append(f"{count} {_miss(count)} nothing")
-    groups: dict[tuple[str, ...], int] = {}
-    for row in fleet.rows:
-        if row.verdict == "named":
-            groups[row.missing] = groups.get(row.missing, 0) + 1
+    groups = Counter(row.missing for row in fleet.rows if row.verdict == "named")
     largest = sorted(groups.items(), key=lambda item: (-item[1], item[0]))
     for missing, count in largest[:_GROUPS]:
         parts.append(f"{count} {_miss(count)} {listed(missing)}")

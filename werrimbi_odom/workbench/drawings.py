@@ -89,12 +89,8 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
 
 def empty_floor() -> style.Figure:
     """An empty floor plan with equal scales, which can be panned."""
-    figure = style.blank()
-    figure.update_xaxes(title="x [m]")
-    figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
-    style.plain(figure, height=480).update_xaxes(zeroline=False).update_yaxes(zeroline=False)
-    figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
-    return figure
+    figure = style.from_above(style.blank(), 480, zeroline=False)
+    return figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
 
 
 def _add_texts(
@@ -175,8 +171,7 @@ def _joined(
 def gain_figure(steps: Sequence[ModelVersion]) -> style.Figure:
     """Errors of held-out and fitted drives, and the error of the former by noise alone."""
     added = steps[-1].added
-    explained = added is not None and added.explained
-    floor = added.noise_alone(added.holdout) if added is not None and explained else math.nan
+    floor = added.noise_alone(added.holdout) if added and added.explained else math.nan
     errors = [
         ErrorOfModel(
             step.name if step.added is None else f"+ {step.name}",
