@@ -94,8 +94,8 @@ def numbers(name: str, values: ArrayLike) -> NDArray[np.int64] | Floats:
 
     InputError if it holds no numbers; the message has its name.
     """
-    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "iuf":
-        values = values.astype(np.float64).filled(np.nan) if values.mask.any() else values.data
+    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "iuf" and values.mask.any():
+        values = np.ma.filled(values.astype(np.float64), np.nan)
     found = np.asarray(values)
     if found.dtype.kind in "mM":
         raise InputError(
