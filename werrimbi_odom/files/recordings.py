@@ -145,13 +145,11 @@ def gathered(
     """
     drives = [*runs, *holdout]
     references = reference_of_each(drives, how.references)
-    refuse_twice(drive for drive in drives if isinstance(drive, Path))
+    refuse_twice(drives)
     found: list[Run] = []
     for number, drive in enumerate(drives):
         if isinstance(drive, Run):
             run = drive
-            if any(run is other for other in drives[:number]):
-                raise InputError(f"{run.path} is given twice; a drive counts once")
         else:
             show(number / len(drives), f"reading {drive.name}")
             run = _read(drive, source, how, references[number])
@@ -219,14 +217,15 @@ def _read(path: Path, source: RobotFile, how: DriveOptions, reference: Path | No
     )
 
 
-def refuse_twice(paths: Iterable[Path]) -> None:
+def refuse_twice(drives: Iterable[Run | Path]) -> None:
     """Raise on a repeated drive, which would make every result too precise.
 
-    InputError if two paths lead to the same drive.
+    InputError if two paths lead to the same drive, or one that was read is given again.
     """
-    seen: set[str] = set()
-    for path in paths:
-        place = place_of(path)
+    seen: set[str | int] = set()
+    for drive in drives:
+        place = id(drive) if isinstance(drive, Run) else place_of(drive)
         if place in seen:
+            path = drive.path if isinstance(drive, Run) else drive
             raise InputError(f"{path} is given twice; a drive counts once, in RUN or in --holdout")
         seen.add(place)
