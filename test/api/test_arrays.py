@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import warnings
 from pathlib import Path
@@ -111,6 +113,25 @@ def test_a_run_of_arrays_is_read_again_without_loss(robot: Any, tmp_path: Path) 
         wo.write_run(folder, TIME, LEFT, RIGHT)
     with pytest.raises(wo.InputError, match=r"four columns, .* has the shape \(200, 3\)"):
         wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, np.zeros((ROWS, 3)))
+    for name in ("motor, left", "t_s", " "):
+        with pytest.raises(wo.InputError, match="a channel cannot be called"):
+            wo.write_run(tmp_path / "named", TIME, LEFT, RIGHT, channels={name: TIME})
+
+
+def test_a_full_disk_leaves_no_drive_without_its_reference(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[int] = []
+
+    def full(file: int) -> None:
+        written.append(file)
+        if len(written) > 1:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(wo.InputError, match="No space left on device"):
+        wo.write_run(tmp_path / "drive", TIME, LEFT, RIGHT, np.zeros((ROWS, 4)))
+    assert not (tmp_path / "drive" / "ticks.csv").exists()
 
 
 @pytest.mark.parametrize("of", ["ticks", "reference"])
