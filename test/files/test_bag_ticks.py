@@ -205,6 +205,10 @@ def test_counters_as_floats_are_read_where_they_are_asked_for(
     run = read_run(bag, robot(), ticks_topic="/ticks")
     assert run.ticks.left.tolist() == [100, 200, 300]
     assert run.ticks.right.tolist() == [-3, -6, -9]
+    entries.append(("/ticks", 4 * MS, ros.floats(1e300, -12.0)))  # memory that nothing was put into
+    run = read_run(ros.write(tmp_path / "spoilt", entries), robot(), ticks_topic="/ticks")
+    assert run.ticks.left.tolist() == [100, 200, 300]
+    assert any("with a value that is no number" in note for note in run.notes)
 
 
 @pytest.mark.parametrize("bits", [16, 32])
