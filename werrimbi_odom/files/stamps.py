@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.bag import Bag, BagMessage
 from werrimbi_odom.files.frames import is_static
-from werrimbi_odom.files.run import Collected, Reference, Ticks
+from werrimbi_odom.files.run import Collected, Ticks
 from werrimbi_odom.files.run_checks import APART, span_in_words
 from werrimbi_odom.model.pose import Floats
 
@@ -176,7 +176,7 @@ def newest_of_bursts(time: Floats) -> tuple[NDArray[np.bool_], str]:
     keep = np.ones(time.size, dtype=np.bool_)
     mean = _mean_interval(gaps)
     apart = gaps >= _BURST * mean
-    if mean >= _SLOW or not gaps.size:
+    if mean >= _SLOW or mean == 0.0:
         return keep, ""
     if apart.mean() < 1.0 - _MOSTLY:
         keep[:-1] = apart
@@ -311,27 +311,25 @@ def on_one_clock(
 ) -> tuple[Ticks, list[Collected], tuple[str, ...]]:
     """Ticks and references by the recorder's clock, if they are further apart than a search covers.
 
-    `late`: `Lateness.usual` of the ticks, then of each reference. Result: ticks and references
-    as given, or moved; then what was done, in words for the user, empty if nothing was.
+    `late`: `Lateness.usual` of the ticks, then of each reference; one of which nothing is known is
+    taken to have the ticks' clock. Result: ticks and references as given, or moved; then what was
+    done, in words for the user, empty if nothing was.
     """
+    late = [late[0] if np.isnan(each) else each for each in late]
     apart = np.abs(np.subtract(late[1:], late[0]))
-    if not (apart > APART).any():  # also if one is unknown
+    if not (apart > APART).any():  # also if nothing is known of the ticks
         return ticks, list(found), ()
-    far = found[int(np.nanargmax(apart))].reference
+    far = found[int(np.argmax(apart))].reference
     told = (
         f"the stamps of wheels (t_s {span_in_words(ticks)}) and reference ({span_in_words(far)}) "
-        f"are of two clocks, {np.nanmax(apart):.4g} s apart by when both were received: both are "
+        f"are of two clocks, {apart.max():.4g} s apart by when both were received: both are "
         "put on the recorder's clock, and what the messages took to come is left, as a delay"
     )
     moved = [
         each._replace(
-            reference=_moved(each.reference, by),
+            reference=each.reference.earlier(-by),
             taken_out=tuple((begin + by, end + by) for begin, end in each.taken_out),
         )
         for each, by in zip(found, late[1:], strict=True)
     ]
     return replace(ticks, time=ticks.time + late[0]), moved, (told,)
-
-
-def _moved(reference: Reference, by: float) -> Reference:
-    return reference.earlier(-by)
