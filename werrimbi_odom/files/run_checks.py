@@ -21,6 +21,9 @@ from werrimbi_odom.model.robot import Robot
 
 REVERSED = 0.9
 """Share of steps back in time from which rows are taken for reversed; shuffled ones have half."""
+LEAP = 1e7
+"""Step forward of the times [s], and in usual intervals if these are longer, from which on a clock
+was set: no recording pauses for four months."""
 APART = 5.0
 """Largest time between reference and ticks that a search for the delay covers [s]
 (docs/set_up.md)."""
@@ -42,6 +45,7 @@ def refuse_unjudgeable(run: Run, robot: Robot) -> None:
     _refuse_back(run, "the ticks go", run.ticks.time)
     if clock_was_set_back(run.reference):
         _refuse_back(run, "the reference goes", run.reference.time)
+    _refuse_leap(run, run.reference)
     if words := words_about_one_clock_unit(run.ticks, run.reference):
         raise InputError(f"{run.path}: {words}")
     _refuse_apart(run, run.reference)
@@ -96,6 +100,20 @@ def _refuse_back(run: Run, what: str, time: Floats) -> None:
     if back.size > FEW_STEPS_BACK:
         raise InputError(f"{where}: the rows are not in the order of time; sort them by t_s")
     raise InputError(f"{where}: the clock was set back; cut the run there into two")
+
+
+def _refuse_leap(run: Run, reference: Reference) -> None:
+    """Raise if the clock was set forward, as where a robot gets the date from a network."""
+    (begin, end), (first, last) = _span(run.ticks), _span(reference)
+    time = run.ticks.time
+    time = time[(time >= max(begin, first)) & (time <= min(end, last))]
+    steps = np.diff(time)
+    if steps.size and steps.max() > LEAP * max(1.0, float(np.median(steps))):
+        row = int(steps.argmax())
+        raise InputError(
+            f"{run.path}: the times of the ticks leap from t_s {time[row]:.10g} to "
+            f"{time[row + 1]:.10g}: the clock was set forward; cut the run there into two"
+        )
 
 
 def _times(count: int) -> str:
