@@ -367,6 +367,17 @@ def test_a_reading_that_failed_hides_no_increments(seed: int) -> None:
         refuse_wrong_columns(made)
 
 
+@pytest.mark.parametrize("late", ["ticks", "reference"])
+def test_a_message_that_came_late_hides_no_increments(late: str) -> None:
+    """Its stamp lies before that of the row above, and nothing was looked at."""
+    made = counted(driven(1), lambda total: np.diff(total, prepend=total[0]))
+    assert made.reference is not None
+    time = (made.ticks if late == "ticks" else made.reference).time
+    time[40] = time[38] - 1e-3
+    with pytest.raises(InputError, match="not running totals: write the sum"):
+        refuse_wrong_columns(made)
+
+
 def test_a_clock_that_is_set_forward_is_told() -> None:
     """A robot without a battery for its clock gets the date ten seconds after its start."""
     run = driven(1)

@@ -103,12 +103,11 @@ def _no_signs(ticks: Ticks, found: _Windows) -> str:
 
 
 def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
-    seen = reference.time
-    forward = bool((np.diff(ticks.time) >= 0.0).all() and (np.diff(seen) >= 0.0).all())
     counts = np.stack([ticks.left, ticks.right]).astype(np.float64)
     read = np.isfinite(counts).all(axis=0)
-    time, counts = ticks.time[read], counts[:, read]
-    if not forward or min(time.size, seen.size) < FEWEST:
+    time, seen = (np.maximum.accumulate(each) for each in (ticks.time[read], reference.time))
+    counts = counts[:, read]
+    if min(time.size, seen.size) < FEWEST:
         return None
     begin, end = max(time[0], seen[0]), min(time[-1], seen[-1])
     wide = max(WINDOW, 3.0 * float(np.median(np.diff(time))))
