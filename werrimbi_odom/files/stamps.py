@@ -107,16 +107,18 @@ def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:
     For transforms, those of the rarest one: several nodes send on one topic, each with its own
     stamps, and a measurement is slower than the odometry below it.
     """
-    times: dict[str, dict[tuple[str, ...], list[tuple[float, float]]]] = {}
+    times: dict[str, dict[tuple[str, ...], array[float]]] = {}
     for message in bag.messages(topics):
         stamp = header_stamp(message.content)
-        sender = times.setdefault(message.topic, {}).setdefault(_frames(message.content), [])
-        sender.append((stamp or np.nan, message.received / 1e9))
+        sender = times.setdefault(message.topic, {}).setdefault(
+            _frames(message.content), array("d")
+        )
+        sender.extend((stamp or np.nan, message.received / 1e9))
     found = {}
     for topic, senders in times.items():
-        enough = [rows for rows in senders.values() if len(rows) >= _FEWEST]
+        enough = [rows for rows in senders.values() if len(rows) >= 2 * _FEWEST]
         if enough:
-            found[topic] = _judged(*np.array(min(enough, key=len)).T)
+            found[topic] = _judged(*np.array(min(enough, key=len)).reshape(-1, 2).T)
     return found
 
 
