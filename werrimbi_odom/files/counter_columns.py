@@ -14,7 +14,7 @@ from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 FEWEST = 20
-"""Rows or windows below which nothing is concluded."""
+"""Rows, windows or chords below which nothing is concluded."""
 
 WINDOW = 0.5
 """Time over which counts and motion are compared [s]: longer than most delays of a reference."""
