@@ -186,10 +186,9 @@ def reference_of_each(
 
 def _with_one_scale(runs: Sequence[Run], fitted: int) -> list[Run]:
     """Apply the common gyro scale, estimated from the fitted drives, to merged headings."""
-    references = [run.reference for run in runs]
-    known = [each for each in references if each is not None]
-    scaled = iter(with_one_scale(known, [each for each in references[:fitted] if each is not None]))
-    return [run if run.reference is None else replace(run, reference=next(scaled)) for run in runs]
+    references = [run.reference for run in runs if run.reference is not None]  # of all
+    scaled = with_one_scale(references, references[:fitted])
+    return [replace(run, reference=each) for run, each in zip(runs, scaled, strict=True)]
 
 
 def _kind_of(runs: Sequence[Run]) -> ReferenceKind:
