@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import warnings
 from pathlib import Path
@@ -125,8 +127,8 @@ def test_a_channel_takes_no_counters_place(robot: Any, tmp_path: Path) -> None:
     again = wo.read_run(folder, robot, reference_topic="none").ticks
     assert np.array_equal(again.left, LEFT)
     assert np.array_equal(again.channels["left"], np.ones(ROWS))
-    for name in ("left_ticks", "a,b", "", " a", "a\n"):
-        with pytest.raises(wo.InputError, match="a column of a table cannot be called"):
+    for name in ("left_ticks", "t_s", "motor, left", "", " a", "a\n"):
+        with pytest.raises(wo.InputError, match="a channel cannot be called"):
             wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, channels={name: np.ones(ROWS)})
     assert not (tmp_path / "other").exists()
 
@@ -142,6 +144,22 @@ def test_what_a_mask_hides_was_not_measured() -> None:
     assert np.array_equal(ticks_of([0, 1, 2], left, [0, 1, 2]).left, [0, np.nan, 2], equal_nan=True)
     whole = np.ma.array([0, 1, 2])
     assert ticks_of([0, 1, 2], whole, [0, 1, 2]).left.dtype == np.int64
+
+
+def test_a_full_disk_leaves_no_drive_without_its_reference(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[int] = []
+
+    def full(file: int) -> None:
+        written.append(file)
+        if len(written) > 1:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(wo.InputError, match="No space left on device"):
+        wo.write_run(tmp_path / "drive", TIME, LEFT, RIGHT, np.zeros((ROWS, 4)))
+    assert not (tmp_path / "drive" / "ticks.csv").exists()
 
 
 @pytest.mark.parametrize("of", ["ticks", "reference"])

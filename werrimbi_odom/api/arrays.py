@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Ticks, counts_of
-from werrimbi_odom.files.run_folder import REFERENCE_COLUMNS, TICKS_COLUMNS, write_run_folder
+from werrimbi_odom.files.run_folder import REFERENCE_COLUMNS, write_run_folder
 from werrimbi_odom.model.pose import Floats
 
 
@@ -51,9 +50,6 @@ def write_run(
     InputError
         If an array has another shape, a table cannot have a channel's name, or the folder exists.
     """
-    for name in channels or {}:
-        if name in TICKS_COLUMNS or not re.fullmatch(r'[^\s,"#]([^\n,"]*[^\s,"])?', name):
-            raise InputError(f"a column of a table cannot be called {name!r}")
     ticks = ticks_of(t, left, right, channels)
     poses = None if reference is None else Reference(*_poses(reference))
     return write_run_folder(Path(path), ticks, poses)

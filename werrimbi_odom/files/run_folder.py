@@ -68,15 +68,22 @@ def read_run_folder(path: str | Path) -> Run:
 def write_run_folder(path: Path, ticks: Ticks, reference: Reference | None) -> Path:
     """Write a run folder, to be read again without loss; stated sigmas are left out.
 
-    InputError if it exists, or cannot be written.
+    InputError if it exists, or cannot be written, or a channel has no name for a column.
     """
+    names = (*TICKS_COLUMNS, *ticks.channels)
+    for name in ticks.channels:
+        if names.count(name) > 1 or name != name.strip() or not name or set(name) & set(',"\r\n'):
+            raise InputError(
+                f"{path}: a channel cannot be called {name!r}: a column has a name of its own, "
+                "without commas, quotes and line ends"
+            )
     try:
         path.mkdir(parents=True)
-        counts = (ticks.time, ticks.left, ticks.right, *ticks.channels.values())
-        _write(path / TICKS, (*TICKS_COLUMNS, *ticks.channels), counts)
-        if reference is not None:
+        if reference is not None:  # first: what is left of a full disk is then no run without it
             poses = (reference.time, reference.x, reference.y, reference.yaw)
             _write(path / REFERENCE, REFERENCE_COLUMNS, poses, missing="")
+        counts = (ticks.time, ticks.left, ticks.right, *ticks.channels.values())
+        _write(path / TICKS, names, counts)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}; a new folder is wanted") from error
     return path

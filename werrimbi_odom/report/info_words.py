@@ -11,9 +11,9 @@ from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_chain import POSTDATED
 from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.files.bag_wheels import ARRAYS, FLOATS
+from werrimbi_odom.files.held_poses import words_about_held
 from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
-from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
