@@ -19,7 +19,7 @@ from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.simulation.bag import EPOCH
+from werrimbi_odom.simulation.bag import EPOCH, write_bag
 from werrimbi_odom.simulation.hidden.axle_and_reference import DriftingClock
 from werrimbi_odom.simulation.hidden.knocks import ReferenceJump
 from werrimbi_odom.simulation.recording import Happened
@@ -224,6 +224,23 @@ def test_what_is_made_in_the_record_of_a_reference_shows_in_the_localiser() -> N
     first = apart[at > 0.2][0]
     np.testing.assert_allclose(first, [jump.along_m, jump.sideways_m], atol=1e-9)
     np.testing.assert_array_equal(drive.wheels, seen().wheels)
+
+
+def test_a_counter_that_keeps_its_zero_tells_the_angle_of_its_wheel() -> None:
+    keeping = replace(ROBOT, counters_keep_zero=True)
+    drive = sim.as_in_the_field(recorded(), keeping, seed=5, robot_seed=6)
+    np.testing.assert_allclose(drive.imu, seen().imu)
+    first = recorded().true_path.left_angle_rad[0], recorded().true_path.right_angle_rad[0]
+    np.testing.assert_allclose(drive.wheels[0, 2:], first, atol=0.01)
+
+
+def test_a_bag_names_the_wheels_as_the_robot_file_does(tmp_path: Path) -> None:
+    four = replace(ROBOT, wheels_a_side=2)
+    robot = wo.read_robot(sim.write_robot_file(four, tmp_path / "robot.yaml"))
+    bag = write_bag(recorded(), four, tmp_path / "bag")
+    run = wo.read_run(bag, robot, ticks_topic="/joint_states", reference_topic="/reference")
+    travel = np.ptp(recorded().left_ticks) * robot.robot.left_tick
+    assert np.ptp(run.ticks.left) * robot.robot.left_tick == pytest.approx(travel, rel=1e-6)
 
 
 def test_events_have_the_time_of_the_bag() -> None:

@@ -147,10 +147,9 @@ class SimulatedRobot(Node):  # type: ignore[misc]
 
     def _publish_joints(self, time: float, _: float) -> None:
         counts = self._robot.counters(time)
-        message = JointState(
-            name=["left_wheel_joint", "right_wheel_joint"],
-            position=[count * self._tick for count in counts],
-        )
+        wheels = zip(self._believed.joints, counts, strict=True)
+        angles = {name: count * self._tick for names, count in wheels for name in names}
+        message = JointState(name=list(angles), position=list(angles.values()))
         message.header.stamp = self._stamp(time)
         self._joints.publish(message)
 

@@ -122,7 +122,8 @@ def as_in_the_field(
     end = float(path.t_s[-1])
 
     at = sampling_times(sensors.wheels_hz, end, rng)
-    counted = _counted(recording, path, robot, at, rng.integers(-100_000, 100_000, 2))
+    zeros = rng.integers(-100_000, 100_000, 2) * (not robot.counters_keep_zero)
+    counted = _counted(recording, path, robot, at, zeros)
     counted_at = _stamped(at, sensors, rng)
 
     at = sampling_times(sensors.imu_hz, end, rng)
