@@ -58,8 +58,8 @@ class Slip(NoSlip):
         return self._guard.wheels(tracker.seconds(tracker.stamp), tracker.heading)
 
     def retune(self, robot: Robot) -> None:
-        """Change the track."""
-        self._guard.track = robot.track
+        """Change the track, and the travel per count."""
+        self._guard.track, self._guard.tick = robot.track, max(robot.left_tick, robot.right_tick)
 
     def status(self) -> dict[str, str]:
         """Entries for /diagnostics."""
