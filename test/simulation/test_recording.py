@@ -244,6 +244,28 @@ def test_the_gyro_integrates_to_the_turn_and_memory_stays_bounded() -> None:
     assert len(live._rows) == 2 * KEPT
 
 
+def test_a_late_reference_is_late_by_as_much_live() -> None:
+    """Also by more than the memory of a prompt one holds."""
+    odd = simulation.hide("reference_delay", 4.0, seed=1).peculiarity
+    live = simulation.LiveRobot(ROBOT, seed=1, start=START, hidden=[odd], reference=EXACT)
+    live.command(0.2, 0.0)
+    path = {}
+    for step in range(1700):
+        live.advance()
+        path[step] = live.pose
+    assert live.reference(live.time)[:2] == pytest.approx(path[1699 - 800][:2], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name", ["reference_jump", "reference_clock_drift", "reference_gyro_drift"]
+)
+def test_what_is_made_in_a_whole_record_is_refused_live(name: str) -> None:
+    """Nothing was hidden, and the truth said that it was."""
+    odd = simulation.hide(name, seed=1).peculiarity
+    with pytest.raises(ValueError, match="is made in a whole record"):
+        simulation.LiveRobot(ROBOT, seed=1, hidden=[odd])
+
+
 def test_the_lidar_sees_the_room_from_where_the_robot_is() -> None:
     live = simulation.LiveRobot(ROBOT, seed=2, room=arena(2.6))
     live.command(0.4, 0.0)

@@ -70,6 +70,7 @@ class DriftingClock(Peculiarity):
     another one in each. The rate changes little, with the temperature of the quartz.
     """
 
+    live = False
     rate: float
     """Mean of what its clock gains in a second [s/s]."""
     unset: float = 100.0
@@ -90,6 +91,7 @@ class WarmingGyro(Peculiarity):
     zero at the start of a drive, as after a calibration.
     """
 
+    live = False
     rate: float
     """Mean size of the initial rate of change of the bias over drives [rad/s^2]."""
     settles: float = 200.0
