@@ -149,8 +149,8 @@ def as_in_the_field(
         jumps += odd.happened(float(seen.t_s[-1]), robot, np.random.default_rng([seed, 79, number]))
     poses = np.column_stack([seen.reference_x_m, seen.reference_y_m, seen.reference_yaw_rad])
     localiser = np.column_stack([stamps + (seen.reference_t_s - at), received, poses + errors])
-    left = seen.left_ticks * (TURN / robot.left_ticks_per_revolution)
-    right = seen.right_ticks * (TURN / robot.right_ticks_per_revolution)
+    left = np.asarray(seen.left_ticks * (TURN / robot.left_ticks_per_revolution), float)
+    right = np.asarray(seen.right_ticks * (TURN / robot.right_ticks_per_revolution), float)
     wheels = np.column_stack([*counted_at, left, right])
     happened = [
         *(each for each in jumps if each.of == "reference_jump"),
