@@ -83,6 +83,12 @@ def _overriding(overridable: bool) -> QoSOverridingOptions | None:
     return QoSOverridingOptions.with_default_policies() if overridable else None
 
 
+def stamp_at(seconds: float) -> Stamp:
+    """Convert a time [s] that is not negative to a stamp."""
+    whole, part = divmod(round(1e9 * seconds), 10**9)
+    return Stamp(sec=whole, nanosec=part)
+
+
 def stamp_of(message: Any, clock: Clock) -> Stamp:
     """Stamp of a message; where it has none (zero), the present time."""
     stamp = message.header.stamp

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bag import EPOCH
-from .engine import AxlePose, Floats, TruePath
+from .engine import AxlePose, Floats
 from .held_and_carried import TURN, carried_in, held_in, later
 from .hidden.hidden_effect import Peculiarity
 from .lidar import Lidar, Sweeps, scanned
@@ -121,10 +121,9 @@ def as_in_the_field(
     path, carried = carried_in(path, rng)
     end = float(path.t_s[-1])
 
-    at = sampling_times(sensors.wheels_hz, end, rng)
+    read_at = sampling_times(sensors.wheels_hz, end, rng)
     zeros = rng.integers(-100_000, 100_000, 2) * (not robot.counters_keep_zero)
-    counted = _counted(recording, path, robot, at, zeros)
-    counted_at = _stamped(at, sensors, rng)
+    read_stamps = _stamped(read_at, sensors, rng)
 
     at = sampling_times(sensors.imu_hz, end, rng)
     exact = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
@@ -140,9 +139,8 @@ def as_in_the_field(
     x, y, yaw = exact.measure(path, at, rng)
     stamps, received = _stamped(at, sensors, rng)
 
-    seen = replace(
-        counted, reference_t_s=at, reference_x_m=x, reference_y_m=y, reference_yaw_rad=yaw
-    )
+    counts = counters(path, robot, read_at, zeros.tolist())
+    seen = Recording(recording.name, read_at, *counts, at, x, y, yaw, path)
     jumps: list[Happened] = []
     for number, odd in enumerate(hidden):
         seen = odd.recording(seen, robot, np.random.default_rng([seed, 79, number]))
@@ -151,7 +149,7 @@ def as_in_the_field(
     localiser = np.column_stack([stamps + (seen.reference_t_s - at), received, poses + errors])
     left = np.asarray(seen.left_ticks * (TURN / robot.left_ticks_per_revolution), float)
     right = np.asarray(seen.right_ticks * (TURN / robot.right_ticks_per_revolution), float)
-    wheels = np.column_stack([*counted_at, left, right])
+    wheels = np.column_stack([*read_stamps, left, right])
     happened = [
         *(each for each in jumps if each.of == "reference_jump"),
         *(later(each, held, carried) for each in recording.happened if each.of != "reference_jump"),
@@ -187,16 +185,6 @@ def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:
     x, y, yaw = lidar.mount
     there = AxlePose(beside.x + cos * x - sin * y, beside.y + sin * x + cos * y, beside.yaw + yaw)
     return replace(lidar, mount=there)
-
-
-def _counted(
-    recording: Recording, path: TruePath, robot: TrueRobot, at: Floats, zeros: NDArray[np.int64]
-) -> Recording:
-    """The same recording along another path, with counters read at other times."""
-    left, right = counters(path, robot, at, zeros.tolist())
-    return replace(
-        recording, true_path=path, t_s=at, left_ticks=left, right_ticks=right, channels={}
-    )
 
 
 def _by_the_bag(times: Sequence[float]) -> list[float]:
