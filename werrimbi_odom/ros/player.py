@@ -31,7 +31,7 @@ PATIENCE = 0.5
 
 @dataclass
 class Answers:
-    """Output of the node while the ticks were played; arrays of shape (n,)."""
+    """Output of the node while the ticks were played; lists of n values."""
 
     time: list[float] = field(default_factory=list)
     x: list[float] = field(default_factory=list)
