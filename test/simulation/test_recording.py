@@ -242,6 +242,7 @@ def test_the_gyro_integrates_to_the_turn_and_memory_stays_bounded() -> None:
     assert live.pose.yaw == pytest.approx(turned, rel=0.03)  # its bias and scale
     assert live.pose.yaw > 4.0
     assert len(live._rows) == 2 * KEPT
+    assert live.gyro(0.0, live.time) == pytest.approx(0.8, rel=0.05)  # read once in six seconds
 
 
 def test_a_late_reference_is_late_by_as_much_live() -> None:

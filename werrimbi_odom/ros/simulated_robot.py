@@ -158,7 +158,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         message.header.stamp = self._stamp(time)
         message.header.frame_id = "imu_link"
         message.orientation_covariance[0] = -1.0  # no orientation
-        message.angular_velocity.z = self._robot.gyro(max(since, time - 1.0), time)
+        message.angular_velocity.z = self._robot.gyro(since, time)
         message.linear_acceleration.z = 9.81
         self._imu.publish(message)
 

@@ -125,8 +125,8 @@ class LiveRobot:
         return AxlePose(*(float(each[0]) for each in measured))
 
     def gyro(self, since: float, until: float) -> float:
-        """Mean yaw rate of the gyro [rad/s] between two times within the last second [s]."""
-        path = self._path()
+        """Mean yaw rate of the gyro [rad/s] between two times [s]; of the last second at most."""
+        path, since = self._path(), max(since, until - 1.0)
         before, after = np.interp([since, until], path.t_s, path.yaw_rad)
         rate = (after - before) / (until - since)
         noise = self._gyro.noise * self._gyro_noise.standard_normal()
