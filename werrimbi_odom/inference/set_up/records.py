@@ -25,7 +25,6 @@ from werrimbi_odom.inference.legs.count_interpolation import between_messages, s
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
-from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import after_stage, view_of, wiring_of
 from werrimbi_odom.model.effects_over_run import PLACE, watched
@@ -34,6 +33,7 @@ from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import channel_spans
 
 Complexes = NDArray[np.complex128]
 
@@ -123,13 +123,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpReco
     of_wheels = [applied for applied in robot.effects if applied.effect.stage == "wheels"]
     if of_wheels:
         first = (float(ticks.left[steps.first_row]), float(ticks.right[steps.first_row]))
-        channels = {}
-        for name, values in ticks.channels.items():
-            there = np.asarray(values, dtype=np.float64)[rows]
-            known = np.isfinite(there)
-            if known.any():
-                there = np.interp(time, time[known], there[known])
-                channels[name] = Span(there[:-1], there[1:])
+        channels = channel_spans(steps, ticks.channels)
         drive = features(robot, np.diff(time), raw, wheels(*first), channels)
         for applied in of_wheels:
             seen = watched(drive)
