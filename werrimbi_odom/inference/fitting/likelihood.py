@@ -24,13 +24,7 @@ from werrimbi_odom.inference.fitting.correlated_filter import (
     GyroHeading,
     filtered_with_correlated_error,
 )
-from werrimbi_odom.inference.fitting.filtering import (
-    STRETCH,
-    FilterInput,
-    Shocks,
-    Ways,
-    filtered,
-)
+from werrimbi_odom.inference.fitting.filtering import STRETCH, FilterInput, Shocks, Ways, filtered
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of, lever_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked

@@ -93,10 +93,7 @@ def with_known_noise(variances: Variances, options: EvaluationOptions) -> Varian
 
 
 def map_variances(
-    costs: Costs,
-    start: Variances,
-    held: tuple[bool, bool],
-    prediction: Prediction | None = None,
+    costs: Costs, start: Variances, held: tuple[bool, bool], prediction: Prediction | None = None
 ) -> Variances:
     """Maximum a posteriori variances for a fixed model or prediction (`fisher_scoring`)."""
     prediction = prediction or costs.prediction()
@@ -156,11 +153,7 @@ def _prior(costs: Costs) -> tuple[Floats, Floats]:
 
 
 def _scored(
-    costs: Costs,
-    prediction: Prediction,
-    base: Variances,
-    moving: NDArray[np.bool_],
-    logs: Floats,
+    costs: Costs, prediction: Prediction, base: Variances, moving: NDArray[np.bool_], logs: Floats
 ) -> tuple[float, Floats, Floats]:
     """Cost at log variances, its gradient and its expected Hessian (Fisher information).
 
