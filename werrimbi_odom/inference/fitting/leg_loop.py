@@ -288,7 +288,7 @@ def carried_in_scalars(carry: Floats, bounds: NDArray[np.intp], change: Floats) 
 
 
 def turn_into(turn: Floats, yaw: Floats) -> None:
-    """Write rotation matrices of (x, y, yaw) for angles of shape (g, s)."""
+    """Write rotation matrices of (x, y, yaw) for angles of any shape."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     turn[:] = 0.0
     turn[..., 0, 0] = turn[..., 1, 1] = cos

@@ -28,7 +28,6 @@ from werrimbi_odom.inference.fitting.filtering import STRETCH, FilterInput, Shoc
 from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of, lever_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
-from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -126,7 +125,9 @@ class Innovations:
         The last column is for the heading at the run's first reference pose; it is zero if
         measured.
         """
-        return _alone(slopes) if self.ways is None else self.ways.innovations(slopes)
+        if self.ways is not None:
+            return self.ways.innovations(slopes)
+        return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
 
     def _root(self) -> Floats:
         if not self._roots:
@@ -216,23 +217,12 @@ def _of_increments(
     return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, None, known)
 
 
-def _alone(slopes: Floats) -> Floats:
-    """Jacobian of the innovations where legs are independent and no start heading is fitted."""
-    return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
-
-
-def relative_errors(robot: Robot, run: MatchedRun, prediction: Prediction) -> Floats:
+def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
     """Measured minus predicted relative pose of each leg, shape (m, 3); NaN where not measured.
 
-    In the frame of the robot at the leg's start, as measured by the reference.
+    In the frame of the robot at the leg's start. `start`, `finish` (m, 3): measured poses at both
+    ends, right-handed.
     """
-    measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
-    measured = right_handed(measured, view_of(robot.effects))
-    return errors_between(measured[:-1], measured[1:], prediction)
-
-
-def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
-    """As `relative_errors`, for measured poses (m, 3) at the starts and ends of the legs."""
     step = finish - start
     cos, sin = np.cos(start[:, 2]), np.sin(start[:, 2])
     relative = np.stack(
