@@ -154,6 +154,6 @@ def errors_of_legs(
     view, found = view_of(robot.effects), []
     for run, heading in zip(runs, headings, strict=True):
         legs = concatenated([run])
-        measured = (right_handed(poses, view) for poses in (legs.start, legs.finish))
-        found.append(errors_between(*measured, predict(robot, run, heading)))
+        start, finish = (right_handed(poses, view) for poses in (legs.start, legs.finish))
+        found.append(errors_between(start, finish, predict(robot, run, heading)))
     return np.concatenate(found)
