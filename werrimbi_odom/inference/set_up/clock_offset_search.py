@@ -11,13 +11,13 @@ would be that of the jitter and not of the motion.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.instants import instants
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import touched
 from werrimbi_odom.inference.set_up.records import SetUpRecord
@@ -43,7 +43,8 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     for record in records:
         if record.seen.size < rules.FEWEST_CUTS:
             continue
-        grid = _grid(record, most)
+        reach = (most + _STEPS) * _PERIOD + _silence(record.seen)
+        grid = instants(record.time[0], record.time[-1], _PERIOD, record.seen, reach)
         if grid.size < rules.DELAY_SPANS * most:
             continue
         wheels = _wheels(record, grid)
@@ -129,24 +130,6 @@ class _Sums:
         return np.asarray(np.clip(1.0 - explained, rules.DELAY_UNEXPLAINED, 1.0))
 
 
-def _grid(record: SetUpRecord, most: int) -> Floats:
-    """Instants a period apart, as far as a lag of `most` periods reaches into silences [s].
-
-    In a silence a clock may leap by years: from zero to the time of day, once that is known.
-    """
-    begin, reach = record.time[0], most + _STEPS
-    silences = _silences(record.seen)
-    until = [*(silence[0] for silence in silences), record.seen[-1]]
-    since = [record.seen[0], *(silence[1] for silence in silences)]
-    last = math.ceil((record.time[-1] - begin) / _PERIOD)
-    parts, done = [], 0
-    for first, end in zip(since, until, strict=True):
-        low = max(int((first - begin) / _PERIOD) - reach, done)
-        done = max(min(int((end - begin) / _PERIOD) + reach + 1, last), done)
-        parts.append(np.arange(low, done))
-    return np.asarray(begin + _PERIOD * np.concatenate(parts))
-
-
 def _interval(record: SetUpRecord) -> float:
     """Usual time between two poses [s]."""
     return float(np.median(np.diff(record.seen)))
@@ -183,9 +166,12 @@ def _shifted(values: Floats, lag: int) -> Floats:
 
 def _silences(seen: Floats) -> list[tuple[float, float]]:
     """Stretches in which the reference is silent and its motion unknown."""
-    duration = np.diff(seen)
-    usual = max(rules.DELAY_WINDOW, rules.GAP_INTERVALS * float(np.median(duration)))
-    return [(seen[row], seen[row + 1]) for row in np.flatnonzero(duration > usual)]
+    return [(seen[row], seen[row + 1]) for row in np.flatnonzero(np.diff(seen) > _silence(seen))]
+
+
+def _silence(seen: Floats) -> float:
+    """Time without a pose above which the reference is silent [s]."""
+    return max(rules.DELAY_WINDOW, rules.GAP_INTERVALS * float(np.median(np.diff(seen))))
 
 
 def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
