@@ -16,10 +16,12 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from werrimbi_odom.files.instants import instants
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import touched
+from werrimbi_odom.inference.legs.windows import standing_below
 from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
 
@@ -49,7 +51,9 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
             continue
         wheels = _wheels(record, grid)
         unseen = [*record.not_driven, *record.taken_out, *_silences(record.seen)]
-        for total, measured in ((sums[0], _turns(record, grid)), (sums[1], _squares(record, grid))):
+        near = _near_driving(wheels(0), most)
+        both = _turns(record, grid, near), _squares(record, grid, near)
+        for total, measured in zip(sums, both, strict=True):
             if measured is not None:
                 measured[_in_any(touched(grid, unseen))] = np.nan
                 total.add(wheels, measured, _interval(record))
@@ -174,22 +178,29 @@ def _silence(seen: Floats) -> float:
     return max(rules.DELAY_WINDOW, rules.GAP_INTERVALS * float(np.median(np.diff(seen))))
 
 
-def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
+def _near_driving(wheels: tuple[Floats, Floats], most: int) -> NDArray[np.bool_]:
+    """Windows from which one with rolling wheels is no farther than the longest lag, (n,)."""
+    rolled = np.nan_to_num(np.abs(wheels[0]) + np.abs(wheels[1]))
+    return np.asarray(maximum_filter1d(rolled > standing_below(rolled), 2 * most + 1))
+
+
+def _turns(record: SetUpRecord, grid: Floats, near: NDArray[np.bool_]) -> Floats | None:
     known = np.isfinite(record.yaw)
     if known.sum() < rules.FEWEST_CUTS:
         return None
     yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
-    return _winsorised(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
+    turns = _over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan))
+    return _winsorised(turns, near)
 
 
-def _squares(record: SetUpRecord, grid: Floats) -> Floats | None:
+def _squares(record: SetUpRecord, grid: Floats, near: NDArray[np.bool_]) -> Floats | None:
     known = np.isfinite(record.place)
     if known.sum() < rules.FEWEST_CUTS:
         return None
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
     )
-    return _winsorised(np.abs(_over(place))) ** 2
+    return _winsorised(np.abs(_over(place)), near) ** 2
 
 
 def _over(values: NDArray[_Numbers]) -> NDArray[_Numbers]:
@@ -203,9 +214,12 @@ def _in_any(steps: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(held > 0.5)
 
 
-def _winsorised(values: Floats) -> Floats:
-    """Winsorise outliers (failed matches)."""
-    size = np.abs(values[np.isfinite(values)])
+def _winsorised(values: Floats, near: NDArray[np.bool_]) -> Floats:
+    """Winsorise outliers (failed matches), by what is usual near driving.
+
+    After a minute of driving and an hour at rest every turn would be an outlier.
+    """
+    size = np.abs(values[np.isfinite(values) & near])
     if size.size == 0:
         return values
     limit = rules.DELAY_TAMED * float(np.quantile(size, 0.9))
