@@ -68,7 +68,7 @@ def driven(
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(instants(first, last, _GRID, counters.time, _REACH), last)
     steps = np.diff(counters.at(grid), axis=0)
-    steps[np.diff(grid) > 2.0 * _GRID] = 0.0  # what was gone in a silence is not gone at once
+    steps[np.diff(grid) > 2 * _GRID] = 0.0  # what was gone in a silence is not gone at once
     counted = wiring_of(robot.effects).wheels(*steps.T)
     left, right = counted[0] * robot.left_tick, counted[1] * robot.right_tick
     way, turn = 0.5 * (left + right), (right - left) / robot.track

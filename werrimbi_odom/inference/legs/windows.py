@@ -117,7 +117,7 @@ def windows_of(
     left = np.interp(grid, counters.time, counters.left) * robot.left_tick
     right = np.interp(grid, counters.time, counters.right) * robot.right_tick
     way = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
-    way[np.diff(grid) > 2.0 * step] = 0.0  # all that was gone in a silence is no way of a window
+    way[np.diff(grid) > 2 * step] = 0.0  # all that was gone in a silence is no way of a window
     rolled = np.concatenate([[0.0], np.cumsum(way)])
     by_wheels = rolled if ways else (right - left) / robot.track
     if ways:
