@@ -164,7 +164,8 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     scatter = np.maximum(scatter, _scatter(runs, gains["robot"], told))
     kept = _kept(runs, steps, columns, white.ravel(), scatter, tests)
     columns = columns[:, [3 * step + axis for step in kept for axis in range(3)]]
-    many = bool(new) and 2 * len(kept) > rules.MOST_EVENTS
+    # More at once than are looked for at all: none of them was taken.
+    many = bool(new) and (not steps or 2 * len(kept) > rules.MOST_EVENTS)
     steps, chances = [steps[step] for step in kept], [chances[step] for step in kept]
     spread = np.diagonal(told.covariance[0], axis1=1, axis2=2)
     return Steps(
