@@ -14,7 +14,8 @@ import numpy as np
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.events.common_cause import Alike, alike
-from werrimbi_odom.inference.events.steps import PoseStep, Steps, steps_of
+from werrimbi_odom.inference.events.groups import groups_of, net_of, returned_by
+from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
@@ -128,7 +129,7 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
         # Least-squares sizes of all steps together, (q, 3).
         sizes = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0].reshape(-1, 3)
         found = [
-            (own, event) for own in _groups(steps) if (event := _event(steps, own, side, sizes))
+            (own, event) for own in groups_of(steps) if (event := _event(steps, own, side, sizes))
         ]
         events += [event for _, event in found]
         legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
@@ -185,28 +186,6 @@ def at_every_pose(runs: Sequence[MatchedRun]) -> Concatenated:
     return concatenated(found)
 
 
-def _groups(steps: Steps) -> list[list[int]]:
-    """Groups of step indices that are one event each, in order of time."""
-    runs = steps.runs
-    groups: list[list[int]] = []
-    before: PoseStep | None = None
-    for index in sorted(range(len(steps.found)), key=lambda index: steps.found[index].leg):
-        step = steps.found[index]
-        if (
-            before is not None
-            and runs.run_of_leg[before.leg] == runs.run_of_leg[step.leg]
-            and (
-                runs.ends_at[step.leg] - runs.ends_at[before.leg] <= rules.EVENT_JOIN
-                or (before.shape, step) == ("spike", PoseStep("robot", before.leg + 1))
-            )
-        ):
-            groups[-1].append(index)
-        else:
-            groups.append([index])
-        before = step
-    return groups
-
-
 def _event(steps: Steps, group: list[int], side: EventSide, fitted: Floats) -> Event | None:
     """The event that a group of steps makes, if it is sudden and large.
 
@@ -228,10 +207,10 @@ def _event(steps: Steps, group: list[int], side: EventSide, fitted: Floats) -> E
         return None  # nor is the motion of the wheels known while their counters are silent
     scatter = float(steps.scatter[run])
     of_robot = any(steps.found[index].shape == "robot" for index in group)
-    returned = spike or (not of_robot and _returned(fitted[group] / steps.noise[legs]))
+    returned = spike or (not of_robot and returned_by(fitted[group] / steps.noise[legs]))
     net = group[:1] if returned else group
-    sizes, spread = _net(steps, net, scatter, beside=False)
-    beside, spread_beside = _net(steps, net, scatter, beside=True)
+    sizes, spread = net_of(steps, net, scatter, beside=False)
+    beside, spread_beside = net_of(steps, net, scatter, beside=True)
     stds = np.sqrt(np.diag(spread))
     large = np.abs(sizes) > rules.EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
     sudden = np.abs(beside) > rules.EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
@@ -282,42 +261,3 @@ def _is_beside_lost(record: AlignedRun, seen: float) -> bool:
 def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:
     """Whether no force moves a robot this far in one interval, or two."""
     return bool(np.hypot(*sizes[:2]) > 0.5 * rules.JOLT * (parts * interval) ** 2)
-
-
-def _returned(went: Floats) -> bool:
-    """Whether steps of the reference (k, 3), in the noise, cancel one another: it came back."""
-    left = float(np.linalg.norm(went.sum(axis=0)))
-    return left < rules.JUMP_LASTS * float(np.linalg.norm(went, axis=1).max())
-
-
-def _net(steps: Steps, group: list[int], scatter: float, *, beside: bool) -> tuple[Floats, Floats]:
-    """Total of a group of steps (3,), in the axes of the first step, and its covariance.
-
-    All steps are fitted together, if `beside` with a slow drift about the event as well. A prior of
-    1 m and 1 rad keeps undetermined coordinates finite.
-    """
-    legs = [steps.found[index].leg for index in group]
-    taken = set(group)
-    if any(steps.found[index].shape == "robot" for index in group):
-        own = steps.about(legs)
-        # What a spike there says, steps of their own size in its two legs say as well.
-        taken |= {
-            index
-            for index, step in enumerate(steps.found)
-            if step.shape == "spike" and min(legs) - 1 <= step.leg <= max(legs)
-        }
-    else:
-        own = steps.columns[:, _columns(group)]
-    others = [index for index in range(len(steps.found)) if index not in taken]
-    parts = [own, steps.columns[:, _columns(others)]]
-    columns = np.concatenate([*parts, steps.creeping(legs[0])] if beside else parts, axis=-1)
-    square = columns.T @ columns / scatter
-    covariance = np.linalg.inv(square + np.eye(square.shape[0]))
-    solution = covariance @ (columns.T @ steps.white) / scatter
-    summed = np.zeros((3, columns.shape[1]))
-    summed[:, : own.shape[1]] = np.tile(np.eye(3), own.shape[1] // 3)
-    return summed @ solution, summed @ covariance @ summed.T
-
-
-def _columns(steps: Sequence[int]) -> list[int]:
-    return [3 * step + axis for step in steps for axis in range(3)]
