@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import name_of_base, sizes_of
-from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round, near_to
+from werrimbi_odom.inference.diagnosis.forward_selection import Round, near_to
+from werrimbi_odom.inference.diagnosis.instead_of_calibration import Instead
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
