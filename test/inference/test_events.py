@@ -133,6 +133,23 @@ def test_a_push_that_two_poses_see_is_one_of_their_sum(sound: Drives, every: int
     assert max(event.stds[:2]) < NOISE_XY
 
 
+def test_kicks_between_rare_headings_are_told_each_by_itself(sound: Drives) -> None:
+    """Each was also a neighbour of the other, which left both unknown: none was told."""
+    run = parts(sound[0][0], "yaw")
+    assert run.reference is not None
+    rare = run.reference.chosen(np.arange(run.reference.time.size) % 10 == 0)
+    row = int(np.searchsorted(rare.time, 20.0))
+    yaw = rare.yaw.copy()
+    yaw[row:] += 0.03
+    yaw[row + 1 :] += 0.04
+    kicked = replace(run, reference=replace(rare, yaw=yaw))
+    told = [event for event in _beside_the_truth(kicked, sound[1]).events if event.size > 0.02]
+    assert [event.channel for event in told] == ["heading"] * 2
+    for event, size, after in zip(told, (0.03, 0.04), rare.time[row : row + 2], strict=True):
+        assert event.size == pytest.approx(size, abs=4.0 * np.hypot(NOISE_YAW, event.std))
+        assert 0.0 < after - event.time < 0.5
+
+
 def test_a_pose_on_a_map_that_was_wrong_once_did_not_stay_wrong(sound: Drives) -> None:
     """Only one of the two steps was fitted: a turn of 28° was told as one of 1° that stayed."""
     runs, robot = sound
