@@ -126,8 +126,8 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
     for side in sides:
         runs = at_every_pose(side.runs)
         steps = steps_of(runs, side.point)
-        # Least-squares sizes of all steps together, (q, 3).
-        sizes = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0].reshape(-1, 3)
+        fitted = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0]
+        sizes = np.asarray(fitted.reshape(-1, 3), dtype=np.float64)
         found = [
             (own, event) for own in groups_of(steps) if (event := _event(steps, own, side, sizes))
         ]
@@ -189,7 +189,7 @@ def at_every_pose(runs: Sequence[MatchedRun]) -> Concatenated:
 def _event(steps: Steps, group: list[int], side: EventSide, fitted: Floats) -> Event | None:
     """The event that a group of steps makes, if it is sudden and large.
 
-    `fitted`: sizes of all steps, (q, 3).
+    `fitted`: least-squares sizes of all steps together, (q, 3).
     """
     runs = steps.runs
     spike = all(steps.found[index].shape == "spike" for index in group)
