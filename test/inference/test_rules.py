@@ -346,6 +346,7 @@ def test_the_figures_in_the_reasons_hold() -> None:
     assert stats.t.isf(r.SURE_OF_LEGS / 2, r.LEGS_OF_A_PART - 1) == pytest.approx(11.2, abs=0.05)
     cells = r.CELLS_ACROSS**2
     assert stats.t.isf(r.SURE_OF_LEGS / cells, r.LEGS_IN_A_CELL - 1) == pytest.approx(89, abs=0.5)
+    assert 1.0 / math.sqrt(2.0 * 3.0 * r.MANY_LEGS) == pytest.approx(0.07, abs=5e-3)
     bounds = chance_bounds(3 * r.FEWEST_LEGS, r.HONEST_CHANCE)
     assert bounds == pytest.approx((0.29, 2.33), abs=0.02)
 

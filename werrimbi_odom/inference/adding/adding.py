@@ -40,6 +40,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
     sizes_needed,
     with_sizes,
 )
+from werrimbi_odom.inference.diagnosis.either_sign import variances_by_sign
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Judge, begin
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
@@ -48,7 +49,6 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.uncertainty import (
     as_written,
     noises_of,
-    variances_by_sign,
     with_spread,
 )
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events

@@ -12,7 +12,7 @@ anywhere between 0.29 and 2.3 (`HONEST_CHANCE`)."""
 
 MANY_LEGS = 30
 """Legs from which on the wheel noise is reported at their length: its standard deviation is then
-known to 8 % (1 / sqrt(2 * 90))."""
+known to 7 % (1 / sqrt(2 * 90))."""
 
 LEG_LENGTHS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Lengths of legs that are judged, in units of the requested one: doubled as far as the drives
