@@ -12,6 +12,7 @@ from werrimbi_odom.files.run import NoDriving, Reference
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.noisy_phases import noisy_phases
 from werrimbi_odom.inference.legs.reference_lapses import lapses
+from werrimbi_odom.inference.legs.windows import later_than_all_before
 from werrimbi_odom.model.robot import Robot
 
 
@@ -26,7 +27,8 @@ def without_useless_poses(
     if seen.own_axes:
         return seen, ()
     in_time = seen.earlier(delay)
-    found = sorted([*lapses(counters, in_time, robot), *noisy_phases(counters, in_time, robot)])
+    rising = in_time.chosen(later_than_all_before(in_time.time))
+    found = sorted([*lapses(counters, rising, robot), *noisy_phases(counters, rising, robot)])
     useless = np.zeros(seen.time.shape, dtype=np.bool_)
     for part in found:
         useless |= (in_time.time > part.begin) & (in_time.time < part.end)
