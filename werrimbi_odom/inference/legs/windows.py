@@ -133,10 +133,10 @@ def windows_of(
     measured = np.hypot(over, _over(np.interp(grid, time, gone.imag), steps)) if ways else over
     begin, end = grid[:-steps], grid[steps:]
     for stamps, each in zip((time, counters.time), usual, strict=True):
-        for gap in np.flatnonzero(
-            np.diff(stamps) > max(rules.NO_DRIVING_SILENCE * each, 2.0 * step)
-        ).tolist():
-            measured[(begin < stamps[gap + 1]) & (end > stamps[gap])] = np.nan
+        gaps = np.flatnonzero(np.diff(stamps) > max(rules.NO_DRIVING_SILENCE * each, 2.0 * step))
+        firsts = np.searchsorted(end, stamps[gaps], side="right").tolist()
+        for first, last in zip(firsts, np.searchsorted(begin, stamps[gaps + 1]), strict=True):
+            measured[first:last] = np.nan
     middle, gone_by = 0.5 * (begin + end), _over(rolled, steps)
     stands = np.interp(time, middle, gone_by) <= standing_below(gone_by)
     return Windows(
