@@ -21,6 +21,7 @@ from werrimbi_odom.inference.comparison.over_variable import wheel_errors
 from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.fitting.start_headings import first_heading
 from werrimbi_odom.inference.legs.cutting import match, match_for_fit
+from werrimbi_odom.model.pose import wrap_all
 
 MIRRORED = replace(ROBOT, effects=(*ROBOT.effects, find("reference_mirrored").using()))
 
@@ -72,6 +73,7 @@ def test_legs_err_alike_by_a_marker_that_is_turned(run: Run, which: str) -> None
     assert np.abs(plain.error[:, 0]).max() > 0.01
     np.testing.assert_allclose(found.error, plain.error, atol=1e-10)
     np.testing.assert_allclose(found.covariance, plain.covariance, atol=1e-12)
+    np.testing.assert_allclose(wrap_all(found.heading - plain.heading), 0.0, atol=1e-9)
 
 
 def test_the_error_of_a_wheel_is_the_same_by_a_marker_above_it_and_turned(run: Run) -> None:

@@ -57,7 +57,8 @@ class LegErrors:
     turn: Floats
     """Heading change, shape (m,) [rad]."""
     heading: Floats
-    """Heading at the leg's start in the reference's frame, shape (m,); NaN where unknown [rad]."""
+    """Heading of the robot at the leg's start, in the reference's frame, shape (m,); NaN where
+    unknown [rad]."""
 
     @property
     def distance(self) -> Floats:
@@ -148,9 +149,8 @@ def errors_of(
         reference = _reference_part(
             robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind, shares, start[:, 2]
         )
-    error, wheels, reference = _of_the_robot(
-        extrinsics_of(model, runs).yaw, error, wheels, reference
-    )
+    turned_by = extrinsics_of(model, runs).yaw
+    error, wheels, reference = _of_the_robot(turned_by, error, wheels, reference)
     return LegErrors(
         error,
         wheels + reference,
@@ -159,7 +159,7 @@ def errors_of(
         wheels,
         prediction.along,
         prediction.turn,
-        heading,
+        heading - turned_by,
     )
 
 
