@@ -22,7 +22,6 @@ from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.stray_poses import stray_poses
 from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.legs.windows import later_than_all_before
-from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -176,8 +175,7 @@ def _named(
 def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     within = (counters.time > begin) & (counters.time < end)
     time = np.concatenate([[begin], counters.time[within], [end]])
-    counts = wiring_of(robot.effects).wheels(*np.diff(counters.at(time), axis=0).T)
-    left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
+    left, right = counters.travel(robot, time)
     path = float(np.abs(0.5 * (left + right)).sum())
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
     words = [f"drove {path:.1f} m"] if path >= rules.WAY_WORTH_SAYING else []
