@@ -18,9 +18,8 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.matched_run import AlignedRun, typical_sigma
-from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.stray_poses import stray_poses
-from werrimbi_odom.inference.legs.usable_run import with_no_driving
+from werrimbi_odom.inference.legs.usable_run import clock_offset, with_no_driving
 from werrimbi_odom.inference.legs.windows import later_than_all_before
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap_all
