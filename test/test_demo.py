@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import sys
@@ -21,8 +22,11 @@ from rclpy.time import Time
 import werrimbi_odom as wo
 from test.command_line import ROOT, ran
 from test.recorded_robots import ROBOTS, with_recordings
+from test.ros.messages import read_by_ros
 from werrimbi_odom.demo.node_processes import save_and_tell
 from werrimbi_odom.demo.simulated_procedure import drive_of, error_figure
+from werrimbi_odom.demo.through_node import ros_arguments
+from werrimbi_odom.ros.odom_parameters import settings_of
 
 DEMO = (sys.executable, "-m", "werrimbi_odom.demo")
 OPTITRACK = ROBOTS / "optitrack_robot"
@@ -43,6 +47,22 @@ def test_the_shipped_recording_ends_where_its_covariance_promised(tmp_path: Path
     assert "all: 0.000 µm from offline" in said
     assert "the covariance promised just" in " ".join(said.split())
     assert (tmp_path / "path.html").stat().st_size > 1_000_000
+
+
+@pytest.mark.parametrize(
+    ("key", "where"), [("odom_node", "/"), ("/robot1/base", "/robot1"), ("/**", "/")]
+)
+def test_the_node_takes_any_robot_file_that_the_commands_take(
+    tmp_path: Path, key: str, where: str
+) -> None:
+    """Below a namespace, and of wheel angles without the resolution of their encoders."""
+    file = tmp_path / "robot.yaml"
+    own = {"wheel_separation": 0.35, "wheel_radius": 0.05}
+    file.write_text(json.dumps({key: {"ros__parameters": own}}), encoding="utf-8")
+    read = wo.read_robot(file)
+    namespace, given = read_by_ros("odom_node", ros_arguments(read, "/demo"))
+    assert namespace == where
+    assert settings_of(given).robot == read.robot
 
 
 @pytest.mark.evidence

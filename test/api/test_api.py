@@ -258,6 +258,12 @@ def test_what_the_command_refuses_is_refused(
         wo.compare(wo.read_robot("robot.yaml"), given)
 
 
+def test_nothing_is_not_added(drives: Path) -> None:
+    """As `found` of a diagnosis that finds nothing: a fit of nothing would take as long as any."""
+    with pytest.raises(wo.InputError, match="no effect was given"):
+        wo.add((), wo.read_robot(drives / "robot.yaml"), drives / "run_0")
+
+
 def test_a_result_shows_itself(drives: Path, tmp_path: Path) -> None:
     robot = wo.read_robot(drives / "robot.yaml")
     found = wo.compare(robot, runs(drives)[:2])

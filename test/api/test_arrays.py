@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import warnings
 from pathlib import Path
@@ -15,6 +17,7 @@ import pytest
 import werrimbi_odom as wo
 from test.cli.commands import PLAIN, ROBOT_FILE
 from test.inference.driven import run_of
+from werrimbi_odom.api.arrays import ticks_of
 
 ROWS = 200
 TIME = 0.05 * np.arange(ROWS)
@@ -111,6 +114,52 @@ def test_a_run_of_arrays_is_read_again_without_loss(robot: Any, tmp_path: Path) 
         wo.write_run(folder, TIME, LEFT, RIGHT)
     with pytest.raises(wo.InputError, match=r"four columns, .* has the shape \(200, 3\)"):
         wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, np.zeros((ROWS, 3)))
+    with pytest.raises(wo.InputError, match="reference has no poses"):  # no verb would take it
+        wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, np.zeros((0, 4)))
+
+
+def test_a_channel_takes_no_counters_place(robot: Any, tmp_path: Path) -> None:
+    """A current of the left motor may be called `left`, as the wheel's counter is."""
+    ticks = ticks_of(TIME, LEFT, RIGHT, {"left": np.ones(ROWS), "t": np.zeros(ROWS)})
+    assert np.array_equal(ticks.left, LEFT)
+    assert np.array_equal(ticks.time, TIME)
+    folder = wo.write_run(tmp_path / "drive", TIME, LEFT, RIGHT, channels=ticks.channels)
+    again = wo.read_run(folder, robot, reference_topic="none").ticks
+    assert np.array_equal(again.left, LEFT)
+    assert np.array_equal(again.channels["left"], np.ones(ROWS))
+    for name in ("left_ticks", "t_s", "motor, left", "", " a", "a\n"):
+        with pytest.raises(wo.InputError, match="a channel cannot be called"):
+            wo.write_run(tmp_path / "other", TIME, LEFT, RIGHT, channels={name: np.ones(ROWS)})
+    assert not (tmp_path / "other").exists()
+
+
+def test_without_any_recording_there_is_nothing_to_look_into() -> None:
+    with pytest.raises(wo.InputError, match="no recordings were given"):
+        wo.info([])
+
+
+def test_what_a_mask_hides_was_not_measured() -> None:
+    """As netCDF4 reads a missing count."""
+    left = np.ma.array([0, 2**31 - 1, 2], mask=[False, True, False])
+    assert np.array_equal(ticks_of([0, 1, 2], left, [0, 1, 2]).left, [0, np.nan, 2], equal_nan=True)
+    whole = np.ma.array([0, 1, 2])
+    assert ticks_of([0, 1, 2], whole, [0, 1, 2]).left.dtype == np.int64
+
+
+def test_a_full_disk_leaves_no_drive_without_its_reference(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[int] = []
+
+    def full(file: int) -> None:
+        written.append(file)
+        if len(written) > 1:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(wo.InputError, match="No space left on device"):
+        wo.write_run(tmp_path / "drive", TIME, LEFT, RIGHT, np.zeros((ROWS, 4)))
+    assert not (tmp_path / "drive" / "ticks.csv").exists()
 
 
 @pytest.mark.parametrize("of", ["ticks", "reference"])

@@ -12,8 +12,8 @@ import pytest
 
 import werrimbi_odom as wo
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.api.live_diagnosis import of_now
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.api.live_diagnosis import halves, of_now
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.simulation.robot import TrueRobot, write_robot_file
 
 SOUND = WhiteNoiseRobot(0.35, 0.05, 0.05, 4.0e-4, 5.8e-4)
@@ -46,3 +46,14 @@ def test_a_robot_that_is_as_it_was_is_told_by_all_of_its_drives(tmp_path: Path) 
     drives = [driven(WIDER, "older_half", 3, 100.0), driven(WIDER, "younger_half", 4, 100.0)]
     whole = wo.diagnose(file, drives)
     assert of_now(whole, file, drives, {}) == (whole, drives)
+
+
+def test_a_counter_that_begins_anew_is_no_travel() -> None:
+    """Halves are of equal travel, wherever a counter of 16 bits begins anew."""
+    time = np.arange(101.0)
+    counts = 100 * np.arange(101)
+    poses = Reference(time, 0.01 * time, 0.0 * time, 0.0 * time)
+    # Both begin anew after a tenth of the way.
+    ticks = Ticks(time, *2 * [(counts + 2**15 - 1000 + 2**15) % 2**16 - 2**15])
+    older, younger = halves(Run("drive", Path("drive"), ticks, poses), 16)
+    assert older.ticks.time[-1] == younger.ticks.time[0] == 50.0

@@ -6,15 +6,20 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from test.cli.commands import called
 from test.command_line import Printed
 from test.recorded_robots import ROBOTS, with_recordings
+from werrimbi_odom.api import calibrate_umbmark as from_squares
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.inference.calibration.squares import Squares
+from werrimbi_odom.report.document import Paragraph
 from werrimbi_odom.simulation import TrueRobot, record, square, write_run
 
 ROBOT = """\
@@ -203,6 +208,24 @@ def test_recorded_runs_before_and_after(desk: Path) -> None:
     (runs[0] / "reference.csv").unlink()
     with pytest.raises(InputError, match="there is no reference"):
         called(calibrate, "umbmark", *arguments, "--force")
+
+
+def test_the_verdict_comes_before_what_the_drives_were_read_from(
+    desk: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is the headline of the page, and what a notebook shows."""
+
+    def read(paths: list[Path], source: object, robot: object, how: Any) -> Squares:
+        how.notes.append("bag: ticks from /joint_states")
+        x, y = np.array([0.030, 0.034]), np.array([0.034, 0.028])
+        return Squares(4.0, np.stack([x, y], axis=1), np.stack([3.0 * x, -3.0 * y], axis=1))
+
+    monkeypatch.setattr(from_squares, "_recorded", read)
+    robot = read_robot_file(desk / "robot.yaml")
+    parts = from_squares.calibrate_umbmark(robot, desk / "bag", 4.0).document().words
+    texts = [part.text for part in parts if isinstance(part, Paragraph)]
+    assert "off: E_max,syst is" in texts[0]
+    assert texts[-1] == "bag: ticks from /joint_states"
 
 
 @with_recordings

@@ -18,6 +18,7 @@ from test.command_line import Complaint, Printed, Werrimbi
 from test.files.conftest import Messages
 from test.files.unseen import JOINTS, joints, poses
 from test.inference.driven import run_of
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.changes.dated_drives import Unusable
 from werrimbi_odom.report.history_words import words_of
 
@@ -214,6 +215,25 @@ def test_what_a_bag_is_read_by_is_no_other_robot_s(tmp_path: Path) -> None:
         found = wo.history(wo.read_robot(file), bag, cache=tmp_path / "kept").found
         known.append(found.drives[0].kept)
     assert known == [False, False]
+
+
+def test_a_drive_that_was_read_and_cannot_be_used_leaves_the_others(months: Path) -> None:
+    """As one that is given by its path: the history of the others is told."""
+    robot = wo.read_robot(months / "robot.yaml")
+    drives = [wo.read_run(months / f"drive_{number}", robot) for number in (0, 3)]
+    blind = replace(drives[1], reference=None, path=Path("blind"))
+    found = wo.history(robot, [drives[0], blind]).found
+    assert [drive.run.name for drive in found.drives] == ["drive_0"]
+    assert [each.run for each in found.unusable] == [Path("blind")]
+    with pytest.raises(InputError, match=r"no drive can be used; blind: .*no reference"):
+        wo.history(robot, blind)
+
+
+def test_a_drive_that_was_read_counts_once(months: Path) -> None:
+    robot = wo.read_robot(months / "robot.yaml")
+    drive = wo.read_run(months / "drive_0", robot)
+    with pytest.raises(InputError, match="is given twice"):
+        wo.history(robot, [drive, drive])
 
 
 def test_of_one_more_unusable_drive_it_is_told_as_of_one(months: Path) -> None:

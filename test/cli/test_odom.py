@@ -147,6 +147,15 @@ def test_clocks_that_have_nothing_in_common(place: Path, times: tuple[int, int])
     assert any("are both clocks the same" in note for note in found["notes"])
 
 
+def test_one_pose_tells_where_the_way_begins_and_no_error(place: Path) -> None:
+    reference(place, "0,1,2,3")
+    found = figures(place)
+    assert found["start"]["x_m"] == 1.0
+    assert found["end_error_m"] is None
+    assert any("measured one pose" in note for note in found["notes"])
+    assert not any("clock" in note for note in found["notes"])
+
+
 def test_what_happened_to_the_counters_is_told(place: Path, printed: Printed) -> None:
     (place / "robot.yaml").write_text(ROBOT + "    encoder_bits: 8\n")
     ticks(place, [(0, 100, 100), (0.1, 120, 120), (0.2, -116, -116), (5.0, -100, -100)])

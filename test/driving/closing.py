@@ -47,9 +47,14 @@ PLAIN = {
 }
 """What robots do all day, some minutes of it."""
 KINDS = [
-    each.name for each in CATALOGUE if each.kind == "effect" and not find(each.name).one_of_channels
+    each.name
+    for each in CATALOGUE
+    if each.kind == "effect"
+    and not find(each.name).one_of_channels
+    and hide(each.name, seed=1).peculiarity.live
 ]
-"""All but what follows a temperature or a payload: nobody records one here."""
+"""All but what follows a temperature or a payload, which nobody records here, and what is made in a
+whole record."""
 MEASURED = ("poses", "positions")
 """By a reference with a heading, and by one without."""
 MOST = 3

@@ -250,6 +250,15 @@ def test_wheels_that_slip_in_a_turn_stop_it() -> None:
         assert ("the wheels slip" in one.words) == slips
 
 
+def test_a_gyro_on_another_clock_watches_nothing_so_it_does_not_start() -> None:
+    one, plant = driver(watch=Watch(slip=0.06)), Plant()
+    for _ in range(60):
+        plant.step(one)
+        one.gyro(plant.time - 30.0, 0.0, plant.time)
+    with pytest.raises(InputError, match=r"the gyro's stamps and the odometry's are of different"):
+        one.start(plant.time)
+
+
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [

@@ -117,8 +117,9 @@ def test_what_cannot_be_driven_is_said(tmp_path: Path, told: dict[str, object], 
         ("spins", "is no manoeuvre of werrimbi diagnose"),
         ({"why": "no name"}, "is no manoeuvre of werrimbi diagnose"),
         ({"name": 7}, "is no manoeuvre of werrimbi diagnose"),
-        ({"name": "spins", "minutes": "two"}, "minutes in .* must be a number, not 'two'"),
-        ({"name": "spins", "minutes": math.inf}, "minutes in .* must be a number, not inf"),
+        ({"name": "spins", "minutes": "two"}, "minutes in .* must be a number from 0 .* not 'two'"),
+        ({"name": "spins", "minutes": math.inf}, "minutes in .* must be a number .* not inf"),
+        ({"name": "spins", "minutes": 1e300}, "minutes in .* must be .* to 1440, not 1e.300"),
     ],
 )
 def test_a_file_that_somebody_wrote_by_hand_is_refused_in_words(

@@ -16,6 +16,7 @@ import pytest
 
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag_writing import BagWriter
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -205,6 +206,10 @@ def test_counters_as_floats_are_read_where_they_are_asked_for(
     run = read_run(bag, robot(), ticks_topic="/ticks")
     assert run.ticks.left.tolist() == [100, 200, 300]
     assert run.ticks.right.tolist() == [-3, -6, -9]
+    entries.append(("/ticks", 4 * MS, ros.floats(1e300, -12.0)))  # memory that nothing was put into
+    run = read_run(ros.write(tmp_path / "spoilt", entries), robot(), ticks_topic="/ticks")
+    assert run.ticks.left.tolist() == [100, 200, 300]
+    assert any("with a value that is no number" in note for note in run.notes)
 
 
 @pytest.mark.parametrize("bits", [16, 32])
@@ -456,6 +461,11 @@ def test_without_rosbags_the_remedy_is_named(
     monkeypatch.setitem(sys.modules, "rosbags.rosbag2", None)
     with pytest.raises(InputError, match=re.escape('pip install "werrimbi_odom[tools]"')):
         read_run(bag, robot())
+
+
+def test_a_folder_that_is_there_is_not_recorded_over(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"record: .* cannot be written: .* exists"):
+        BagWriter(tmp_path)
 
 
 def test_progress_is_told(tmp_path: Path, ros: Any, robot: Any) -> None:

@@ -307,6 +307,21 @@ def test_wheels_of_a_side_that_do_not_turn_alike(
     )
 
 
+def test_wheels_of_a_side_are_compared_where_the_clock_is_set(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """A robot of four wheels without a battery for its clock: 25 GB were asked for."""
+    names = ["fl", "rl", "fr", "rr"]
+    entries = []
+    for n in range(100):
+        stamp = (100 * 1000 + 100 * n + (1_700_000_000_000 if n > 50 else 0)) * MS
+        entries.append(
+            ("/joint_states", (n + 1) * 100 * MS, ros.joints(stamp, names, [0.7 * n] * 4))
+        )
+    file = robot("left_wheel_names: [fl, rl]", "right_wheel_names: [fr, rr]")
+    assert read_run(ros.write(tmp_path / "bag", entries), file).ticks.rows == 100
+
+
 @pytest.mark.parametrize("every", [1, 3, 10])
 def test_two_nodes_that_publish_the_wheels(
     tmp_path: Path, ros: Any, robot: Any, every: int

@@ -208,6 +208,28 @@ def test_a_stamp_that_is_none(tmp_path: Path, ros: Any, robot: Any) -> None:
         read_run(text, robot())
 
 
+@pytest.mark.parametrize(
+    ("number", "topic", "column"),
+    [
+        (1, "imu", "linear_acceleration_covariance"),
+        (2, "odom", "header.stamp"),
+        (3, "fix", "position_covariance"),
+    ],
+)
+def test_a_column_that_was_taken_out_is_named(
+    tmp_path: Path, ros: Any, robot: Any, number: int, topic: str, column: str
+) -> None:
+    """To save space, or by another program: a Python error was told."""
+    text = echoed(tmp_path / "text", drive(ros, number))
+    file = text / f"{topic}.csv"
+    first, *rows = csv.reader(file.read_text().splitlines())
+    kept = [place for place, name in enumerate(first) if f"field.{column}" not in name]
+    with file.open("w", newline="") as made:
+        csv.writer(made).writerows([row[place] for place in kept] for row in (first, *rows))
+    with pytest.raises(InputError, match=rf"{file.name}, column {column}: there is no such column"):
+        read_run(text, robot())
+
+
 def test_one_topic_alone_is_wheels_and_no_reference(tmp_path: Path, ros: Any, robot: Any) -> None:
     text = echoed(tmp_path / "text", drive(ros, 2))
     run = read_run(text / "odom.csv", robot())

@@ -93,3 +93,23 @@ def test_in_a_bag_it_is_read_so_and_said(tmp_path: Path, ros: Any, robot: MakeRo
     assert np.abs(run.reference.yaw - 0.02 * np.cumsum(rate)).max() < 0.05
     said = " ".join(wo.info(bag).summary().split())
     assert "mounted on its side: by its accelerometer upwards is its y axis" in said
+
+
+def test_the_vertical_is_that_of_its_own_accelerometer(
+    tmp_path: Path, ros: Any, robot: MakeRobot
+) -> None:
+    """A camera's IMU on its side comes twice as often in the same topic: no turn was left."""
+    entries = []
+    for n in range(1, 200):
+        at, camera = 20 * n * MS, n % 3 != 0
+        kind, message = ros.imu(at, 0.0 if camera else 0.5)
+        message.header.frame_id = "camera" if camera else "imu_link"
+        up = (0.0, 9.81, 0.0) if camera else (0.0, 0.0, 9.81)
+        message.linear_acceleration = ros.make("geometry_msgs/msg/Vector3", *up)
+        names = ["left_wheel_joint", "right_wheel_joint"]
+        entries.append(("/imu", at, (kind, message)))
+        entries.append(("/joint_states", at, ros.joints(at, names, [0.1 * n, 0.1 * n])))
+    bag = ros.write(tmp_path / "bag", entries)
+    run = read_run(bag, robot(), reference_topic="/imu:imu_link")
+    assert run.reference is not None
+    assert run.reference.yaw[-1] == pytest.approx(0.5 * 0.02 * 195)

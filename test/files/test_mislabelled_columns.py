@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -13,7 +14,7 @@ import pytest
 from test.files.recorded import ROBOT, TRUE, driven
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import mislabelled_columns
-from werrimbi_odom.files.compared_ways import words_about_ways
+from werrimbi_odom.files.compared_ways import ends_of_chords, words_about_ways
 from werrimbi_odom.files.mislabelled_columns import words_about_one_clock_unit
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
@@ -355,3 +356,50 @@ def test_a_quaternions_z_is_no_yaw(seed: int) -> None:
     run = driven(seed)
     with pytest.raises(InputError, match="it is the z of a quaternion: write the angle, 2 atan2"):
         refuse_wrong_columns(seen(run, yaw=lambda it: np.sin(0.5 * wrap_all(it.yaw + 0.3))))
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_reading_that_failed_hides_no_increments(seed: int) -> None:
+    """One nan among the first rows, and increments were taken for totals."""
+    made = counted(driven(seed), lambda total: np.diff(total, prepend=total[0]).astype(float))
+    made.ticks.left[3] = np.nan
+    with pytest.raises(InputError, match="not running totals: write the sum"):
+        refuse_wrong_columns(made)
+
+
+@pytest.mark.parametrize("late", ["ticks", "reference"])
+def test_a_message_that_came_late_hides_no_increments(late: str) -> None:
+    """Its stamp lies before that of the row above, and nothing was looked at."""
+    made = counted(driven(1), lambda total: np.diff(total, prepend=total[0]))
+    assert made.reference is not None
+    time = (made.ticks if late == "ticks" else made.reference).time
+    time[40] = time[38] - 1e-3
+    with pytest.raises(InputError, match="not running totals: write the sum"):
+        refuse_wrong_columns(made)
+
+
+def test_a_clock_that_is_set_forward_is_told() -> None:
+    """A robot without a battery for its clock gets the date ten seconds after its start."""
+    run = driven(1)
+    assert run.reference is not None
+    begun = (each.time + 100.0 for each in (run.ticks, run.reference))
+    dated = [np.where(each > 110.0, each + 1.7e9, each) for each in begun]
+    both = seen(replace(run, ticks=replace(run.ticks, time=dated[0])), time=dated[1])
+    with pytest.raises(InputError, match=r"to 17000001\d\d: the clock was set forward"):
+        refuse_unjudgeable(both, ROBOT)
+    late = run.ticks.time + 1.7e9
+    late[0] = 0.0  # before there was a clock, and before the reference
+    sound = seen(replace(run, ticks=replace(run.ticks, time=late)), time=run.reference.time + 1.7e9)
+    refuse_unjudgeable(sound, ROBOT)
+
+
+def test_a_path_of_hours_is_cut_into_chords_in_no_time() -> None:
+    """It took a time that grew with its length and with the number of its chords."""
+    angle = 0.0005 * np.arange(600_000)
+    place = 10.0 * np.exp(1j * angle)
+    began = time.process_time()
+    ends = ends_of_chords(place, 1.0)
+    assert time.process_time() - began < 0.5
+    assert np.diff(ends) == pytest.approx(2.0 * np.arcsin(0.05) / 0.0005, abs=1.0)
+    lone = np.abs(place - place[ends[-1]])[ends[-1] :]
+    assert lone.max() < 1.0, "the rest of the path is shorter than a chord"

@@ -8,6 +8,7 @@ import csv
 import io
 import os
 import time
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from hypothesis import strategies as st
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import csv_table
+from werrimbi_odom.files.content_hash import mark_of
 from werrimbi_odom.files.read_run import bag_at
 from werrimbi_odom.files.run_folder import read_run_folder
 
@@ -428,3 +430,17 @@ def test_times_without_a_fraction_may_be_rounded(
     poses = "".join(f"{time:.12g},{row},0,0\n" for row, time in enumerate(times))
     run = read_run_folder(folder(tmp_path, TICKS + ticks, REFERENCE + poses))
     assert sum("all its times are whole seconds" in each for each in run.damage) == told
+
+
+def test_the_mark_of_a_bag_needs_no_memory_for_it(tmp_path: Path) -> None:
+    """A recording of an hour with pictures is larger than the memory of a robot's computer."""
+    with (tmp_path / "drive.BAG").open("wb") as file:
+        file.truncate(2**25)
+    tracemalloc.start()
+    marks = {mark_of([tmp_path])}
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 2**23
+    with (tmp_path / "drive.BAG").open("ab") as file:
+        file.write(b"more")
+    assert mark_of([tmp_path]) not in marks, "another content, another mark"

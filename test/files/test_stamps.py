@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,7 +15,9 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.files.bag import BagMessage, opened_bag
+from werrimbi_odom.files.clocks import on_one_clock
 from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.run import Collected, Reference, Ticks
 from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
 from werrimbi_odom.files.unstamped import NEVER_STAMPS, with_stamps
 from werrimbi_odom.report.info_words import _clock
@@ -187,3 +190,22 @@ def test_messages_of_a_sender_that_never_stamps_are_not_held_to_the_end() -> Non
     assert len(taken) == NEVER_STAMPS
     assert sum(1 for _ in found) == 2 * NEVER_STAMPS - 1
     assert not left_out
+
+
+def test_a_reference_of_which_no_clock_is_known_keeps_the_wheels() -> None:
+    """Beside one that is on another computer's clock: all its times were lost."""
+    time, zeros = np.arange(5.0), np.zeros(5)
+    late = [2.0, np.nan, 1002.0]
+    found = [Collected(Reference(time - away, zeros, zeros, zeros), "") for away in (0.0, 1000.0)]
+    ticks, moved, told = on_one_clock(Ticks(time, zeros, zeros), found, late)
+    assert "1000 s apart" in told[0]
+    for each in moved:
+        assert np.array_equal(each.reference.time, ticks.time)
+
+
+def test_stamps_that_stand_still_are_no_bursts() -> None:
+    with np.errstate(all="raise"), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        keep, told = newest_of_bursts(np.full(50, 7.0))
+    assert keep.all()
+    assert not told

@@ -22,6 +22,7 @@ from test.fleet.test_process_pool import KILLS, nowhere
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import cluster as ours
+from werrimbi_odom.fleet import worker_archive
 from werrimbi_odom.fleet.cluster import on_cluster
 from werrimbi_odom.fleet.robot_task import Task
 from werrimbi_odom.fleet.worker_archive import (
@@ -33,6 +34,8 @@ from werrimbi_odom.fleet.worker_archive import (
     refusal,
     row_of_parcel,
 )
+from werrimbi_odom.report.fleet import Row
+from werrimbi_odom.report.phrases import drive_names
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 dask = pytest.importorskip("dask")
@@ -172,6 +175,23 @@ def test_a_parcel_holds_what_is_read_and_nothing_else(tmp_path: Path) -> None:
     assert len(data) < 10_000
     row = row_of_parcel(data)
     assert row.error.startswith(f"{run / 'ticks.csv'}, line 1: ")
+
+
+def test_drives_of_one_name_are_told_apart_as_on_this_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the folders that the user put them in."""
+    folder = broken(tmp_path / "robot_9")
+    runs = tuple(folder / of / "square" for of in ("monday", "tuesday"))
+    for run in runs:
+        shutil.copytree(folder / "runs" / "day", run)
+
+    def named(task: Task) -> Row:
+        return Row(task.name, 2, {"names": list(drive_names(task.asked.runs).values())})
+
+    monkeypatch.setattr(worker_archive, "row_of", named)
+    row = row_of_parcel(packed(Task("robot_9", Asked(folder / "robot.yaml", runs))))
+    assert row.figures == {"names": ["monday/square", "tuesday/square"]}
 
 
 def test_a_bag_beyond_all_measure_is_not_sent(tmp_path: Path) -> None:

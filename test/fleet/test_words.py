@@ -125,6 +125,15 @@ def test_what_is_missing_and_what_to_do_fit_a_row() -> None:
     }
 
 
+def test_a_size_that_the_drives_do_not_tell_is_left_out() -> None:
+    """A hard start has a threshold that soft drives do not show, and a ± may not be known."""
+    hard = {"coefficient": fitted(0.03, None, "s^2/m"), "above": fitted(None, None, "m/s^2")}
+    spun = row("robot_9", "named", 0.008, 0.002, found={"coulomb_slip": hard})
+    assert missing_words(spun) == ["coulomb_slip:\n  coefficient 0.03 s^2/m"]
+    untold = {"coulomb_slip": {"above": fitted(None, None, "m/s^2")}}
+    assert missing_words(row("robot_9", "named", 0.008, 0.002, found=untold)) == ["coulomb_slip"]
+
+
 def test_what_is_ambiguous_is_not_missing_for_certain() -> None:
     figures = fleet_json(ALL)
     assert figures["missing"] == {

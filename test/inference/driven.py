@@ -111,6 +111,17 @@ def parts(run: Run, which: str) -> Run:
     return replace(run, reference=replace(reference, **lacking[which]))
 
 
+def swapped(run: Run) -> Run:
+    """Left and right counter exchanged."""
+    return replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
+
+
+def reference_of(run: Run) -> Reference:
+    """Its reference, which it has."""
+    assert run.reference is not None
+    return run.reference
+
+
 def of_headings(time: Floats, yaw: Floats, kind: ReferenceKind | None = None) -> Reference:
     """What a gyro shows."""
     nothing = np.full(time.size, np.nan)

@@ -23,8 +23,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
-from werrimbi_odom.inference.fitting.likelihood import quantisation
 from werrimbi_odom.inference.fitting.prediction import predicted_legs
+from werrimbi_odom.inference.fitting.quantisation import quantisation
 from werrimbi_odom.inference.legs.count_interpolation import Counters, summed
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.driven_motion import features

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import run_by
+from test.inference.driven import run_by, swapped
 from test.model.drives import ROBOT
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
 from werrimbi_odom.effects import find
@@ -206,11 +206,7 @@ def test_a_wheel_noise_ten_times_too_large_makes_it_too_large(runs: tuple[Run, .
 
 
 def test_exchanged_wheels_are_no_matter_of_calibration(runs: tuple[Run, ...]) -> None:
-    swapped = [
-        replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
-        for run in runs
-    ]
-    found = compare(swapped, RIGHT)
+    found = compare([swapped(run) for run in runs], RIGHT)
     assert verdict_of(found).gross
     words = flat(found)
     assert words.startswith("The model is grossly wrong")

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from test.evidence import in_evidence
-from test.inference.driven import COMMON, run_of
+from test.inference.driven import COMMON, run_of, swapped
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT as STEERED
 from test.model.drives import read
@@ -124,10 +124,7 @@ def test_how_far_drives_ended_from_their_start_tells_sizes_far_off_and_no_wiring
     file = replace(Robot(0.3, 0.05, 2000.0, 2000.0), **entered)  # type: ignore[arg-type]
     found = look_for_mistakes(blind, file).findings
     assert tuple(each.effect for each in found) == told
-    crossed = [
-        replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
-        for run in blind
-    ]
+    crossed = [swapped(run) for run in blind]
     assert tuple(each.effect for each in look_for_mistakes(crossed, file).findings) == told
 
 

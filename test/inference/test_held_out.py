@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from test.evidence import in_evidence
-from test.inference.driven import COMMON, parts, run_of, runs_of
+from test.inference.driven import COMMON, parts, run_of, runs_of, swapped
 from test.inference.set_up_mistakes import without_yaw
 from test.model.drives import ROBOT
 from werrimbi_odom.api.drives import read_robot
@@ -38,11 +38,6 @@ def late(run: Run) -> Run:
     """The reference's clock a second off."""
     assert run.reference is not None
     return replace(run, reference=replace(run.reference, time=run.reference.time + 1.0))
-
-
-def swapped(run: Run) -> Run:
-    """Left and right counter exchanged."""
-    return replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
 
 
 @pytest.fixture(scope="module")
@@ -140,9 +135,8 @@ def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     x = run.reference.x + random.normal(0.0, 0.03, run.reference.x.size)
     y = run.reference.y + random.normal(0.0, 0.03, run.reference.y.size)
     late = replace(run.reference, time=run.reference.time + 0.6, x=x, y=y)
-    swapped = replace(run.ticks, left=run.ticks.right, right=run.ticks.left)
     half = replace(ROBOT, wheel_separation=0.5 * ROBOT.wheel_separation)
-    run = replace(run, reference=late, ticks=swapped)
+    run = replace(swapped(run), reference=late)
     robot = read_robot(FILE)
     advised = advised_diagnosis(
         Recordings(robot, Collection(COMMON), (run,), (), DriveOptions(), half)

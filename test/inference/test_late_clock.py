@@ -214,6 +214,23 @@ def test_rare_positions_show_no_lag_that_is_not_there(seed: int) -> None:
         assert lag_of([record])[0] == pytest.approx(delay, abs=0.25)
 
 
+@pytest.mark.parametrize(("after", "leap"), [(0.01, 1.7e9), in_evidence(20.0, 3600.0)])
+def test_a_clock_that_leaps_forwards_hides_no_lag(after: float, leap: float) -> None:
+    """The first message may come before a computer knows the time: 54 years pass until the next.
+
+    They were all looked through in steps of a tenth of a second, which no memory holds; and an hour
+    at rest made every turn of the minutes around it an outlier.
+    """
+    run = later(run_of(ROBOT, 1, 60), 2.0)
+    seen, ticks = run.reference, run.ticks
+    assert seen is not None
+    times = (np.where(each.time > after, each.time + leap, each.time) for each in (ticks, seen))
+    ticks, seen = (replace(each, time=t) for each, t in zip((ticks, seen), times, strict=True))
+    lag, gain = _lag_in(replace(run, ticks=ticks, reference=seen))
+    assert lag == pytest.approx(2.0, abs=0.02)
+    assert gain > 30.0
+
+
 def _lag_in(run: Run) -> tuple[float, float]:
     record = record_of(run, ROBOT, None)
     assert record is not None

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from werrimbi_odom.inference.fitting import correlated_filter, correlated_loop, leg_loop
+from werrimbi_odom.inference.fitting import correlated_filter, correlated_loop, filtering, leg_loop
 from werrimbi_odom.inference.fitting.correlated_filter import (
     GaussMarkovError,
     GyroHeading,
@@ -132,10 +132,10 @@ def test_changes_are_carried_on_alike(seed: int, columns: int, states: int) -> N
     for begin, end, before in zip(bounds[1:-1], bounds[2:], bounds[:-2], strict=True):
         for row in range(begin, end):
             plain[row] += carry[row] @ plain[before + row - begin]
-    for way in (None, leg_loop.carried_in_scalars, compiled(leg_loop.carried_in_scalars)):
+    for way in (None, filtering.carried_in_scalars, compiled(filtering.carried_in_scalars)):
         change = given.copy()
-        with patch.object(leg_loop, "compiled", lambda function, way=way: way):
-            leg_loop.carry_on(carry, bounds, change)
+        with patch.object(filtering, "compiled", lambda function, way=way: way):
+            filtering.carry_on(carry, bounds, change)
         np.testing.assert_allclose(change, plain, rtol=1e-9, atol=1e-12)
 
 

@@ -10,10 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.inference.driven import reference_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.files.run import NoDriving, Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.prepared_runs import for_fit, prepare
 from werrimbi_odom.inference.legs.usable_run import with_no_driving
@@ -31,16 +32,11 @@ def run() -> Run:
     return drive(MACHINE, wandering(random, 60.0), random, every=1)
 
 
-def seen_of(run: Run) -> Reference:
-    assert run.reference is not None
-    return run.reference
-
-
 def exchanged(
     run: Run, begin: float, end: float, turn: float = 0.9, x: float = 0.03, bodily: bool = False
 ) -> Run:
     """Markers exchanged between two moments; `bodily`: the offset turns with the robot."""
-    seen = seen_of(run)
+    seen = reference_of(run)
     away = ((seen.time > begin) & (seen.time < end)).astype(np.float64)
     off = away * x * (np.exp(1j * seen.yaw) if bodily else 1.0)
     other = replace(seen, x=seen.x + off.real, y=seen.y + off.imag, yaw=seen.yaw + away * turn)
@@ -67,7 +63,7 @@ def test_a_reference_that_leaps_away_and_comes_back_is_told_with_its_times(
 
 
 def test_a_pose_that_came_twice_hides_no_lapse(run: Run) -> None:
-    seen = seen_of(exchanged(run, *AWAY))
+    seen = reference_of(exchanged(run, *AWAY))
     twice = seen.chosen(np.sort(np.append(np.arange(seen.time.size), 500)))
     (part,) = found_in(replace(run, reference=twice))
     assert (part.begin, part.end) == pytest.approx(AWAY, abs=0.01)
@@ -82,7 +78,7 @@ def test_a_sound_reference_one_wrong_pose_and_a_place_that_is_lost_are_no_lapse(
 
 def test_a_reference_that_has_not_come_back_as_the_drive_ends_is_no_lapse(run: Run) -> None:
     """Which of its two places was wrong nobody knows."""
-    last = float(seen_of(run).time[-1])
+    last = float(reference_of(run).time[-1])
     assert all(part.why != "gap" for part in found_in(exchanged(run, last - 0.7, last + 1.0)))
 
 
@@ -106,7 +102,7 @@ def test_markers_that_are_exchanged_for_a_second_spoil_no_judgement(run: Run) ->
 @pytest.mark.parametrize("delay", [0.0, 0.04])
 def test_no_leg_of_a_fit_begins_or_ends_while_markers_are_exchanged(run: Run, delay: float) -> None:
     """Whatever delay a fit then finds."""
-    seen = seen_of(run)
+    seen = reference_of(run)
     late = replace(run, reference=replace(seen, time=seen.time + delay))
     given = with_no_driving(exchanged(late, *(each + delay for each in AWAY)), ROBOT)
     robot = replace(ROBOT, effects=(find("reference_delay").using(delay=delay),))

@@ -131,6 +131,19 @@ def test_a_delay_beyond_what_the_effect_holds_is_to_be_converted() -> None:
     assert look_for_mistakes(late(3.0), holding("reference_delay", delay=1.0)).to_convert is None
 
 
+def test_a_clock_that_gains_as_the_file_says_is_not_late() -> None:
+    """It was told as late by what it gains until the middle of the drive: by 0.4 s a minute."""
+    fast = [
+        replace(run, reference=replace(run.reference, time=run.reference.time / (1.0 - 0.015)))
+        for run in DRIVES
+        if run.reference
+    ]
+    assert named(look_for_mistakes(fast, ROBOT)) == ["reference_delay"]
+    assert not named(
+        look_for_mistakes(fast, holding("reference_clock_drift", rate=0.015, delay=0.0))
+    )
+
+
 def test_a_lag_at_which_nothing_was_seen_is_not_the_best() -> None:
     """Poses rarer than the ticks last: no number stood for the least of all."""
     random = np.random.default_rng(0)

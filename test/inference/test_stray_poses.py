@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.inference.driven import reference_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run
@@ -29,11 +30,6 @@ def run() -> Run:
     return drive(MACHINE, wandering(random, 60.0), random, every=1, sigma_xy=NOISE_XY)
 
 
-def seen_of(run: Run) -> Reference:
-    assert run.reference is not None
-    return run.reference
-
-
 def marked(seen: Reference) -> list[int]:
     found = stray_poses(seen, np.zeros(seen.time.size - 1, dtype=np.bool_))
     return np.flatnonzero(found).tolist()
@@ -48,13 +44,13 @@ def moved(seen: Reference, rows: Any, by: float) -> Reference:
 @pytest.mark.parametrize("rows", [[700], [700, 701], [700, 702], [700, 1400]])
 @pytest.mark.parametrize("by", [0.1, -1.0])
 def test_wrong_poses_between_right_ones_are_marked(run: Run, rows: list[int], by: float) -> None:
-    assert set(rows) <= set(marked(moved(seen_of(run), rows, by)))
-    assert len(marked(moved(seen_of(run), rows, by))) <= len(rows) + 1
+    assert set(rows) <= set(marked(moved(reference_of(run), rows, by)))
+    assert len(marked(moved(reference_of(run), rows, by))) <= len(rows) + 1
 
 
 def test_noise_a_place_that_is_lost_and_what_a_robot_can_do_are_not(run: Run) -> None:
     """A push to and fro by 0.1 m within 0.4 s has 6 m/s^2: it may be the robot."""
-    seen = seen_of(run)
+    seen = reference_of(run)
     assert marked(seen) == []
     assert marked(moved(seen, slice(700, None), 0.5)) == []
     assert marked(moved(seen, slice(700, 720), 0.5)) == []
@@ -63,7 +59,7 @@ def test_noise_a_place_that_is_lost_and_what_a_robot_can_do_are_not(run: Run) ->
 
 
 def test_a_pose_beside_a_gap_is_not_judged_by_the_pose_beyond(run: Run) -> None:
-    seen = moved(seen_of(run), [700], 0.5)
+    seen = moved(reference_of(run), [700], 0.5)
     gap = np.zeros(seen.time.size - 1, dtype=np.bool_)
     gap[700] = True
     assert not stray_poses(seen, gap).any()
@@ -77,6 +73,6 @@ def test_wrong_poses_where_legs_would_end_are_no_noise_of_the_others(run: Run) -
         return for_fit(prepare([run], robot, EvaluationOptions()), robot)
 
     ends = cut(run)[0].rows[5:-5:10]
-    strayed = replace(run, reference=moved(seen_of(run), ends, 0.3))
+    strayed = replace(run, reference=moved(reference_of(run), ends, 0.3))
     fit = fit_calibration(concatenated(cut(strayed)), robot)
     assert np.sqrt(fit.point.variances.xy[0]) == pytest.approx(NOISE_XY, rel=0.15)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.inference.driven import parts, run_of
+from test.inference.driven import parts, run_of, swapped
 from test.inference.set_up_mistakes import two_poses
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Run
@@ -32,10 +32,6 @@ def counted(seed: int, robot: Robot) -> Run:
     return replace(run, ticks=replace(run.ticks, left=left, right=right))
 
 
-def exchanged(run: Run) -> Run:
-    return replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
-
-
 @pytest.mark.parametrize("which", ["poses", "positions", "yaw", "two poses"])
 @pytest.mark.parametrize("unlike", UNLIKE)
 def test_exchanged_counters_are_all_that_is_wrong_however_each_counts(
@@ -44,7 +40,7 @@ def test_exchanged_counters_are_all_that_is_wrong_however_each_counts(
     """A wheel of 0.64 or of a 17th of the radius was told beside them."""
     robot = UNLIKE[unlike]
     seeds = range(3, 11) if which == "two poses" else (3, 5)
-    drives = [exchanged(counted(seed, robot)) for seed in seeds]
+    drives = [swapped(counted(seed, robot)) for seed in seeds]
     seen = [two_poses(run) if which == "two poses" else parts(run, which) for run in drives]
     found = look_for_mistakes(seen, robot)
     assert [each.effect for each in found.findings] == ["wheels_swapped"]

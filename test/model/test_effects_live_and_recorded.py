@@ -266,6 +266,19 @@ def test_a_gap_in_a_channel_is_interpolated(laden: Robot) -> None:
     assert np.isfinite(holed.x).all()
 
 
+def test_a_gap_in_a_channel_is_interpolated_where_the_clock_was_set_back(laden: Robot) -> None:
+    """The robot carries what it was measured to, whatever time its computer thinks it is."""
+    ticks = drive()
+    payload = np.linspace(0.0, 20.0, ticks.time.size)
+    payload[300:350:7] = np.nan
+    set_back = Ticks(np.where(np.arange(400) < 200, ticks.time, ticks.time - 15.0), *ticks[1:])
+    alike, other = (
+        trajectory(laden, *each, channels={"payload_kg": payload}) for each in (ticks, set_back)
+    )
+    np.testing.assert_allclose(other.x, alike.x, atol=1e-6)
+    np.testing.assert_allclose(other.y, alike.y, atol=1e-6)
+
+
 @pytest.mark.parametrize("channels", [{}, {"payload_kg": np.full(400, np.nan)}])
 def test_a_channel_that_was_not_measured_is_an_error(
     laden: Robot, channels: dict[str, np.ndarray]

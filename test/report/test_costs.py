@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, run_of
+from test.inference.driven import COMMON, run_of, swapped
 from test.inference.test_local_map_errors import TRUE, session
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
@@ -104,10 +104,7 @@ def test_a_base_off_is_told_beside_wheels_that_are_exchanged() -> None:
     """Base 3 % larger, wheels exchanged: `add` found it to 0.01 %, `diagnose` had no line of it."""
     truth = replace(ROBOT, wheel_separation_multiplier=1.03)
     runs = [run_of(truth, seed, 60) for seed in (1, 2)]
-    runs = [
-        replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
-        for run in runs
-    ]
+    runs = [swapped(run) for run in runs]
     found = diagnose(runs, ROBOT, COMMON)
     assert found.verdict == "ambiguous"
     value, std = best_sizes(found)["wheel_separation_multiplier"]

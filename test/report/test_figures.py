@@ -37,6 +37,8 @@ from werrimbi_odom.report.comparison.over_variable import error_against_figure, 
 from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure, evidence_map_figure
 from werrimbi_odom.report.diagnosis.figures import manoeuvre_figure, ranking_figure
 from werrimbi_odom.report.events import over_time
+from werrimbi_odom.report.path_figure import PathDrawing
+from werrimbi_odom.report.path_figure import path_figure as drawn_path
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.report.style import FEWEST, MARKS, MOST, along_path
 
@@ -212,6 +214,23 @@ def test_no_text_of_the_ranking_lies_on_the_effects_names(
     assert len(beyond) == sum(gain > 0.0 for gain in gains)
     assert all(note.x == 0.0 and note.xanchor == "left" for note in figure.layout.annotations)
     assert len(figure.layout.annotations) == sum(gain < 0.0 for gain in gains)
+
+
+def test_the_path_of_a_fast_reference_keeps_its_end_and_few_points() -> None:
+    """Motion capture sends as many poses in an hour as would make a page too large to open."""
+    way = np.linspace(0.0, 1.0, 200_000)
+    still = np.zeros((2, 2, 2))
+    figure: Any = drawn_path(PathDrawing(np.array([0.0, 1.0]), np.zeros(2), still, way, 0.0 * way))
+    shown = {trace.name: trace for trace in figure.data}
+    assert shown["measured"].x.size <= MOST + 2
+    assert shown["measured"].x[-1] == shown["measured end"].x[0] == 1.0
+
+
+def test_a_gyro_has_no_measured_path() -> None:
+    ends, nothing = np.array([0.0, 1.0]), np.full(9, np.nan)
+    drawing = PathDrawing(ends, ends, np.zeros((2, 2, 2)), nothing, nothing)
+    figure: Any = drawn_path(drawing)
+    assert not [trace.name for trace in figure.data if "measured" in trace.name]
 
 
 def test_all_figures_are_json_without_surprises(comparison: Comparison) -> None:

@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
+import logging
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +19,7 @@ from matplotlib.image import imread
 
 from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure
-from werrimbi_odom.report.save import save_simple_png
+from werrimbi_odom.report.save import save_pictures, save_simple_png
 from werrimbi_odom.report.style import BLUE, GREEN, ORANGE
 
 
@@ -43,3 +46,14 @@ def test_a_path_and_its_ellipses(tmp_path: Path) -> None:
     assert save_simple_png(path_figure(drawing), tmp_path / "path.png")
     assert share(tmp_path / "path.png", BLUE) > 1e-3
     assert share(tmp_path / "path.png", ORANGE) > 1e-3
+
+
+def test_pictures_leave_the_users_logging_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = SimpleNamespace(write_fig_from_object_sync=lambda figures, kopts: None)
+    monkeypatch.setitem(sys.modules, "kaleido", drawn)
+    logging.disable(logging.WARNING)
+    try:
+        save_pictures([])
+        assert logging.root.manager.disable == logging.WARNING
+    finally:
+        logging.disable(logging.NOTSET)

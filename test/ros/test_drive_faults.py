@@ -72,7 +72,8 @@ class PlayedRobot:
         self.stuck: float | None = None
         self.own_timeout, self._obeyed = math.inf, 0.0
         self.odometry: Callable[[Odometry], Odometry | None] = lambda message: message
-        self.gyro, self.nearest = 0.0, 2.0
+        self.gyro: float | None = 0.0
+        self.nearest = 2.0
         self.clock = 0.0
         """Its own: it lives on with each odometry message, however busy the machine is [s]."""
         node = client.node
@@ -109,7 +110,9 @@ class PlayedRobot:
         if spoilt is not None:
             self._odometry.publish(spoilt)
         imu = Imu()
-        imu.header.stamp, imu.angular_velocity.z = stamp, self.gyro
+        if self.gyro is None:
+            imu.angular_velocity_covariance[0] = -1.0  # it measures something else
+        imu.header.stamp, imu.angular_velocity.z = stamp, self.gyro or 0.0
         self._imu.publish(imu)
         self._scan.publish(LaserScan(ranges=[math.inf, self.nearest], range_min=0.05))
 
@@ -236,6 +239,14 @@ def something_near(robot: PlayedRobot) -> None:
     robot.nearest = 0.3
 
 
+def something_too_near_to_measure(robot: PlayedRobot) -> None:
+    robot.nearest = -math.inf  # REP 117
+
+
+def without_gyro(robot: PlayedRobot) -> None:
+    robot.gyro = None
+
+
 def asked(robot: PlayedRobot) -> None:
     robot.ask("stop")
 
@@ -248,11 +259,15 @@ FAULTS: dict[Callable[[PlayedRobot], None], str] = {
     no_number: "the odometry is no pose",
     slipping: "the wheels slip",
     something_near: "the scan sees something at 0.30 m",
+    something_too_near_to_measure: "the scan sees something at 0.00 m",
+    without_gyro: "no gyro comes",
     asked: "asked to stop",
 }
 
 
-@pytest.mark.parametrize("fault", [silent, jumping, something_near, asked])
+@pytest.mark.parametrize(
+    "fault", [silent, jumping, something_too_near_to_measure, without_gyro, asked]
+)
 def test_a_fault_stops_it_for_good(
     played: PlayedRobot, fault: Callable[[PlayedRobot], None]
 ) -> None:

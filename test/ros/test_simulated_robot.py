@@ -22,7 +22,7 @@ pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[al
 
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu, LaserScan
+from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_srvs.srv import Trigger
 
 import werrimbi_odom as wo
@@ -134,6 +134,18 @@ def test_the_round_is_closed_without_a_hand(launch: Any, tmp_path: Path) -> None
     assert (found["verdict"], found["effect"]) == ("named", "track_width")
     multiplier = found["found"][0]["parameters"]["multiplier"]
     assert abs(multiplier["value"] - 1.03) < 3.0 * multiplier["std"] + 0.002
+
+
+def test_the_wheels_have_the_names_of_its_robot_file(launch: Any, tmp_path: Path) -> None:
+    """Four of a robot that skids."""
+    client, file = launch(ROBOT), tmp_path / "robot.yaml"
+    hidden = {"hide": "skid_steer", "robot_file": file}
+    with beside(tmp_path, client.environment, "simulated_robot", **hidden):
+        heard = client.keep(JointState, "joint_states")
+        client.until(lambda: bool(heard), "joint states", 30.0)
+    values = wo.read_robot(file).values
+    assert heard[0].name == [*values["left_wheel_names"], *values["right_wheel_names"]]  # type: ignore[misc]
+    assert len(heard[0].position) == 4
 
 
 @pytest.mark.evidence

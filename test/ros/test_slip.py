@@ -11,6 +11,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from rclpy.qos import ReliabilityPolicy
 from sensor_msgs.msg import Imu
 
 from test.ros.messages import stamp_at
@@ -46,6 +47,15 @@ def test_a_spin_that_the_gyro_denies_makes_the_heading_unsure(
     assert spin(0.0) == pytest.approx(0.36, rel=0.1)
     _, _, values = node.report()
     assert values["slip"].startswith("1 time, 3")
+
+
+def test_its_gyro_takes_a_qos_override(launch: Any, robot: dict[str, Any]) -> None:
+    own = robot["qos_overrides"] | {"/imu": {"subscription": {"reliability": "reliable"}}}
+    node = launch(robot | {"slip_imu_topic": "imu", "qos_overrides": own})
+    node.until(lambda: node.node.count_subscribers("imu") == 1, "subscription")
+    (heard,) = node.node.get_subscriptions_info_by_topic("/imu")
+    assert heard.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+    assert "is not used" not in node.stderr()
 
 
 def test_a_gyro_without_stamps_is_taken_as_it_comes(launch: Any, robot: dict[str, Any]) -> None:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import pickle
 import tempfile
 from functools import partial
 from pathlib import Path
@@ -23,6 +24,7 @@ from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.ros.compare_parameters import PARAMETERS
 from werrimbi_odom.ros.domain import free_domain
 from werrimbi_odom.ros.live_diagnosis import Watching
+from werrimbi_odom.ros.recent_messages import MOST_BYTES, Kept
 from werrimbi_odom.ros.topics import subscribe
 
 
@@ -48,3 +50,12 @@ def test_without_room_for_its_files_the_node_goes_on(
     node.destroy_node()
     rclpy.shutdown(context=context)
     lock.close()
+
+
+def test_a_message_larger_than_the_memory_is_not_kept_and_the_node_goes_on(tmp_path: Path) -> None:
+    kept = Kept([("/joint_states", "sensor_msgs/msg/JointState")], 60.0)
+    kept.take(0, 10**9, bytes(MOST_BYTES))
+    kept.take(0, 2 * 10**9, b"small")
+    kept.write(tmp_path / "messages")
+    _, messages = pickle.loads((tmp_path / "messages").read_bytes())
+    assert [data for _, _, data in messages] == [b"small"]

@@ -19,7 +19,10 @@ from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.simulation.bag import EPOCH
+from werrimbi_odom.simulation.bag import EPOCH, write_bag
+from werrimbi_odom.simulation.hidden.axle_and_reference import DriftingClock
+from werrimbi_odom.simulation.hidden.knocks import ReferenceJump
+from werrimbi_odom.simulation.recording import Happened
 
 ROBOT = sim.TrueRobot()
 
@@ -206,6 +209,51 @@ def test_what_is_made_in_records_is_hidden_too() -> None:
     for now, late, rows in ((seen().imu, drive.imu, 5), (seen().localiser, drive.localiser, 1)):
         apart = [np.abs(np.sin(now[:-k, -1] - late[k:, -1])).mean() for k in range(1, 10)]
         assert 1 + int(np.argmin(apart)) == rows
+
+
+def test_what_is_made_in_the_record_of_a_reference_shows_in_the_localiser() -> None:
+    """Jumps, at the places and times that the truth tells, and a clock that gains."""
+    odd = [ReferenceJump(0.5, stays=True, every=25.0), DriftingClock(5e-3, unset=0.0)]
+    drive = sim.as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
+    gained = (drive.localiser - seen().localiser)[:, 0]
+    assert gained[-1] == pytest.approx(5e-3 * seen().localiser[-1, 0], rel=0.25)
+    apart = drive.localiser[:, 2:4] - seen().localiser[:, 2:4]
+    (jump, *_) = drive.happened
+    at = seen().localiser[:, 0] - (jump.t_s - EPOCH)
+    np.testing.assert_allclose(apart[at < -0.2], 0.0, atol=1e-9)
+    first = apart[at > 0.2][0]
+    np.testing.assert_allclose(first, [jump.along_m, jump.sideways_m], atol=1e-9)
+    np.testing.assert_array_equal(drive.wheels, seen().wheels)
+
+
+def test_a_counter_that_keeps_its_zero_tells_the_angle_of_its_wheel() -> None:
+    keeping = replace(ROBOT, counters_keep_zero=True)
+    drive = sim.as_in_the_field(recorded(), keeping, seed=5, robot_seed=6)
+    np.testing.assert_allclose(drive.imu, seen().imu)
+    first = recorded().true_path.left_angle_rad[0], recorded().true_path.right_angle_rad[0]
+    np.testing.assert_allclose(drive.wheels[0, 2:], first, atol=0.01)
+
+
+def test_a_bag_names_the_wheels_as_the_robot_file_does(tmp_path: Path) -> None:
+    four = replace(ROBOT, wheels_a_side=2)
+    robot = wo.read_robot(sim.write_robot_file(four, tmp_path / "robot.yaml"))
+    bag = write_bag(recorded(), four, tmp_path / "bag")
+    run = wo.read_run(bag, robot, ticks_topic="/joint_states", reference_topic="/reference")
+    travel = np.ptp(recorded().left_ticks) * robot.robot.left_tick
+    assert np.ptp(run.ticks.left) * robot.robot.left_tick == pytest.approx(travel, rel=1e-6)
+
+
+def test_events_have_the_time_of_the_bag() -> None:
+    """Later than in the drive itself by what was inserted before them: holding and carrying."""
+    path = recorded().true_path
+    pushed = tuple(Happened("push", t, 0.0, 0.02, 0.0) for t in (0.5, 0.5 * path.t_s[-1], 39.5))
+    told = replace(recorded(), happened=pushed)
+    drive = sim.as_in_the_field(told, ROBOT, seed=5, robot_seed=6)
+    for before, after in zip(pushed, drive.happened, strict=True):
+        time = after.t_s - EPOCH
+        late = sum(end - begin for begin, end in map(stretch, ("held", "carried")) if begin < time)
+        assert time == pytest.approx(before.t_s + late, abs=2e-3)
+    assert drive.happened[-1].t_s - EPOCH == pytest.approx(39.5 + 9.0, abs=2e-3)
 
 
 def test_a_lidar_that_is_not_where_its_transform_says() -> None:

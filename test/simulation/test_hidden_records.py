@@ -16,6 +16,7 @@ import pytest
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.simulation.hidden import Entry
 from werrimbi_odom.simulation.hidden.axle_and_reference import (
+    DriftingClock,
     ReferenceDelay,
     ReferenceMirrored,
     ReferenceMount,
@@ -28,6 +29,7 @@ from werrimbi_odom.simulation.hidden.counters import (
     WheelsSwapped,
 )
 from werrimbi_odom.simulation.hidden.geometry import TrackWidth, WheelRadiusScale
+from werrimbi_odom.simulation.hidden.skid import SkidSteer
 from werrimbi_odom.simulation.sensors import wrap
 
 EXACT = sim.ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
@@ -208,6 +210,16 @@ def test_everything_in_the_catalogue_can_be_hidden(entry: Entry) -> None:
         assert not (same_ticks and same_reference) or acts_later or at_speed
 
 
+def test_a_heading_drifts_also_by_a_clock_that_is_behind() -> None:
+    """The reference's stamps then begin before the drive does."""
+    plain = plain_run(HOP, sim.ReferenceSensor())
+    slow, gyro = DriftingClock(-5e-3), WarmingGyro(1e-4)
+    late = slow.recording(plain, sim.TrueRobot(), np.random.default_rng(1))
+    assert late.reference_t_s[0] < 0.0
+    drifting = gyro.recording(late, sim.TrueRobot(), np.random.default_rng(1))
+    assert 0.0 < np.abs(drifting.reference_yaw_rad - plain.reference_yaw_rad).max() < 0.01
+
+
 @pytest.mark.parametrize(
     "entry", [e for e in sim.CATALOGUE if e.kind not in ("mistake", "robot")], ids=lambda e: e.name
 )
@@ -268,3 +280,10 @@ def test_random_hides_every_effect_alike() -> None:
 def test_a_name_that_is_not_there() -> None:
     with pytest.raises(sim.UnknownEffectError, match="did you mean castor_kick"):
         sim.hide("caster_kick", seed=1)
+
+
+def test_four_wheels_without_skid_turn_as_two() -> None:
+    odd = sim.wished(["skid_steer=1"], seed=3)[0].peculiarity
+    assert isinstance(odd, SkidSteer)
+    along, _, turn = odd.spin(0.35)
+    assert (along, turn) == (pytest.approx(0.0, abs=1e-5), pytest.approx(2.0 / 0.35))

@@ -242,6 +242,29 @@ def test_the_gyro_integrates_to_the_turn_and_memory_stays_bounded() -> None:
     assert live.pose.yaw == pytest.approx(turned, rel=0.03)  # its bias and scale
     assert live.pose.yaw > 4.0
     assert len(live._rows) == 2 * KEPT
+    assert live.gyro(0.0, live.time) == pytest.approx(0.8, rel=0.05)  # read once in six seconds
+
+
+def test_a_late_reference_is_late_by_as_much_live() -> None:
+    """Also by more than the memory of a prompt one holds."""
+    odd = simulation.hide("reference_delay", 4.0, seed=1).peculiarity
+    live = simulation.LiveRobot(ROBOT, seed=1, start=START, hidden=[odd], reference=EXACT)
+    live.command(0.2, 0.0)
+    path = {}
+    for step in range(1700):
+        live.advance()
+        path[step] = live.pose
+    assert live.reference(live.time)[:2] == pytest.approx(path[1699 - 800][:2], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name", ["reference_jump", "reference_clock_drift", "reference_gyro_drift"]
+)
+def test_what_is_made_in_a_whole_record_is_refused_live(name: str) -> None:
+    """Nothing was hidden, and the truth said that it was."""
+    odd = simulation.hide(name, seed=1).peculiarity
+    with pytest.raises(ValueError, match="is made in a whole record"):
+        simulation.LiveRobot(ROBOT, seed=1, hidden=[odd])
 
 
 def test_the_lidar_sees_the_room_from_where_the_robot_is() -> None:

@@ -120,6 +120,7 @@ def test_a_file_is_left_alone(tmp_path: Path, complaint: Complaint) -> None:
         ("lateral_slip=-0.02", "lateral_slip cannot be -0.02 s: a robot can have 0 to 0.2 s"),
         ("track_width=1e-9", "track_width cannot be 1e-09: a robot can have 0.0625 to 16"),
         ("wheels_swapped=7", "wheels_swapped cannot be 7: a robot can have 0 to 1"),
+        ("skid_steer=0.5", "skid_steer cannot be 0.5: a robot can have 1 to 4"),
         ("random=0.01", "name the effect"),
         ("", "nothing called ''"),
     ],

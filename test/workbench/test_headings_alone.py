@@ -20,7 +20,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.loaded_input import error_of, opened
 from werrimbi_odom.workbench.session import begun
-from werrimbi_odom.workbench.tab import Shared, Tab, size_told
+from werrimbi_odom.workbench.tab import Shared, Tab, change_told, size_told
 from werrimbi_odom.workbench.task import Add
 from werrimbi_odom.workbench.worker_tasks import added
 
@@ -53,3 +53,6 @@ def test_the_error_that_falls_is_that_of_the_headings(tmp_path: Path) -> None:
 def test_without_anything_measured_it_is_said() -> None:
     nothing: Any = SimpleNamespace(rmse_position_m=math.nan, rmse_yaw_rad=math.nan)
     assert size_told(*error_of(nothing)) == "not measured"
+    assert change_told(math.nan, 0.001) == change_told(0.001, math.nan) == ""
+    assert change_told(0.0, 0.001) == ""
+    assert change_told(0.004, 0.001) == "−75 %"

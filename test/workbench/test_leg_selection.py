@@ -26,6 +26,7 @@ from werrimbi_odom.workbench.drawings import (
     WIDTH,
     classes_of,
     floor_figure,
+    leg_told,
     measured_drawing,
     shown,
 )
@@ -53,6 +54,16 @@ def test_types_of_motion_share_out_all_legs(comparison: Comparison) -> None:
     for part in parts:
         figures = comparison.main.by_motion[part.kind].figures
         assert figures_of(comparison, part.legs(comparison)) == figures
+
+
+def test_what_was_not_measured_of_a_leg_is_not_told(comparison: Comparison) -> None:
+    """Satellites measure positions alone: nothing is known of the heading."""
+    run = comparison.runs[0].run
+    assert run.reference is not None
+    blind = np.full(run.reference.time.size, np.nan)
+    alone = replace(run, reference=replace(run.reference, yaw=blind))
+    told = leg_told(compare([alone], comparison.model.robot), 0)
+    assert re.search(r"along [+-]\d+\.\d mm, sideways [+-]\d+\.\d mm, heading -$", told)
 
 
 def test_bins_hold_the_legs_that_their_figures_count(comparison: Comparison) -> None:

@@ -48,7 +48,7 @@ def write_run(
     Raises
     ------
     InputError
-        If an array has another shape, or the folder exists.
+        If an array has another shape, a table cannot have a channel's name, or the folder exists.
     """
     ticks = ticks_of(t, left, right, channels)
     poses = None if reference is None else Reference(*_poses(reference))
@@ -62,20 +62,22 @@ def ticks_of(
 
     InputError if one holds no numbers, or they are not one column each, all of one length.
     """
-    given = {"t": t, "left": left, "right": right, **(channels or {})}
-    columns = {name: numbers(name, values) for name, values in given.items()}
-    shapes = {values.shape for values in columns.values()}
+    channels = channels or {}
+    given = [("t", t), ("left", left), ("right", right), *channels.items()]
+    columns = [numbers(name, values) for name, values in given]
+    shapes = {values.shape for values in columns}
     if len(shapes) > 1 or len(shapes.pop()) != 1:
-        told = ", ".join(f"{name} {values.shape}" for name, values in columns.items())
+        names = (name for name, _ in given)
+        told = ", ".join(f"{name} {each.shape}" for name, each in zip(names, columns, strict=True))
         raise InputError(f"a column each is wanted, all as long as each other; shapes are: {told}")
-    time, of_left, of_right, *others = columns.values()
+    time, of_left, of_right, *others = columns
     if time.size == 0:
         raise InputError("t, left and right are empty: there are no ticks")
     return Ticks(
         time.astype(np.float64),
         _counts(of_left),
         _counts(of_right),
-        dict(zip(list(columns)[3:], (each.astype(np.float64) for each in others), strict=True)),
+        dict(zip(channels, (each.astype(np.float64) for each in others), strict=True)),
     )
 
 
@@ -84,10 +86,12 @@ def _counts(values: NDArray[np.int64] | Floats) -> NDArray[np.int64] | Floats:
 
 
 def numbers(name: str, values: ArrayLike) -> NDArray[np.int64] | Floats:
-    """An array of int64 or float64; None is NaN.
+    """An array of int64 or float64; None is NaN, as is what a mask hides.
 
     InputError if it holds no numbers; the message has its name.
     """
+    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind in "iuf" and values.mask.any():
+        values = np.ma.filled(values.astype(np.float64), np.nan)
     found = np.asarray(values)
     if found.dtype.kind in "mM":
         raise InputError(
@@ -110,4 +114,6 @@ def _poses(reference: ArrayLike) -> Floats:
             "reference must have a row for each pose and four columns, t [s], x [m], y [m] and "
             f"yaw [rad], and has the shape {found.shape}"
         )
+    if found.size == 0:
+        raise InputError("reference has no poses; give none for a drive that nothing measured")
     return found.astype(np.float64).T

@@ -92,9 +92,9 @@ def calibrate_umbmark(
     # Rounded far below the resolution of any tape.
     changes = {name: round(each.value, 9) for name, each in found.multipliers(old).items()}
     words = [
-        *paragraphs(read.notes),
         *found_in_words(squares, found, old),
         *gained_in_words(found, squares, later, again),
+        *paragraphs(read.notes, apart=True),
     ]
 
     def figure() -> go.Figure:

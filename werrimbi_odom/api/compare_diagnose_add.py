@@ -202,7 +202,7 @@ def add(
 def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings) -> list[Effect]:
     """Find effects by name: "A,B" or several; effects are passed through.
 
-    InputError if a name is unknown, or given twice.
+    InputError if there is none, or a name is unknown or given twice.
     """
     several: Sequence[str | Effect]
     if isinstance(wanted, str):
@@ -210,6 +210,8 @@ def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings)
     else:
         several = wanted if isinstance(wanted, Sequence) else [wanted]
     found = [given.collection.find(each) if isinstance(each, str) else each for each in several]
+    if not found:
+        raise InputError("no effect was given")
     names = [effect.name for effect in found]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice:

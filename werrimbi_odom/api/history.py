@@ -89,28 +89,13 @@ def history(
     InputError
         If no drive is usable; the message gives the reason for the first.
     """
-    return history_of(
-        robot, runs, how_of(**options), like=like, cache=cache, spread=spread, show=show
-    )
-
-
-def history_of(
-    robot: RobotFile,
-    runs: Drives,
-    how: DriveOptions,
-    *,
-    like: RobotFile | None,
-    cache: str | Path | None,
-    spread: Spread | None,
-    show: Show,
-) -> Result[History]:
-    """`history` for the command line."""
+    how = how_of(**options)
     given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
     if not given:
         raise InputError("no drives were given")
+    refuse_twice(each if isinstance(each, Run) else Path(each) for each in given)
     paths = [Path(each) for each in given if not isinstance(each, Run)]
-    refuse_twice(paths)
-    found: list[Looked] = [_looked_at(each, robot, how) for each in given if isinstance(each, Run)]
+    found: list[Looked] = [_told_of(each, robot, how) for each in given if isinstance(each, Run)]
     found += _known_or_done(
         _tasks(paths, robot, how, cache), spread or partial(map, told_of_task), show
     )
@@ -130,13 +115,21 @@ def history_of(
     )
 
 
+def _told_of(run: Run, robot: RobotFile, how: DriveOptions) -> Looked:
+    """Process a drive that was read already."""
+    try:
+        return _looked_at(run, robot, how)
+    except InputError as error:
+        return _unusable(run.path, error)
+
+
 def told_of_task(task: DriveTask) -> Looked:
     """Process a drive, and cache the result."""
     try:
         robot = _source(task.robot, task.text, task.how.effects)
         found = _looked_at(task.run, robot, task.how)
     except (InputError, OSError) as error:
-        return unusable_task(task, str(error))
+        return _unusable(task.run, error)
     if task.keep is not None:
         with suppress(InputError), replacing(task.keep) as file:  # else it is processed again
             json.dump(_plain(found.estimate), file)
@@ -145,7 +138,11 @@ def told_of_task(task: DriveTask) -> Looked:
 
 def unusable_task(task: DriveTask, why: str) -> Unusable:
     """A drive that could not be processed."""
-    return Unusable(task.run, " ".join(why.split()))
+    return _unusable(task.run, why)
+
+
+def _unusable(run: Path, why: object) -> Unusable:
+    return Unusable(run, " ".join(str(why).split()))
 
 
 @with_one_blas_thread

@@ -66,6 +66,8 @@ def info(
         If a recording is unreadable, or a robot file cannot be written.
     """
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
+    if not paths:
+        raise InputError("no recordings were given")
     others = reference_of_each(paths, [Path(each) for each in references])
     file = None if robot is None else Path(robot)
     found = _look(paths, others, file, ticks_topic, reference_topic)

@@ -52,7 +52,7 @@ def found_in(folder: Path) -> dict[str, Any]:
         robot = read_robot(asked["robot"])
         run = read_run(_bag(folder), robot, **asked["topics"])
         refuse_unjudgeable(run, robot.robot)
-        drives = halves(run)
+        drives = halves(run, robot.robot.encoder_bits)
         whole = diagnose(robot, drives, **options)
         if whole.found.diagnosis.wander is not None:
             options["reference_kind"] = "local_map"
@@ -97,11 +97,14 @@ def of_now(
     return whole, drives
 
 
-def halves(run: Run) -> list[Run]:
-    """Split a drive into halves of equal travel, so that a change between them can be found."""
-    ticks, reference = run.ticks, run.reference
+def halves(run: Run, bits: int = 0) -> list[Run]:
+    """Split a drive into halves of equal travel, so that a change between them can be found.
+
+    `bits`: those of counters that begin anew; 0 for none.
+    """
+    ticks, reference, rolling = run.ticks, run.reference, run.ticks.unwrapped(bits)
     assert reference is not None
-    steps = np.abs(np.diff(ticks.left)) + np.abs(np.diff(ticks.right))
+    steps = np.abs(np.diff(rolling.left)) + np.abs(np.diff(rolling.right))
     rolled = np.cumsum(np.nan_to_num(steps.astype(np.float64)))
     half = float(ticks.time[int(np.searchsorted(rolled, 0.5 * rolled[-1])) + 1])
     return [

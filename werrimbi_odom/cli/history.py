@@ -59,7 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Process the drives, combine and report them; return 0."""
-    from werrimbi_odom.api.history import history_of
+    from werrimbi_odom.api.history import history
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.robot_file import read_robot_file
 
@@ -72,14 +72,14 @@ def run(arguments: argparse.Namespace) -> int:
     remark(robot)
 
     with share_done("looking at the drives") as show:
-        result = history_of(
+        result = history(
             robot,
             arguments.runs,
-            how_of(arguments),
             like=like,
             cache=arguments.cache,
             spread=partial(_spread, arguments.jobs),
             show=show,
+            **vars(how_of(arguments)),
         )
     write_and_tell(arguments, result)
     return 0

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.simulation import Hidden, Peculiarity, Recording, TrueRobot
+    from werrimbi_odom.simulation import FieldDrive, Hidden, Peculiarity, Recording, TrueRobot
 
 HELP = "make drives of a robot in a physics engine, with a hidden effect"
 _KINDS = {
@@ -111,14 +111,14 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             for number, (name, recording) in enumerate(runs, start=1):
                 show(number / count, name)
-                if recording.happened:
-                    events[name] = [asdict(each) for each in recording.happened]
+                happened = recording.happened
                 if arguments.like == "field":
-                    seen[name] = _in_the_field(
-                        recording, written, odd, arguments.seed, folder / name
-                    )
+                    drive = _in_the_field(recording, written, odd, arguments.seed, folder / name)
+                    seen[name], happened = drive.truth, drive.happened
                 else:
                     simulation.write_run(recording, folder / name)
+                if happened:
+                    events[name] = [asdict(each) for each in happened]
         except (simulation.UnstableError, ValueError) as error:
             raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error
         truth = _truth(hidden, arguments.seed, robot)
@@ -137,8 +137,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _in_the_field(
     recording: Recording, robot: TrueRobot, odd: Sequence[Peculiarity], seed: int, folder: Path
-) -> dict[str, object]:
-    """Write a drive as a bag; return its ground truth, for truth.json."""
+) -> FieldDrive:
+    """Write a drive as a bag; return it, with its ground truth for truth.json."""
     from werrimbi_odom import simulation
 
     number = zlib.crc32(folder.name.encode() + folder.parent.name.encode())
@@ -146,7 +146,7 @@ def _in_the_field(
         recording, robot, seed=1000 * seed + number, robot_seed=seed, hidden=odd
     )
     simulation.write_field_bag(drive, robot, folder)
-    return drive.truth
+    return drive
 
 
 def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:

@@ -26,6 +26,7 @@ import numpy as np
 
 from werrimbi_odom.demo.node_processes import end, private_domain, save_and_tell
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import TICKS
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run
@@ -119,18 +120,25 @@ def measured_at(reference: Reference, time: float) -> Pose:
     return Pose(at(reference.x), at(reference.y), at(unwrapped))
 
 
+def ros_arguments(robot_file: RobotFile, private: str) -> list[str]:
+    """Arguments of a node that reads the robot file, and gets counts on topics below `private`."""
+    values = {"input_type": "joint_state", "position_unit": "ticks"}
+    values |= {name: str(robot_file.values[name]) for name in TICKS}  # also those of radians
+    words = ["--ros-args", "--params-file", str(robot_file.path)]
+    for name, value in values.items():
+        words += ["-p", f"{name}:={value}"]
+    *above, own = [part for part in "/".join(robot_file.place).split("/") if part]
+    names = {topic: f"{private}/{topic.removeprefix('~/')}" for topic in TOPICS}
+    names |= {"__node": own, "__ns": "/" + "/".join(above)}
+    for name, value in names.items():
+        words += ["-r", f"{name}:={value}"] if "*" not in value else []
+    return words
+
+
 @contextmanager
 def _node(robot_file: RobotFile, private: str) -> Iterator[subprocess.Popen[bytes]]:
-    command = [
-        *(sys.executable, "-m", "werrimbi_odom.ros.odom_node", "--ros-args"),
-        *("--params-file", str(robot_file.path)),
-        *("-p", "input_type:=joint_state", "-p", "position_unit:=ticks"),
-    ]
-    for topic in TOPICS:
-        command += ["-r", f"{topic}:={private}/{topic.removeprefix('~/')}"]
-    if "*" not in robot_file.node:
-        command += ["-r", f"__node:={robot_file.node.strip('/').rpartition('/')[2]}"]
-    node = subprocess.Popen(command)
+    module = [sys.executable, "-m", "werrimbi_odom.ros.odom_node"]
+    node = subprocess.Popen([*module, *ros_arguments(robot_file, private)])
     try:
         yield node
     finally:

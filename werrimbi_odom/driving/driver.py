@@ -84,6 +84,11 @@ class Driver:
         wrong = self._of_surroundings(now)
         if wrong:
             return wrong
+        if watch.slip > 0.0 and self._slip.span is None:
+            return (
+                "the gyro's stamps and the odometry's are of different times: it could not tell "
+                "slip; clocks are apart (use_sim_time?)"
+            )
         path = self.plan.path()
         room = room_of(path, self.area, seen_from(self._anchor or last.pose, last.pose))
         if room < SLACK:

@@ -19,6 +19,8 @@ SIDE = 4.0
 """Side of UMBmark's square [m], as in its publication."""
 WAY = 10.0
 """Length of the paper's out-and-back [m] (Chong and Kleeman 1997, section 5.2)."""
+LONGEST = 1440.0
+"""Longest drive that a diagnosis may propose [min]: a day."""
 PACE = 0.6
 """Speed of both, as a share of the full speed: slow enough that slip does not matter."""
 
@@ -118,7 +120,9 @@ def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> ManoeuvrePlan:
         )
     once = plan_of(ahead["name"], size=size)
     minutes = ahead.get("minutes") or 0.0
-    if not isinstance(minutes, int | float) or not math.isfinite(minutes):
-        raise InputError(f"diagnosis: minutes in {path} must be a number, not {minutes!r}")
+    if not isinstance(minutes, int | float) or not 0.0 <= minutes <= LONGEST:
+        raise InputError(
+            f"diagnosis: minutes in {path} must be a number from 0 to {LONGEST:g}, not {minutes!r}"
+        )
     times = max(math.ceil(60.0 * minutes / once.duration(limits)), 1)
     return plan_of(once.name, size=size, repetitions=times)

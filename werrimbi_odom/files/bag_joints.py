@@ -149,8 +149,8 @@ class JointsCollector:
         if counts.shape[1] == 1 or not known.any():
             return
         rolled = _counted_on(counts[known], per_turn, bits)
-        edges = np.arange(time[known][0], time[known][-1], _WINDOW)
-        steps = np.diff(rolled[np.searchsorted(time[known], edges)], axis=0)
+        window = np.floor((time[known] - time[known][0]) / _WINDOW)
+        steps = np.diff(rolled[np.diff(window, prepend=-1.0) != 0.0], axis=0)
         apart = float(np.abs(steps - steps.mean(axis=1, keepdims=True)).sum())
         whole = float(np.abs(steps).sum())
         if apart > max(_UNLIKE * whole, per_turn):

@@ -62,13 +62,15 @@ class ReferenceCollector:
         self._base = str(robot_file.values["base_frame_id"])
         self._rows = _ROWS[source.kind]
         self._found: dict[tuple[str, str], array[float]] = {}
-        self._forces = array("d")
+        self._forces: dict[str, array[float]] = {}  # by frame
 
     def take(self, message: BagMessage) -> None:
         """Add a message of the source's topic."""
         if self._source.kind == IMU and message.content.linear_acceleration_covariance[0] != -1.0:
             force = message.content.linear_acceleration
-            self._forces.extend((float(force.x), float(force.y), float(force.z)))
+            name = frame(message.content.header.frame_id)
+            forces = self._forces.setdefault(name, array("d"))
+            forces.extend((float(force.x), float(force.y), float(force.z)))
         for row in self._rows(message):
             self._found.setdefault(row.frames, array("d")).extend(row.values)
 
@@ -80,7 +82,8 @@ class ReferenceCollector:
         parent, child = self._frames()
         table, mounted = np.array(self._found[parent, child]).reshape(-1, 6), ""
         if self._source.kind == IMU:
-            rate, mounted = yaw_rate(table[:, 1:4], np.array(self._forces).reshape(-1, 3))
+            forces = np.array(self._forces.get(child, array("d"))).reshape(-1, 3)
+            rate, mounted = yaw_rate(table[:, 1:4], forces)
             table[:, 1:3], table[:, 3] = NAN, integrated(table[:, 0], rate)
         if self._source.kind == FIX:
             table[:, 1], table[:, 2] = east_and_north(self._place, *table[:, 1:4].T)

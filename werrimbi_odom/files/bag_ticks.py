@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import math
 from array import array
 from collections import Counter
 from collections.abc import Sequence
@@ -268,8 +267,8 @@ _NO_NUMBER = "with a value that is no number"
 
 
 def _whole(place: str, values: Sequence[float]) -> bool:
-    """Whether values are finite; InputError if one is no whole number, and so no counter."""
-    if not all(map(math.isfinite, values)):
+    """Whether values are within 64 bits; InputError if one is no whole number, so no counter."""
+    if not all(-(2.0**63) <= value < 2.0**63 for value in values):  # nor NaN
         return False
     if not all(float(value).is_integer() for value in values):
         verb = (

@@ -35,9 +35,9 @@ class BagWriter:
         self._store = known_types()
         from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 
-        self._writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
         try:
             folder.parent.mkdir(parents=True, exist_ok=True)
+            self._writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
             self._writer.open()
         except (OSError, WriterError) as error:
             raise InputError(f"record: {folder} cannot be written: {error}") from error

@@ -28,6 +28,8 @@ CHORD = 0.05
 LEAST_CHORD, FEWEST_CHORDS, ROLLED = 0.01, 10, 0.8
 """Length of such chords [m], their number (a line makes at most 20), and share of them with counts,
 from which ways are compared."""
+_STRETCH = 64
+"""Rows that are looked at first for the end of a chord, then twice as many, and so on."""
 
 
 def words_about_ways(run: Run, robot: Robot) -> str:
@@ -137,10 +139,13 @@ def _ways(
 
 def ends_of_chords(place: NDArray[np.complex128], least: float) -> NDArray[np.intp]:
     """Rows at which a path is `least` away from the row chosen before."""
-    chosen = [0]
-    while least > 0.0:
-        far = np.abs(place[chosen[-1] :] - place[chosen[-1]]) >= least
-        if not far.any():
-            break
-        chosen.append(chosen[-1] + int(far.argmax()))
+    chosen, at, size = [0], 0, _STRETCH
+    while least > 0.0 and at < place.size:
+        far = np.abs(place[at : at + size] - place[chosen[-1]]) >= least
+        if far.any():
+            at += int(far.argmax())
+            size = _STRETCH
+            chosen.append(at)
+        else:
+            at, size = at + size, 2 * size
     return np.asarray(chosen, dtype=np.intp)

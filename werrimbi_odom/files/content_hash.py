@@ -15,6 +15,8 @@ from werrimbi_odom.files.echoed_topics import SUFFIXES as OF_TEXT
 from werrimbi_odom.files.recordings import BAG
 from werrimbi_odom.files.run_folder import REFERENCE, TICKS
 
+_BLOCK = 2**20  # bytes
+
 
 def files_of(path: Path) -> Iterator[Path]:
     """Files that are read for a path."""
@@ -23,7 +25,8 @@ def files_of(path: Path) -> Iterator[Path]:
     elif path.is_dir():
         wanted = {TICKS, REFERENCE} if (path / TICKS).exists() else {BAG}
         for each in sorted(path.iterdir()):
-            bag = TICKS not in wanted and any(end in each.name for end in (*SUFFIXES, *OF_TEXT))
+            name = each.name.lower()  # `.BAG` is read as well
+            bag = TICKS not in wanted and any(end in name for end in (*SUFFIXES, *OF_TEXT))
             if each.name in wanted or bag:
                 yield each
 
@@ -33,8 +36,11 @@ def mark_of(paths: Iterable[Path], *words: str) -> str:
     digest = hashlib.sha256("\0".join(words).encode())
     for path in paths:
         for file in files_of(path):
-            own = hashlib.sha256(file.read_bytes()).hexdigest()
-            digest.update(f"\0{file.name}\0{own}".encode())
+            own = hashlib.sha256()
+            with file.open("rb") as opened:  # a bag may be larger than the memory
+                while block := opened.read(_BLOCK):
+                    own.update(block)
+            digest.update(f"\0{file.name}\0{own.hexdigest()}".encode())
         digest.update(b"\0\0")
     return digest.hexdigest()
 

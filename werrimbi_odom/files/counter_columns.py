@@ -14,7 +14,7 @@ from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 FEWEST = 20
-"""Rows or windows below which nothing is concluded."""
+"""Rows, windows or chords below which nothing is concluded."""
 
 WINDOW = 0.5
 """Time over which counts and motion are compared [s]: longer than most delays of a reference."""
@@ -103,23 +103,24 @@ def _no_signs(ticks: Ticks, found: _Windows) -> str:
 
 
 def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
-    seen = reference.time
-    forward = bool((np.diff(ticks.time) >= 0.0).all() and (np.diff(seen) >= 0.0).all())
-    if not forward or min(ticks.rows, seen.size) < FEWEST:
+    counts = np.stack([ticks.left, ticks.right]).astype(np.float64)
+    read = np.isfinite(counts).all(axis=0)
+    time, seen = (np.maximum.accumulate(each) for each in (ticks.time[read], reference.time))
+    counts = counts[:, read]
+    if min(time.size, seen.size) < FEWEST:
         return None
-    begin, end = max(ticks.time[0], seen[0]), min(ticks.time[-1], seen[-1])
-    wide = max(WINDOW, 3.0 * float(np.median(np.diff(ticks.time))))
+    begin, end = max(time[0], seen[0]), min(time[-1], seen[-1])
+    wide = max(WINDOW, 3.0 * float(np.median(np.diff(time))))
     wide = max(wide, float(np.median(np.diff(seen))))
     if end - begin < FEWEST * wide:
         return None
     edges = begin + wide * np.arange(int((end - begin) / wide) + 1)
-    rows = np.searchsorted(ticks.time, edges)
+    rows = np.searchsorted(time, edges)
     whole = np.diff(rows) > 0
-    counts = np.stack([ticks.left, ticks.right]).astype(np.float64)
     counts = np.stack([counts.mean(axis=0), counts[1] - counts[0]])
     sums = np.cumsum(np.concatenate([np.zeros((2, 1)), counts], axis=1), axis=1)
     values = np.diff(sums[:, rows], axis=1)[:, whole] / np.diff(rows)[whole]
-    at = counts[:, np.minimum(rows, ticks.rows - 1)]
+    at = counts[:, np.minimum(rows, time.size - 1)]
     nearest = np.minimum(np.searchsorted(seen, edges), seen.size - 1)
     x, y, yaw = (part[nearest] for part in (reference.x, reference.y, reference.yaw))
     moved = np.stack([np.hypot(np.diff(x), np.diff(y)), wrap_all(np.diff(yaw))])

@@ -126,6 +126,23 @@ def echoed_messages(topics: Sequence[EchoedTopic]) -> Iterator[Raw]:
     return merge(*map(_messages, topics), key=attrgetter("received"))
 
 
+class _NoColumnError(InputError, AttributeError):
+    """A field without a column; an AttributeError to those who ask whether it is there."""
+
+
+class _Fields(SimpleNamespace):
+    """Fields of a message, or of a part of it. `place`: file, and path of the part."""
+
+    def __init__(self, place: str, **fields: Any) -> None:
+        super().__init__(_place=place, **fields)
+
+    def __getattr__(self, name: str) -> Any:
+        raise _NoColumnError(
+            f"{self._place}{name}: there is no such column, and it is needed; write all fields of "
+            "the messages, as `rostopic echo -p` does"
+        )
+
+
 class Parsed:
     """Stands for the types of a bag: these messages are read already."""
 
@@ -149,7 +166,8 @@ def _messages(topic: EchoedTopic) -> Iterator[Raw]:
     next(rows)
     for row in rows:
         if len(row) == len(topic.fields) + 1:
-            message = SimpleNamespace(**{name: [] for name in _ARRAYS})
+            place = f"{topic.file}, column "
+            message = _Fields(place, **{name: [] for name in _ARRAYS})
             for path, cell in zip(topic.fields, row[1:], strict=True):
                 _put(message, path, cell, topic.file)
             yield Raw(topic.name, topic.kind, _received(topic.file, row[0], message), message, "")
@@ -200,13 +218,13 @@ def _within(message: Any, part: str) -> Any:
     array = part.rstrip("0123456789")
     if array == part:
         if not hasattr(message, part):
-            setattr(message, part, SimpleNamespace())
+            setattr(message, part, _Fields(f"{message._place}{part}."))
         return getattr(message, part)
     if not hasattr(message, array):
         setattr(message, array, [])
     items = getattr(message, array)
     if int(part[len(array) :]) == len(items):
-        items.append(SimpleNamespace())
+        items.append(_Fields(f"{message._place}{part}."))
     return items[-1]
 
 

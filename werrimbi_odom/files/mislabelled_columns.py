@@ -21,6 +21,7 @@ from werrimbi_odom.files.compared_ways import (
     words_about_metres,
 )
 from werrimbi_odom.files.counter_columns import (
+    FEWEST,
     HARDLY,
     TAKES,
     turns_by_wheels,
@@ -30,9 +31,6 @@ from werrimbi_odom.files.counter_columns import (
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-
-FEWEST = 20
-"""Rows, windows or chords below which nothing is concluded."""
 
 LONG_INTERVAL = 0.9
 """Interval of rows from which their times may be in another unit [s]: 1 kHz in milliseconds."""

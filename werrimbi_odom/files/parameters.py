@@ -72,7 +72,8 @@ PARAMETERS: tuple[NodeParameter, ...] = (
     NodeParameter(
         "encoder_bits",
         0,
-        "Width at which the counters wrap; 0: they do not. Wrong: the pose jumps at each wrap.",
+        "Width at which the counters wrap, 2 or more; 0: they do not. Wrong: the pose jumps at "
+        "each wrap.",
         unit="bits",
         minimum=0,
         maximum=64,

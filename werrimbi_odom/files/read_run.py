@@ -12,6 +12,7 @@ from typing import Any
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import SUFFIXES, named_files
 from werrimbi_odom.files.echoed_topics import echoed_files
+from werrimbi_odom.files.held_counts import without_held_counts
 from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
@@ -78,6 +79,7 @@ def read_run(
         ),
         TICKS,
     )
+    run = without_held_counts(run)
     if reference is None:
         return run
     found: FoundReference = _of_kind(

@@ -14,13 +14,14 @@ from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import LEAST, MOST, EvaluationOptions
 from werrimbi_odom.files.gyro_headings import as_of_a_gyro
+from werrimbi_odom.files.held_poses import without_held_poses
 from werrimbi_odom.files.merged_reference import with_one_scale
 from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_bag import Topics
-from werrimbi_odom.files.run_checks import refuse_unjudgeable, without_held_poses
+from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.run_folder import TICKS
 from werrimbi_odom.files.text_files import place_of
 from werrimbi_odom.model.robot import Robot
@@ -145,13 +146,11 @@ def gathered(
     """
     drives = [*runs, *holdout]
     references = reference_of_each(drives, how.references)
-    refuse_twice(drive for drive in drives if isinstance(drive, Path))
+    refuse_twice(drives)
     found: list[Run] = []
     for number, drive in enumerate(drives):
         if isinstance(drive, Run):
             run = drive
-            if any(run is other for other in drives[:number]):
-                raise InputError(f"{run.path} is given twice; a drive counts once")
         else:
             show(number / len(drives), f"reading {drive.name}")
             run = _read(drive, source, how, references[number])
@@ -185,10 +184,9 @@ def reference_of_each(
 
 def _with_one_scale(runs: Sequence[Run], fitted: int) -> list[Run]:
     """Apply the common gyro scale, estimated from the fitted drives, to merged headings."""
-    references = [run.reference for run in runs]
-    known = [each for each in references if each is not None]
-    scaled = iter(with_one_scale(known, [each for each in references[:fitted] if each is not None]))
-    return [run if run.reference is None else replace(run, reference=next(scaled)) for run in runs]
+    references = [run.reference for run in runs if run.reference is not None]  # of all
+    scaled = with_one_scale(references, references[:fitted])
+    return [replace(run, reference=each) for run, each in zip(runs, scaled, strict=True)]
 
 
 def _kind_of(runs: Sequence[Run]) -> ReferenceKind:
@@ -219,14 +217,15 @@ def _read(path: Path, source: RobotFile, how: DriveOptions, reference: Path | No
     )
 
 
-def refuse_twice(paths: Iterable[Path]) -> None:
+def refuse_twice(drives: Iterable[Run | Path]) -> None:
     """Raise on a repeated drive, which would make every result too precise.
 
-    InputError if two paths lead to the same drive.
+    InputError if two paths lead to the same drive, or one that was read is given again.
     """
-    seen: set[str] = set()
-    for path in paths:
-        place = place_of(path)
+    seen: set[str | int] = set()
+    for drive in drives:
+        place = id(drive) if isinstance(drive, Run) else place_of(drive)
         if place in seen:
+            path = drive.path if isinstance(drive, Run) else drive
             raise InputError(f"{path} is given twice; a drive counts once, in RUN or in --holdout")
         seen.add(place)

@@ -147,7 +147,7 @@ class Reference:
     `inference.legs.even_stamps`."""
     one_rate: bool = field(default=False, kw_only=True)
     """By when the recorder received its messages and the wheels', neither clock gains on the other;
-    see `files.stamps.of_one_rate`."""
+    see `files.clocks.of_one_rate`."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -226,7 +226,7 @@ class Run:
     wheels_from: Gives = "counts"
     """What the counts are worked out from."""
     held_poses: int = 0
-    """Number of reference poses removed by `run_checks.without_held_poses`."""
+    """Number of reference poses removed by `held_poses.without_held_poses`."""
     no_driving: tuple[NoDriving, ...] | None = None
     """Stretches that are not driving; None if not yet determined."""
     at_rest: tuple[float, float] | None = None

@@ -16,6 +16,7 @@ from werrimbi_odom.files.csv_table import CsvTable, read_table
 from werrimbi_odom.files.own_headings import words_about_own_headings
 from werrimbi_odom.files.row_order import in_order
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
+from werrimbi_odom.files.separate_headings import one_kind_of_row
 from werrimbi_odom.files.stamps import newest_of_bursts
 from werrimbi_odom.files.text_files import readable, replacing
 from werrimbi_odom.model.encoder_online import Counts
@@ -67,15 +68,22 @@ def read_run_folder(path: str | Path) -> Run:
 def write_run_folder(path: Path, ticks: Ticks, reference: Reference | None) -> Path:
     """Write a run folder, to be read again without loss; stated sigmas are left out.
 
-    InputError if it exists, or cannot be written.
+    InputError if it exists, or cannot be written, or a channel has no name for a column.
     """
+    names = (*TICKS_COLUMNS, *ticks.channels)
+    for name in ticks.channels:
+        if names.count(name) > 1 or name != name.strip() or not name or set(name) & set(',"\r\n'):
+            raise InputError(
+                f"{path}: a channel cannot be called {name!r}: a column has a name of its own, "
+                "without commas, quotes and line ends"
+            )
     try:
         path.mkdir(parents=True)
-        counts = (ticks.time, ticks.left, ticks.right, *ticks.channels.values())
-        _write(path / TICKS, (*TICKS_COLUMNS, *ticks.channels), counts)
-        if reference is not None:
+        if reference is not None:  # first: what is left of a full disk is then no run without it
             poses = (reference.time, reference.x, reference.y, reference.yaw)
             _write(path / REFERENCE, REFERENCE_COLUMNS, poses, missing="")
+        counts = (ticks.time, ticks.left, ticks.right, *ticks.channels.values())
+        _write(path / TICKS, names, counts)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}; a new folder is wanted") from error
     return path
@@ -186,7 +194,9 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         remarks += (f"{path.name}: its rows are not in the order of time; they are sorted by t_s",)
     remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
     remarks += _whole_seconds(table, reference.time)
-    return (reference if keep.all() else reference.chosen(keep)), remarks
+    reference, alike = one_kind_of_row(reference if keep.all() else reference.chosen(keep))
+    remarks += (f"{path.name}: {alike}",) if alike else ()
+    return reference, remarks
 
 
 def _on_time(reference: Reference) -> tuple[NDArray[np.bool_], list[str]]:

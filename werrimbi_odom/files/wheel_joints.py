@@ -26,6 +26,7 @@ from werrimbi_odom.files.bag_ticks import wished_ticks
 from werrimbi_odom.files.bag_wheels import JOINT_STATE, Wheels
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.run import integrated
 from werrimbi_odom.files.unstamped import with_stamps
 from werrimbi_odom.model.pose import Floats
 
@@ -169,7 +170,7 @@ def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
             for name in content.name:
                 angles.setdefault(name, _Values())
     return {
-        name: _range(each.values) or (_integrated(speeds[name]) if name in speeds else 0.0)
+        name: _range(each.values) or _rolled(speeds.get(name, _Values()))
         for name, each in angles.items()
     }
 
@@ -205,10 +206,8 @@ def _range(angles: Floats) -> float:
     return within
 
 
-def _integrated(speeds: _Values) -> float:
-    time, values = np.maximum.accumulate(speeds.time), speeds.values
-    angles = np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))
-    return float(np.ptp(np.append(0.0, angles)))
+def _rolled(speeds: _Values) -> float:
+    return float(np.ptp(integrated(speeds.time, speeds.values)))
 
 
 def _words(name: str) -> set[str]:

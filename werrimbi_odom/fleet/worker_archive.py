@@ -13,7 +13,7 @@ import pickle
 import platform
 import tempfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import PackageNotFoundError, entry_points, version
@@ -99,8 +99,11 @@ def _item(path: Path) -> Item:
 
 
 def _unpacked(item: Item, folder: Path) -> Path:
-    folder.mkdir()
-    place = folder / item.name
+    """Below `folder`, in folders of the user's names: they tell drives of one name apart."""
+    given = Path(item.path)
+    above = [part for part in given.parts[:-1] if part not in (given.anchor, "..")]
+    place = folder.joinpath(*above, item.name)
+    place.parent.mkdir(parents=True)
     if isinstance(item.files, bytes):
         place.write_bytes(item.files)
     elif item.files is not None:
@@ -159,19 +162,19 @@ def code_here() -> Mapping[str, str]:
 
 def refusal(here: Mapping[str, str], there: Mapping[str, str]) -> str:
     """Differences for which results would not be comparable; "" for none."""
-    return "; ".join(
-        f"{name} {there.get(name, 'none')}, here {here[name]}"
-        for name in _DECIDES
-        if there.get(name) != here[name]
-    )
+    return _differences(_DECIDES, here, there)
 
 
 def doubts(here: Mapping[str, str], there: Mapping[str, str]) -> str:
     """Differences that may change the last digits; "" for none."""
+    return _differences([name for name in here if name not in _DECIDES], here, there)
+
+
+def _differences(names: Sequence[str], here: Mapping[str, str], there: Mapping[str, str]) -> str:
     return "; ".join(
-        f"{name} {there.get(name, 'none')}, here {value}"
-        for name, value in here.items()
-        if name not in _DECIDES and there.get(name) != value
+        f"{name} {there.get(name, 'none')}, here {here[name]}"
+        for name in names
+        if there.get(name) != here[name]
     )
 
 

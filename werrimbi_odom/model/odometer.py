@@ -26,7 +26,7 @@ from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.twist_interval import MovedStep, TwistInterval
-from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
+from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known, with_lost_travel
 
 _displacement = of_floats(displacement)
 _path_noise = of_floats(path_noise_of)
@@ -259,7 +259,8 @@ class Odometer:
         finished = self.piece
         errors = self.errors()
         if lost:
-            errors = with_lost_travel(errors, self.robot, step, self._pose.yaw)
+            unseen = noise_of_wheel_variances(step.left_lost, step.right_lost, self.robot.track)
+            errors = with_lost_travel(errors, unseen, self._pose.yaw)
         travelled = self._piece.travelled_after
         self._piece = OpenPiece(self._now, self._pose, errors, travelled)
         self._piece.extend(self._rule, travel, motion, pose)
@@ -289,11 +290,3 @@ def errors_along(
     return Uncertainty(
         _after_stretch(errors.covariance, stretch.motion, noise, stretch.chord, dx, dy)
     )
-
-
-def with_lost_travel(
-    errors: Uncertainty[float], robot: Robot, step: WheelStep, yaw: float
-) -> Uncertainty[float]:
-    """Errors of a pose with heading `yaw`, plus those of the travel lost in a counter reset."""
-    noise = noise_of_wheel_variances(step.left_lost, step.right_lost, robot.track)
-    return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), noise, yaw, 0.0, 0.0)

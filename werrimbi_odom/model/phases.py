@@ -227,7 +227,7 @@ def phases_of_run(
     taken = np.concatenate([[steps.first_row], steps.row])
     raw = WheelTravel(steps.left, steps.right)
     first = float(left[steps.first_row]), float(right[steps.first_row])
-    spans = channel_spans(time[taken], channels or {}, taken)
+    spans = channel_spans(steps, channels or {})
     drive = features(robot, steps.duration, raw, first, spans)
     parts = [*Turning(robot, effects).of(raw, drive), drive.left_angle.change]
     sums = [np.concatenate([[0.0], np.cumsum(p)]) for p in (*parts, drive.right_angle.change)]

@@ -33,7 +33,7 @@ from werrimbi_odom.model.pieces_recorded import Cut, cut
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import March, Marching, follow, march, sums_of
-from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
+from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, with_lost_travel
 
 _BLOCK = 8192  # steps per block: their arrays stay in the cache
 
@@ -97,7 +97,7 @@ def _marched(
             if pieces:
                 sums[:, pieces - 1] = sums_of(at.stretch)
             unseen = noise_of_wheel_variances(*lost[some.start], robot.track)
-            known = _with_lost(Uncertainty(at.covariance), unseen, at.pose.yaw).covariance
+            known = with_lost_travel(Uncertainty(at.covariance), unseen, at.pose.yaw).covariance
             reset[pieces] = known
             earlier = at.earlier + at.stretch.travelled
             at = Marching(at.pose, known, at.pose, known, earlier, NOTHING)
@@ -183,12 +183,6 @@ def _in_arrays(
     return PathInPieces(poses, covariances, shift, pieces.start, sums, reset)
 
 
-def _with_lost(
-    errors: Uncertainty[float], unseen: PathNoise[float], yaw: float
-) -> Uncertainty[float]:
-    return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), unseen, yaw, 0.0, 0.0)
-
-
 def _blocks(count: int, breaks: Lost | None = None) -> Iterator[slice]:
     """Yield blocks of at most `_BLOCK` steps, none of them across a break."""
     first = 0
@@ -220,14 +214,14 @@ def _chained(
             own = zip(*(p.tolist() for p in piece_covariance(body, noise, yaw)), strict=True)
             for (step, heading, x, y), added in zip(steps, own, strict=True):
                 if step in unseen:
-                    errors = _with_lost(errors, unseen[step], heading)
+                    errors = with_lost_travel(errors, unseen[step], heading)
                 chain.append(errors)
                 errors = Uncertainty(plus(carried(errors.covariance, x, y), PoseCovariance(*added)))
         else:
             rows = zip(*(p.tolist() for p in (*body, *noise)), strict=True)
             for (step, heading, x, y), row in zip(steps, rows, strict=True):
                 if step in unseen:
-                    errors = _with_lost(errors, unseen[step], heading)
+                    errors = with_lost_travel(errors, unseen[step], heading)
                 chain.append(errors)
                 piece = BodyMotion(*row[:3]), PathNoise(*row[3:])
                 errors = after_piece(errors, *piece, heading, x, y)

@@ -20,7 +20,7 @@ from werrimbi_odom.model.driven_motion import acts, features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits, EncoderTally
-from werrimbi_odom.model.encoder_recorded import lost_travel, wheel_steps
+from werrimbi_odom.model.encoder_recorded import WheelSteps, lost_travel, wheel_steps
 from werrimbi_odom.model.end_of_piece import PieceRule, PieceTolerance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
 from werrimbi_odom.model.pieces import Piece, kind_of
@@ -152,7 +152,7 @@ def trajectory(
     first_counts = float(left[steps.first_row]), float(right[steps.first_row])
     rows = np.concatenate([[steps.first_row], steps.row])
     stamps = np.concatenate([time[[steps.first_row]], steps.time])
-    spans = channel_spans(stamps, channels or {}, rows)
+    spans = channel_spans(steps, channels or {})
     driven_steps = _driven(robot, steps.duration, raw, first_counts, spans, start)
     known_start = known(robot.covariance_order, covariance)
     rule = PieceRule.of(robot, tolerance or PieceTolerance())
@@ -186,10 +186,10 @@ def _driven(
     return driven(robot, raw, drive, start)
 
 
-def channel_spans(
-    time: Floats, channels: Mapping[str, Floats], rows: NDArray[np.intp]
-) -> dict[str, Span[Floats]]:
-    """Channels at the start and end of each step between `rows`; gaps are interpolated."""
+def channel_spans(steps: WheelSteps, channels: Mapping[str, Floats]) -> dict[str, Span[Floats]]:
+    """Channels of a record (rows,) at the start and end of its steps; gaps are interpolated."""
+    rows = np.concatenate([[steps.first_row], steps.row])
+    elapsed = np.concatenate([[0.0], np.cumsum(steps.duration)])  # a clock may be set back
     spans = {}
     for name, values in channels.items():
         there = np.asarray(values, dtype=np.float64)[rows]
@@ -197,6 +197,6 @@ def channel_spans(
         if not known_rows.any():
             continue
         if not known_rows.all():
-            there = np.interp(time, time[known_rows], there[known_rows])
+            there = np.interp(elapsed, elapsed[known_rows], there[known_rows])
         spans[name] = Span(there[:-1], there[1:])
     return spans

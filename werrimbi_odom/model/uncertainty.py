@@ -65,3 +65,10 @@ def after_piece(
     return Uncertainty(
         after_stretch(start.covariance, motion, noise, chord_of(motion.turn, yaw), dx, dy)
     )
+
+
+def with_lost_travel(
+    errors: Uncertainty[float], unseen: PathNoise[float], yaw: float
+) -> Uncertainty[float]:
+    """Errors of a pose with heading `yaw`, plus those of travel that no counter saw."""
+    return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), unseen, yaw, 0.0, 0.0)

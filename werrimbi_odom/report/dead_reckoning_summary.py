@@ -108,6 +108,8 @@ def reckoning_of(
             remarks.append("the ticks' clock was set back, so poses of one time cannot be compared")
         elif last is None:
             remarks.append("reference and ticks have no time in common; are both clocks the same?")
+        elif last == known[0]:
+            remarks.append("the reference measured one pose, at which the way is begun, and no end")
         else:
             end = _end_error(reference, start.shown, shown, int(known[0]), last)
     return Reckoning(run, start, driven, shown, end, tuple(remarks))
@@ -116,7 +118,7 @@ def reckoning_of(
 def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | None:
     """The last measured row during the ticks; if there is none, one after their end."""
     time = reference.time[known]
-    if known.size < 2 or time[-1] < driven.time[0] or time[0] > driven.time[-1]:
+    if time[-1] < driven.time[0] or time[0] > driven.time[-1]:
         return None
     during = known[(time <= driven.time[-1]) & (time > time[0])]
     return int(during[-1] if during.size else known[-1])

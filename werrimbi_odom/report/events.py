@@ -37,7 +37,7 @@ _SUSPECTS: dict[str, dict[str, str]] = {
 """What may be the law behind events, by what they come with and the channel of most of them."""
 
 _TOLD = 6
-"""Number of events reported one by one, in the order of their significance."""
+"""Number of events reported one by one: the most significant ones."""
 
 
 def events_words(happened: Events, track: float, left_by: str | None = None) -> list[str]:

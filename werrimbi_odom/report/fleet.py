@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -53,7 +54,7 @@ class Row:
         if self.figures is None:
             return math.nan, math.nan
         sides = self.figures["holdout"]
-        return _number(sides["before"]), _number(sides["after"])
+        return number(sides["before"]), number(sides["after"])
 
     def values(self, effect: str) -> Mapping[str, Mapping[str, Any]]:
         """Fitted parameters of an effect by name: `value`, `std`, `unit`, `per_run`."""
@@ -87,9 +88,6 @@ class Fleet:
 
 def fleet_json(fleet: Fleet) -> dict[str, Any]:
     """Complete result as JSON."""
-    verdicts: dict[str, int] = {}
-    for row in fleet.rows:
-        verdicts[row.verdict] = verdicts.get(row.verdict, 0) + 1
     return {
         "robots": [
             {"robot": row.robot, "error": row.error}
@@ -100,7 +98,7 @@ def fleet_json(fleet: Fleet) -> dict[str, Any]:
         "missing": {
             effect: [row.robot for row in rows] for effect, rows in fleet.by_effect.items()
         },
-        "verdicts": dict(sorted(verdicts.items())),
+        "verdicts": dict(sorted(Counter(row.verdict for row in fleet.rows).items())),
         "left": list(fleet.left),
     }
 
@@ -108,14 +106,18 @@ def fleet_json(fleet: Fleet) -> dict[str, Any]:
 def believed(parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
     """Parameters of an effect that a table shows.
 
-    Without per-run parameters and those that are not significant; if none is significant, with all
-    shared ones.
+    Without those that are per-run, not determined, or not significant; if none is significant, with
+    all that are shared and determined.
     """
-    shared = {name: item for name, item in parameters.items() if not item["per_run"]}
+    shared = {
+        name: item
+        for name, item in parameters.items()
+        if not item["per_run"] and item["value"] is not None
+    }
     sure = {
         name: item
         for name, item in shared.items()
-        if not abs(_number(item["value"])) < 2.0 * _number(item["std"])
+        if not abs(number(item["value"])) < 2.0 * number(item["std"])
     }
     return sure or shared
 
@@ -126,7 +128,7 @@ def ordered(rows: Sequence[Row], names: Sequence[str]) -> tuple[Row, ...]:
     return tuple(sorted(rows, key=lambda row: place[row.robot]))
 
 
-def _number(value: float | None) -> float:
+def number(value: float | None) -> float:
     """A number from JSON; NaN for null."""
     return math.nan if value is None else float(value)
 
@@ -151,10 +153,7 @@ def headline(fleet: Fleet) -> str:
     verdicts = [row.verdict for row in fleet.rows]
     if count := verdicts.count("none"):
         parts.append(f"{count} {_miss(count)} nothing")
-    groups: dict[tuple[str, ...], int] = {}
-    for row in fleet.rows:
-        if row.verdict == "named":
-            groups[row.missing] = groups.get(row.missing, 0) + 1
+    groups = Counter(row.missing for row in fleet.rows if row.verdict == "named")
     largest = sorted(groups.items(), key=lambda item: (-item[1], item[0]))
     for missing, count in largest[:_GROUPS]:
         parts.append(f"{count} {_miss(count)} {listed(missing)}")
@@ -251,7 +250,7 @@ def error_words(row: Row) -> str:
     if not math.isnan(before):
         return f"{_millimetres(before)} → {_millimetres(after)}"
     turns = {} if row.figures is None else row.figures["holdout"].get("rmse_yaw_rad", {})
-    before, after = (_number(turns.get(side)) for side in ("before", "after"))
+    before, after = (number(turns.get(side)) for side in ("before", "after"))
     if math.isnan(before):
         return ""
     return f"{leg_error(before, 'rad')} → {leg_error(after, 'rad')}"

@@ -13,13 +13,7 @@ from pathlib import Path
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import style
 from werrimbi_odom.report.document import Document, Shown, Table
-from werrimbi_odom.report.fleet import (
-    ERROR,
-    Fleet,
-    Row,
-    error_words,
-    words_of,
-)
+from werrimbi_odom.report.fleet import ERROR, Fleet, Row, error_words, words_of
 from werrimbi_odom.report.fleet_row import missing_words, next_words
 from werrimbi_odom.report.html_page import table_html
 from werrimbi_odom.report.save import save_report

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.report.fleet import Row, believed
+from werrimbi_odom.report.fleet import Row, believed, number
 from werrimbi_odom.report.number_format import listed, with_std
 
 
@@ -27,7 +27,7 @@ def missing_words(row: Row) -> list[str]:
 
 def _with_values(row: Row, effect: str) -> str:
     values = [
-        f"{name} {with_std(item['value'], item['std'])} {item['unit']}".rstrip()
+        f"{name} {with_std(item['value'], number(item['std']))} {item['unit']}".rstrip()
         for name, item in believed(row.values(effect)).items()
     ]
     return "\n  ".join([f"{effect}:", *values]) if values else effect

@@ -229,7 +229,7 @@ def _made(made: Mapping[str, str]) -> str:
 
 
 def own_version() -> str:
-    """Version of this package; "not installed" in a checkout."""
+    """Version of this package; that it is not installed, in a checkout."""
     try:
         return version("werrimbi_odom")
     except PackageNotFoundError:

@@ -6,15 +6,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 from werrimbi_odom.files.bag import topic_in_words
 from werrimbi_odom.files.bag_chain import POSTDATED
 from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.files.bag_wheels import ARRAYS, FLOATS
+from werrimbi_odom.files.held_poses import words_about_held
 from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
-from werrimbi_odom.files.run_checks import words_about_held
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
@@ -245,7 +244,8 @@ def _clock(name: str, stamps: Stamps) -> str:
 
 
 def _apart(held: Held) -> Iterator[str]:
-    names = [each.name.split(",")[0].partition(":")[0] for each in _chosen(held)]
+    both = (each for each in (held.wheels, held.reference) if each is not None)
+    names = [each.name.split(",")[0].partition(":")[0] for each in both]
     offsets = [held.stamps[name].offset for name in names if name in held.stamps]
     if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
         apart = offsets[0] - offsets[1]
@@ -262,10 +262,6 @@ def _apart(held: Held) -> Iterator[str]:
                 f"{'later' if apart > 0 else 'earlier'} than those of the wheels, by when both "
                 "were received."
             )
-
-
-def _chosen(held: Held) -> list[Any]:
-    return [each for each in (held.wheels, held.reference) if each is not None]
 
 
 def _ms(seconds: float) -> str:

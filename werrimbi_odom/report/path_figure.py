@@ -19,6 +19,7 @@ from werrimbi_odom.report.style import (
     GREY,
     ORANGE,
     Figure,
+    along_path,
     blank,
     places,
     plot,
@@ -75,9 +76,14 @@ def path_figure(drawing: PathDrawing) -> Figure:
     figure = blank()
     magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
+    measured = np.empty(0, dtype=np.complex128)
     if drawing.reference_x is not None and drawing.reference_y is not None:
-        measured, look = (drawing.reference_x, drawing.reference_y), {"color": GREY, "width": 5}
-        plot(figure, *measured, "measured", hover=f"measured{_PLACE}", line=look, opacity=0.55)
+        measured = drawing.reference_x + 1j * drawing.reference_y
+    known = measured[np.isfinite(measured)]
+    if known.size:
+        some, look = measured[along_path(measured)], {"color": GREY, "width": 5}
+        way = some.real, some.imag
+        plot(figure, *way, "measured", hover=f"measured{_PLACE}", line=look, opacity=0.55)
     for order, index in enumerate(spread_along_path(drawing.x, drawing.y, 16)):
         x, y, shape = drawing.x[index], drawing.y[index], drawing.covariance[index]
         plot(
@@ -96,9 +102,8 @@ def path_figure(drawing: PathDrawing) -> Figure:
         (complex(drawing.x[0], drawing.y[0]), "start", "circle", GREEN),
         (complex(drawing.x[-1], drawing.y[-1]), "end", "square", BLUE),
     ]
-    if drawing.reference_x is not None and drawing.reference_y is not None:
-        last = complex(*_last_known(drawing.reference_x, drawing.reference_y))
-        marks.append((last, "measured end", "x", "black"))
+    if known.size:
+        marks.append((complex(known[-1]), "measured end", "x", "black"))
     for at, mark, symbol, colour in marks:
         look = {"symbol": symbol, "size": 11, "color": colour, "line": {"width": 1}}
         add_mark(figure, at, mark, look)
@@ -129,8 +134,3 @@ def add_mark(
     """Add a mark at one point (x + iy), such as a start or an end."""
     x, y = [float(at.real)], [float(at.imag)]
     plot(figure, x, y, name, hover=name + _PLACE, marker=marker, **more)
-
-
-def _last_known(x: Floats, y: Floats) -> tuple[float, float]:
-    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    return (float(x[known[-1]]), float(y[known[-1]])) if known.size else (np.nan, np.nan)

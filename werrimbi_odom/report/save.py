@@ -65,11 +65,12 @@ def _draw(pictures: Iterable[tuple[Figure, Path, Mapping[str, object]]]) -> None
         for figure, path, options in pictures
     ]
     # Kaleido logs a harmless traceback if the browser's first output is truncated.
+    before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
         kaleido.write_fig_from_object_sync(drawn, kopts={"path": find_browser()})
     finally:
-        logging.disable(logging.NOTSET)
+        logging.disable(before)
 
 
 def refuse_report(path: Path) -> None:

@@ -36,7 +36,7 @@ from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic, diagnostics_publisher, tell
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.run_node import run
-from werrimbi_odom.ros.topics import full_name, others_on, publisher, subscribe
+from werrimbi_odom.ros.topics import full_name, others_on, publisher, stamp_of, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 TICK = 0.02
@@ -116,15 +116,20 @@ class DriveNode(Node):  # type: ignore[misc]
 
     def _on_scan(self, message: Any) -> None:
         least = message.range_min
-        nearest = min((each for each in message.ranges if each >= least), default=math.inf)
+        # Below the least range nothing is measured, but for -inf: too near to be (REP 117).
+        seen = (each for each in message.ranges if each >= least or each == -math.inf)
+        nearest = max(min(seen, default=math.inf), 0.0)
         self._send(self._driver.scan(nearest, time.monotonic()))
         self._after()
 
     def _on_imu(self, message: Any) -> None:
-        stamp, rate = _seconds(message.header.stamp), self._gyro.rate(message)
-        if math.isfinite(rate):
-            self._send(self._driver.gyro(stamp, rate, time.monotonic()))
-            self._after()
+        try:
+            rate = self._gyro.rate(message)
+        except InputError:
+            return  # as if no gyro came
+        stamp = _seconds(stamp_of(message, self.get_clock()))
+        self._send(self._driver.gyro(stamp, rate, time.monotonic()))
+        self._after()
 
     def _tick(self) -> None:
         """Check time and other publishers; repeat zeros after a drive."""

@@ -40,7 +40,7 @@ class PieceTrail:
 
     def __init__(self, frame: str, track: float) -> None:
         self._frame = frame
-        self._track = track
+        self.track = track
         self._number = 0
         self._kept: deque[tuple[int, Piece, PoseCovariance[float]]] = deque()
 
@@ -95,9 +95,9 @@ class PieceTrail:
     ) -> list[Marker]:
         path = self._marker(stamp, namespace, number, type=Marker.LINE_STRIP)
         path.pose.orientation.w = 1.0
-        path.scale.x = 0.05 * self._track
+        path.scale.x = 0.05 * self.track
         path.color = _colour(piece, alpha=1.0)
-        path.points = [Point(x=x, y=y, z=0.0) for x, y in path_points(piece, self._track)]
+        path.points = [Point(x=x, y=y, z=0.0) for x, y in path_points(piece, self.track)]
         ellipse = self._marker(stamp, f"{namespace} ellipse", number, type=Marker.CYLINDER)
         end = end_of(piece)
         major, minor, angle = ellipse_95(covariance)

@@ -149,6 +149,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._keep(self._tracker.retune(robot, settings.tolerance, limits))
         self._learning.retune(robot, tuple(changes))
         self._slip.retune(robot)
+        self._trail.track = robot.track
         self.get_logger().info(
             "from here on: " + ", ".join(f"{name} {value}" for name, value in changes.items())
         )

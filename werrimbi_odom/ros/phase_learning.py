@@ -22,15 +22,11 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import counter_inputs, planar
 from werrimbi_odom.ros.input_health import NOT_LEARNT
 from werrimbi_odom.ros.live_odometer import LiveOdometer
-from werrimbi_odom.ros.topics import subscribe
+from werrimbi_odom.ros.topics import stamp_of, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 FINE = 0.03
 """Standard deviation of a phase [rad] below which further updates gain nothing."""
-
-
-FASTEST = 1e4
-"""Yaw rate [rad/s] beyond which a gyro is broken."""
 
 
 class NoLearning:
@@ -139,12 +135,11 @@ class Learning(NoLearning):
 
     def _see_imu(self, message: Any) -> None:
         self._heard = True
-        if message.angular_velocity_covariance[0] < 0.0:  # REP-145: the Imu does not measure this
-            self._health.refuse("no angular velocity", "the Imu measures none", NOT_LEARNT)
-            return
-        rate = self._gyro.rate(message)
-        if not abs(rate) < FASTEST:
-            self._health.refuse("rate out of range", f"{rate} rad/s", NOT_LEARNT)
+        try:
+            rate = self._gyro.rate(message)
+        except InputError as error:
+            cause, detail = error.args
+            self._health.refuse(cause, detail, NOT_LEARNT)
             return
         if not self._done:
             self._learner.see_rate(self._time_of(message), rate)
@@ -161,10 +156,9 @@ class Learning(NoLearning):
             self._learner.see_yaw(self._time_of(message), yaw)
 
     def _time_of(self, message: Any) -> float:
-        stamp = message.header.stamp
-        if stamp.sec == 0 and stamp.nanosec == 0:
-            stamp = self._clock.now().to_msg()
-        return math.nan if self._tracker is None else self._tracker.seconds(stamp)
+        if self._tracker is None:
+            return math.nan
+        return self._tracker.seconds(stamp_of(message, self._clock))
 
 
 def learning_of(wiring: counter_inputs.InputOptions, robot: Robot) -> NoLearning:

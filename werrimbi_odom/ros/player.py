@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import rclpy
-from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
@@ -19,6 +18,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import Marker, MarkerArray
+
+from werrimbi_odom.ros.topics import stamp_at
 
 Floats = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ PATIENCE = 0.5
 
 @dataclass
 class Answers:
-    """Output of the node while the ticks were played; arrays of shape (n,)."""
+    """Output of the node while the ticks were played; lists of n values."""
 
     time: list[float] = field(default_factory=list)
     x: list[float] = field(default_factory=list)
@@ -91,7 +92,7 @@ class Player(Node):  # type: ignore[misc]
 
         def tick(stamp: float, left_count: float, right_count: float) -> None:
             message = JointState()
-            message.header.stamp = stamp_of(stamp + self.offset)
+            message.header.stamp = stamp_at(stamp + self.offset)
             message.name = names
             message.position = [left_count] * len(left_names) + [right_count] * len(right_names)
             self._ticks.publish(message)
@@ -135,7 +136,7 @@ class Player(Node):  # type: ignore[misc]
     def _set_pose(self, start: tuple[float, float, float], frame: str, stamp: float) -> None:
         message = PoseWithCovarianceStamped()
         message.header.frame_id = frame
-        message.header.stamp = stamp_of(stamp)
+        message.header.stamp = stamp_at(stamp)
         x, y, yaw = start
         message.pose.pose.position.x, message.pose.pose.position.y = x, y
         message.pose.pose.orientation.z = math.sin(0.5 * yaw)
@@ -169,9 +170,3 @@ class Player(Node):  # type: ignore[misc]
         for marker in message.markers:
             if marker.ns in ("line", "arc", "spin") and marker.action == Marker.ADD:
                 self.answers.piece_kinds[(marker.ns, marker.id)] = None
-
-
-def stamp_of(seconds: float) -> Time:
-    """Convert a time [s] that is not negative to a ROS stamp."""
-    nanoseconds = round(seconds * 1e9)
-    return Time(sec=nanoseconds // 1_000_000_000, nanosec=nanoseconds % 1_000_000_000)

@@ -67,7 +67,7 @@ class Kept:
         self._messages.append(ReceivedMessage(self.driven, received, topic, data))
         self._bytes += len(data) + OVERHEAD
         oldest = self.driven - self._seconds
-        while self._messages[0].driven < oldest or self._bytes > MOST_BYTES:
+        while self._bytes > MOST_BYTES or (self._bytes and self._messages[0].driven < oldest):
             self._bytes -= len(self._messages.popleft().data) + OVERHEAD
 
     def write(self, file: Path) -> None:

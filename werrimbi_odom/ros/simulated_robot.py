@@ -30,7 +30,7 @@ from werrimbi_odom.ros import simulated_parameters
 from werrimbi_odom.ros.declared_parameters import declared
 from werrimbi_odom.ros.diagnostics import diagnostic
 from werrimbi_odom.ros.run_node import run
-from werrimbi_odom.ros.topics import full_name, publisher, subscribe, transform_sender
+from werrimbi_odom.ros.topics import full_name, publisher, stamp_at, subscribe, transform_sender
 
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import AxlePose
@@ -147,10 +147,9 @@ class SimulatedRobot(Node):  # type: ignore[misc]
 
     def _publish_joints(self, time: float, _: float) -> None:
         counts = self._robot.counters(time)
-        message = JointState(
-            name=["left_wheel_joint", "right_wheel_joint"],
-            position=[count * self._tick for count in counts],
-        )
+        wheels = zip(self._believed.joints, counts, strict=True)
+        angles = {name: count * self._tick for names, count in wheels for name in names}
+        message = JointState(name=list(angles), position=list(angles.values()))
         message.header.stamp = self._stamp(time)
         self._joints.publish(message)
 
@@ -236,8 +235,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         self._diagnostics.publish(array)
 
     def _stamp(self, time: float) -> Stamp:
-        seconds, nanoseconds = divmod(round(1e9 * (self._epoch + time)), 10**9)
-        return Stamp(sec=seconds, nanosec=nanoseconds)
+        return stamp_at(self._epoch + time)
 
 
 class _Due:

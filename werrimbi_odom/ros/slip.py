@@ -12,12 +12,12 @@ from typing import Any
 
 from sensor_msgs.msg import Imu
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import counter_inputs
 from werrimbi_odom.ros.live_odometer import LiveOdometer
-from werrimbi_odom.ros.phase_learning import FASTEST
-from werrimbi_odom.ros.topics import subscribe
+from werrimbi_odom.ros.topics import stamp_of, subscribe
 from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 
@@ -48,9 +48,9 @@ class Slip(NoSlip):
         self._guard = SlipGuard(robot.track, max(robot.left_tick, robot.right_tick))
         self._gyro = UprightGyro(topic, wiring.node.get_logger())
         self._clock = wiring.node.get_clock()
-        self._heard = 0
+        self._heard = False
         self._tracker: LiveOdometer | None = None
-        subscribe(wiring.node, Imu, topic, self._see)
+        subscribe(wiring.node, Imu, topic, self._see, overridable=True)
 
     def missed(self, tracker: LiveOdometer) -> Missed:
         """Variance added by the last reading of the odometer."""
@@ -58,8 +58,8 @@ class Slip(NoSlip):
         return self._guard.wheels(tracker.seconds(tracker.stamp), tracker.heading)
 
     def retune(self, robot: Robot) -> None:
-        """Change the track."""
-        self._guard.track = robot.track
+        """Change the track, and the travel per count."""
+        self._guard.track, self._guard.tick = robot.track, max(robot.left_tick, robot.right_tick)
 
     def status(self) -> dict[str, str]:
         """Entries for /diagnostics."""
@@ -78,17 +78,13 @@ class Slip(NoSlip):
         return f"no gyro heard on {self._topic} (slip_imu_topic): wheels that slip go unseen"
 
     def _see(self, message: Any) -> None:
-        if message.angular_velocity_covariance[0] < 0.0:
+        try:
+            rate = self._gyro.rate(message)
+        except InputError:
             return
-        rate = self._gyro.rate(message)
-        if self._tracker is None:
-            return
-        if abs(rate) < FASTEST:
-            self._heard += 1
-            stamp = message.header.stamp
-            if stamp.sec == 0 and stamp.nanosec == 0:
-                stamp = self._clock.now().to_msg()
-            self._guard.gyro(self._tracker.seconds(stamp), rate)
+        if self._tracker is not None:
+            self._heard = True
+            self._guard.gyro(self._tracker.seconds(stamp_of(message, self._clock)), rate)
 
 
 def slip_of(wiring: counter_inputs.InputOptions, robot: Robot) -> NoSlip:

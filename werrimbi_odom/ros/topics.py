@@ -14,7 +14,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from builtin_interfaces.msg import Time as Stamp
 from geometry_msgs.msg import TransformStamped
+from rclpy.clock import Clock
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import InvalidTopicNameException, ParameterException
 from rclpy.node import Node
@@ -79,6 +81,18 @@ def publisher(
 
 def _overriding(overridable: bool) -> QoSOverridingOptions | None:
     return QoSOverridingOptions.with_default_policies() if overridable else None
+
+
+def stamp_at(seconds: float) -> Stamp:
+    """Convert a time [s] that is not negative to a stamp."""
+    whole, part = divmod(round(1e9 * seconds), 10**9)
+    return Stamp(sec=whole, nanosec=part)
+
+
+def stamp_of(message: Any, clock: Clock) -> Stamp:
+    """Stamp of a message; where it has none (zero), the present time."""
+    stamp = message.header.stamp
+    return stamp if stamp.sec or stamp.nanosec else clock.now().to_msg()
 
 
 @contextmanager

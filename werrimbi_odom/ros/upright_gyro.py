@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.model.pose import Floats
 
 LISTENED = 50
 """Number of messages from which the vertical is estimated, once."""
+FASTEST = 1e4
+"""Yaw rate [rad/s] beyond which a gyro is broken."""
 
 
 class UprightGyro:
@@ -24,7 +27,13 @@ class UprightGyro:
         self._up: Floats = np.array([0.0, 0.0, 1.0])
 
     def rate(self, message: Any) -> float:
-        """Yaw rate of one message [rad/s]; as finite as its content."""
+        """Yaw rate of one message [rad/s].
+
+        InputError if it has none, or one that no robot turns at; arguments are the cause and the
+        detail.
+        """
+        if message.angular_velocity_covariance[0] < 0.0:  # REP-145: the Imu does not measure this
+            raise InputError("no angular velocity", "the Imu measures none")
         if len(self._forces) < LISTENED and message.linear_acceleration_covariance[0] != -1.0:
             force = message.linear_acceleration
             self._forces.append((force.x, force.y, force.z))
@@ -33,6 +42,8 @@ class UprightGyro:
                 if mounted:
                     self._logger.info(f"the gyro of {self._topic} is {mounted}")
         turning = message.angular_velocity
-        if self._up[2] == 1.0:
-            return float(turning.z)
-        return float(self._up @ (turning.x, turning.y, turning.z))
+        about_z = self._up[2] == 1.0  # x and y may be anything then
+        rate = turning.z if about_z else float(self._up @ (turning.x, turning.y, turning.z))
+        if not abs(rate) < FASTEST:
+            raise InputError("rate out of range", f"{rate} rad/s")
+        return float(rate)

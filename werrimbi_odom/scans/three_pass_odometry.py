@@ -13,7 +13,7 @@ with the drive.
 from __future__ import annotations
 
 from array import array
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -92,7 +92,7 @@ class ScanMatcher:
         self._first = ScanTracker(np.zeros(3))
         self._motion, self._clock, self._failed = np.zeros(3), 0.0, 0
         self._begun, self._scans = False, 0
-        self._flags: dict[Flag, int] = {}
+        self._flags: Counter[Flag] = Counter()
         self._second, self._third = _PassAgain(self._flags), _PassAgain(self._flags)
         self._found = array("d")  # of each pose: time, pose, covariance, walk, piece
         self.scatter: dict[float, float] = {}
@@ -121,7 +121,7 @@ class ScanMatcher:
         motion = turns * self._motion
         flag = self._first.take(points, sweep.reach, motion, turns * usual)
         if flag:
-            self._flags[flag] = self._flags.get(flag, 0) + 1
+            self._flags[flag] += 1
             self._failed += 1
             if self._failed >= LOST_AFTER:
                 self._cut()
@@ -178,7 +178,7 @@ class ScanMatcher:
 class _PassAgain:
     """A pass over scans as the one before has them, on a map of its own."""
 
-    def __init__(self, flags: dict[Flag, int]) -> None:
+    def __init__(self, flags: Counter[Flag]) -> None:
         """Count reasons of matches that fail in `flags`."""
         self.tracker = ScanTracker(np.zeros(3))
         self.piece = 0
@@ -223,7 +223,7 @@ class _PassAgain:
         self.turning = course.linear[2]
         flag = self.tracker.take(points, seen.sweep.reach, motion, duration)
         if flag:
-            self._flags[flag] = self._flags.get(flag, 0) + 1
+            self._flags[flag] += 1
             self._failed += 1
             # What was missed is in the guess: the pose goes on as in the pass before.
             self.tracker.pose = moved(self.tracker.pose, motion)

@@ -13,7 +13,7 @@ True
 Reading order: `robot` (the true robot), `manoeuvres` (commands), `chassis` and `engine` (the
 physics), `sensors` (measurements), `recorder` (wheel noise) and `recording` (one drive),
 `sessions` (a set of drives), `live` (driven by commands as they arrive), `field_drive` (recorded
-without motion capture), `hidden` (hidden effects as test data).
+without motion capture, `held_and_carried` in between), `hidden` (hidden effects as test data).
 """
 
 from .engine import AxlePose, TruePath, UnstableError

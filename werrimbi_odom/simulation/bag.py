@@ -80,13 +80,14 @@ def _nanoseconds(time: float) -> int:
 def write_bag(recording: Recording, robot: TrueRobot, folder: str | Path) -> Path:
     """Write /joint_states (wheel angles from the counters) and /reference (measured poses).
 
-    The robot gives the counts per revolution; returns the folder, which must not exist.
+    The robot gives its wheels and the counts per revolution; returns the folder, which must not
+    exist.
     """
-    ros, names = Messages(), ["left_wheel_joint", "right_wheel_joint"]
+    ros, names = Messages(), [name for side in robot.joints for name in side]
     left = recording.left_ticks * (2 * math.pi / robot.left_ticks_per_revolution)
     right = recording.right_ticks * (2 * math.pi / robot.right_ticks_per_revolution)
     messages = [
-        (float(t), "/joint_states", ros.joints(t, names, (float(a), float(b))))
+        (float(t), "/joint_states", ros.joints(t, names, np.repeat([a, b], robot.wheels_a_side)))
         for t, a, b in zip(recording.t_s, left, right, strict=True)
     ]
     for t, *pose in recording.poses:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .bag import Messages
 from .field_drive import FieldDrive
-from .robot import TrueRobot, joints
+from .robot import TrueRobot
 
 TOPICS = {
     "/robot_description": "std_msgs/msg/String",
@@ -28,8 +28,7 @@ def urdf(robot: TrueRobot) -> str:
     """URDF of the manufacturer, with wheel joints at their nominal places."""
     half, radius = robot.nominal.wheel_separation / 2, robot.nominal.wheel_radius
     parts = ['<?xml version="1.0"?>', '<robot name="simulated">', '  <link name="base_link"/>']
-    for side, y in (("left", half), ("right", -half)):
-        names = joints(side, robot.wheels_a_side)
+    for names, y in zip(robot.joints, (half, -half), strict=True):
         for number, name in enumerate(names):
             x = 0.0 if len(names) == 1 else half * (1 - 2 * number)
             link = name.removesuffix("_joint")
@@ -85,8 +84,7 @@ def write_field_bag(
         kind = TOPICS["/scan"]
         return made(kind, header(stamp, LIDAR_FRAME), *angles, *times, *limits, *seen)
 
-    sides = [joints(side, robot.wheels_a_side) for side in ("left", "right")]
-    names = [name for each in sides for name in each]
+    names = [name for side in robot.joints for name in side]
     first = float(min(drive.wheels[0, 1], drive.imu[0, 1], drive.localiser[0, 1]))
     messages = [(first, "/robot_description", made("std_msgs/msg/String", urdf(robot)))]
     if mounting:
@@ -96,7 +94,7 @@ def write_field_bag(
     for stamp, received, ranges in zip(scans.time, drive.scans_received, scans.ranges, strict=True):
         messages.append((received, "/scan", scan(stamp, ranges)))
     for (stamp, received, left, right), pose in zip(drive.wheels, drive.odometry, strict=True):
-        angles = np.repeat([left, right], [len(each) for each in sides])
+        angles = np.repeat([left, right], robot.wheels_a_side)
         messages.append((received, "/joint_states", ros.joints(stamp, names, angles)))
         messages.append((received, "/odom", odometry(stamp, pose)))
         messages.append((received, "/tf", transform(stamp, "odom", "base_link", pose)))

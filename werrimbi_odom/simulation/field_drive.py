@@ -16,22 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bag import EPOCH
-from .engine import PERIOD, AxlePose, Floats, TruePath
+from .engine import AxlePose, Floats
+from .held_and_carried import TURN, carried_in, held_in, later
 from .hidden.hidden_effect import Peculiarity
 from .lidar import Lidar, Sweeps, scanned
-from .recording import Recording
+from .recording import Happened, Recording
 from .robot import TrueRobot
 from .rooms import around
 from .sensors import ReferenceSensor, counters, sampling_times
-
-HELD, CARRIED = 4.0, 5.0
-"""Durations of holding and carrying the robot [s]."""
-
-TURN = 2.0 * math.pi
-"""One revolution of a wheel [rad]."""
-
-AT_PACE = 0.5
-"""Time in which the carrying hand reaches its speed [s]."""
 
 BEHIND = Lidar(mount=AxlePose(-0.032, 0.0, 0.0))
 """A lidar with 218 beams slightly behind the axle, as on a TurtleBot3."""
@@ -86,6 +78,8 @@ class FieldDrive:
     """Times of their reception, shape (n,)."""
     truth: dict[str, object] = field(default_factory=dict)
     """Ground truth for truth.json, which is not in the bag; times in the clock of the bag."""
+    happened: tuple[Happened, ...] = ()
+    """Events, in the same clock; part of the truth."""
 
 
 @dataclass(frozen=True)
@@ -118,27 +112,18 @@ def as_in_the_field(
     `robot_seed` is of what all drives of the robot have in common (the gyro). The drive was
     recorded with the `hidden` peculiarities. Those of counters change the wheels' angles. Those of
     a reference change the localiser; the gyro, if they delay a heading; and the lidar, in its mount
-    and its delay.
+    and its delay. What happened has the times at which it did between holding and carrying.
     """
     sensors = FieldSensors()
     rng = np.random.default_rng([seed, 77])
     gyro = gyro_of(sensors, robot_seed=robot_seed)
-    path, held = _held(recording.true_path, rng)
-    path, carried = _carried(path, rng)
+    path, held = held_in(recording.true_path, rng)
+    path, carried = carried_in(path, rng)
     end = float(path.t_s[-1])
 
-    at = sampling_times(sensors.wheels_hz, end, rng)
-    counted = _counted(recording, path, robot, at, rng.integers(-100_000, 100_000, 2))
-    for number, odd in enumerate(hidden):
-        counted = odd.recording(counted, robot, np.random.default_rng([seed, 79, number]))
-    left, right = (
-        np.asarray(ticks * (2.0 * math.pi / turn), float)
-        for ticks, turn in (
-            (counted.left_ticks, robot.left_ticks_per_revolution),
-            (counted.right_ticks, robot.right_ticks_per_revolution),
-        )
-    )
-    wheels = np.column_stack([*_stamped(at, sensors, rng), left, right])
+    read_at = sampling_times(sensors.wheels_hz, end, rng)
+    zeros = rng.integers(-100_000, 100_000, 2) * (not robot.counters_keep_zero)
+    read_stamps = _stamped(read_at, sensors, rng)
 
     at = sampling_times(sensors.imu_hz, end, rng)
     exact = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
@@ -151,8 +136,24 @@ def as_in_the_field(
 
     at = sampling_times(sensors.localiser_hz, end, rng)
     errors, jumped = _wandering(at.size, sensors, rng)
-    poses = np.column_stack(exact.measure(path, at, rng)) + errors
-    localiser = np.column_stack([*_stamped(at, sensors, rng), poses])
+    x, y, yaw = exact.measure(path, at, rng)
+    stamps, received = _stamped(at, sensors, rng)
+
+    counts = counters(path, robot, read_at, zeros.tolist())
+    seen = Recording(recording.name, read_at, *counts, at, x, y, yaw, path)
+    jumps: list[Happened] = []
+    for number, odd in enumerate(hidden):
+        seen = odd.recording(seen, robot, np.random.default_rng([seed, 79, number]))
+        jumps += odd.happened(float(seen.t_s[-1]), robot, np.random.default_rng([seed, 79, number]))
+    poses = np.column_stack([seen.reference_x_m, seen.reference_y_m, seen.reference_yaw_rad])
+    localiser = np.column_stack([stamps + (seen.reference_t_s - at), received, poses + errors])
+    left = np.asarray(seen.left_ticks * (TURN / robot.left_ticks_per_revolution), float)
+    right = np.asarray(seen.right_ticks * (TURN / robot.right_ticks_per_revolution), float)
+    wheels = np.column_stack([*read_stamps, left, right])
+    happened = [
+        *(each for each in jumps if each.of == "reference_jump"),
+        *(later(each, held, carried) for each in recording.happened if each.of != "reference_jump"),
+    ]
     truth: dict[str, object] = {
         "held": [_by_the_bag(held)],
         "carried": [_by_the_bag(carried)],
@@ -174,6 +175,7 @@ def as_in_the_field(
         scans,
         _received(scans.time, whole, sensors, rng),
         truth,
+        tuple(replace(each, t_s=_by_the_bag([each.t_s])[0]) for each in happened),
     )
 
 
@@ -183,16 +185,6 @@ def _as_it_sits(lidar: Lidar, beside: AxlePose) -> Lidar:
     x, y, yaw = lidar.mount
     there = AxlePose(beside.x + cos * x - sin * y, beside.y + sin * x + cos * y, beside.yaw + yaw)
     return replace(lidar, mount=there)
-
-
-def _counted(
-    recording: Recording, path: TruePath, robot: TrueRobot, at: Floats, zeros: NDArray[np.int64]
-) -> Recording:
-    """The same recording along another path, with counters read at other times."""
-    left, right = counters(path, robot, at, zeros.tolist())
-    return replace(
-        recording, true_path=path, t_s=at, left_ticks=left, right_ticks=right, channels={}
-    )
 
 
 def _by_the_bag(times: Sequence[float]) -> list[float]:
@@ -212,75 +204,6 @@ def _received(
     """Times of reception, in the order sent, of what was measured by `known`."""
     received = np.maximum(stamps, known) + rng.exponential(sensors.latency, stamps.size)
     return np.asarray(np.maximum.accumulate(received))
-
-
-def _inserted(path: TruePath, row: int, more: Floats) -> TruePath:
-    """The path with rows (x, y, yaw, left, right) inserted after a row; later rows are delayed."""
-    table = np.column_stack(
-        [path.x_m, path.y_m, path.yaw_rad, path.left_angle_rad, path.right_angle_rad]
-    )
-    table = np.vstack([table[: row + 1], more, table[row + 1 :]])
-    time = np.asarray(PERIOD * np.arange(len(table)), dtype=np.float64)
-    return TruePath(time, *np.ascontiguousarray(table.T))
-
-
-def _held(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
-    """Insert a time in which somebody holds the robot: its wheels turn, it does not move.
-
-    They turn by whole revolutions at about the same speed as before, because the rest of the drive
-    was recorded with certain wheel angles, and effects of unround wheels depend on these.
-    """
-    speed = np.abs(np.gradient(path.left_angle_rad + path.right_angle_rad))
-    row = _somewhere(speed > 0.5 * speed.max(), (0.2, 0.45), rng)
-    steps = round(HELD / PERIOD)
-    gone = [TURN * round((angle[row] - angle[row - 1]) * steps / TURN) for angle in _angles(path)]
-    share = np.arange(1, steps + 1) / steps
-    turned = [angle[row] + more * share for angle, more in zip(_angles(path), gone, strict=True)]
-    still = np.tile([path.x_m[row], path.y_m[row], path.yaw_rad[row]], (steps, 1))
-    longer = _inserted(path, row, np.column_stack([still, *turned]))
-    on = row + 1 + steps  # wheel angles of the rest of the drive are larger by this
-    left, right = longer.left_angle_rad.copy(), longer.right_angle_rad.copy()
-    left[on:] += gone[0]
-    right[on:] += gone[1]
-    longer = replace(longer, left_angle_rad=left, right_angle_rad=right)
-    return longer, [float(longer.t_s[row]), float(longer.t_s[row + steps])]
-
-
-def _angles(path: TruePath) -> tuple[Floats, Floats]:
-    return path.left_angle_rad, path.right_angle_rad
-
-
-def _carried(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
-    """Insert a time in which somebody lifts the robot at rest and puts it down elsewhere."""
-    speed = np.abs(np.gradient(path.left_angle_rad)) + np.abs(np.gradient(path.right_angle_rad))
-    row = _somewhere(speed <= np.quantile(speed, 0.02), (0.55, 0.9), rng)
-    steps = round(CARRIED / PERIOD)
-    pace = np.minimum(np.arange(1, steps + 1), np.arange(steps, 0, -1)) * PERIOD / AT_PACE
-    share = np.cumsum(np.minimum(pace, 1.0))
-    share /= share[-1]
-    away = rng.uniform(0.5, 1.5) * np.exp(1j * rng.uniform(-np.pi, np.pi))
-    turn = float(rng.uniform(0.5, 2.5) * rng.choice([-1.0, 1.0]))
-    here = complex(path.x_m[row], path.y_m[row])
-    there = here + share * away
-    yaw = path.yaw_rad[row] + share * turn
-    stopped = np.tile([angle[row] for angle in _angles(path)], (steps, 1))
-    longer = _inserted(path, row, np.column_stack([there.real, there.imag, yaw, stopped]))
-    on = row + 1 + steps
-    place = longer.x_m + 1j * longer.y_m
-    place[on:] = here + away + (place[on:] - here) * np.exp(1j * turn)
-    heading = longer.yaw_rad.copy()
-    heading[on:] += turn
-    longer = replace(
-        longer, x_m=np.ascontiguousarray(place.real), y_m=place.imag.copy(), yaw_rad=heading
-    )
-    return longer, [float(longer.t_s[row]), float(longer.t_s[row + steps])]
-
-
-def _somewhere(where: NDArray[np.bool_], part: Sequence[float], rng: np.random.Generator) -> int:
-    """A random row where a condition holds in a part of the drive; else its middle row."""
-    first, last = (int(share * where.size) for share in part)
-    rows = np.flatnonzero(where[first:last])
-    return first + int(rng.choice(rows) if rows.size else (last - first) // 2)
 
 
 def _wandering(

@@ -27,14 +27,15 @@ CHECKED_EVERY = 20
 """Periods between two checks for engine warnings, each of which costs more than a period."""
 
 KEPT = 400
-"""Rows of the true path that are kept, 2 s: longer than any sensor delay."""
+"""Rows of the true path that are kept, 2 s, and those of the reference's delay."""
 
 
 class LiveRobot:
     """A robot in the engine, driven period by period by commands as they arrive.
 
     Seed, start and peculiarities are as in `record`; extra channels of the latter are not available
-    live. A `room` is for the lidar only: in the engine the robot drives through the walls.
+    live, and ValueError refuses peculiarities that are made in a whole record. A `room` is for the
+    lidar only: in the engine the robot drives through the walls.
     """
 
     def __init__(
@@ -47,6 +48,12 @@ class LiveRobot:
         hidden: Sequence[Peculiarity] = (),
         room: Room | None = None,
     ) -> None:
+        for odd in hidden:
+            if not odd.live:
+                raise ValueError(
+                    f"{type(odd).__name__} is made in a whole record: a robot that is driven live "
+                    "cannot have it"
+                )
         ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
         self._robot, self._sensor, self._hidden = ready.robot, ready.sensor, tuple(hidden)
         self._driven = DrivenRobot(
@@ -61,12 +68,13 @@ class LiveRobot:
         self._lidar_noise = np.random.default_rng([seed, 81])
         self._gyro = gyro_of(sensors, robot_seed=seed)
         self._gyro_noise = np.random.default_rng([seed, 80])
-        self._rows = np.empty((2 * KEPT, 8))
         self._count = self._unchecked = 0
         self._wanted = self._speeds = (0.0, 0.0)
         self.counters_lag = max((odd.ahead for odd in hidden), default=0.0)
         """Delay from the stamp of a counter reading until it is available [s]."""
         delays = (self._sensor.delay, self._sensor.delay + self._sensor.heading_delay)
+        self._kept = KEPT + round(max(0.0, *delays) / PERIOD)
+        self._rows = np.empty((2 * self._kept, 8))
         self.reference_lag = max(0.0, *(-delay for delay in delays))
         """The same for the reference [s]."""
         self._keep()
@@ -117,8 +125,8 @@ class LiveRobot:
         return AxlePose(*(float(each[0]) for each in measured))
 
     def gyro(self, since: float, until: float) -> float:
-        """Mean yaw rate of the gyro [rad/s] between two times within the last second [s]."""
-        path = self._path()
+        """Mean yaw rate of the gyro [rad/s] between two times [s]; of the last second at most."""
+        path, since = self._path(), max(since, until - 1.0)
         before, after = np.interp([since, until], path.t_s, path.yaw_rad)
         rate = (after - before) / (until - since)
         noise = self._gyro.noise * self._gyro_noise.standard_normal()
@@ -134,8 +142,8 @@ class LiveRobot:
     def _keep(self) -> None:
         """Append the current row; when the buffer is full, discard its older half."""
         if self._count == len(self._rows):
-            self._rows[:KEPT] = self._rows[KEPT:]
-            self._count = KEPT
+            self._rows[: self._kept] = self._rows[self._kept :]
+            self._count = self._kept
         row = self._driven.row
         angles = row[4], row[5]
         for one in self._counted:

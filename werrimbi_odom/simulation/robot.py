@@ -44,9 +44,16 @@ class TrueRobot:
     mass: float = 10.0
     """Total mass [kg]."""
     wheels_a_side: int = 1
-    """Number of wheels per side in the robot file."""
+    """Number of wheels per side in the robot file: 1 or 2."""
     nominal: Nominal = field(default_factory=Nominal)
     """Parameters of the controller and of the robot file."""
+
+    @property
+    def joints(self) -> tuple[list[str], list[str]]:
+        """Names of the joints of the left and of the right wheels, as in the robot file."""
+        places = [""] if self.wheels_a_side == 1 else ["front_", "rear_"]
+        left, right = ([f"{at}{side}_wheel_joint" for at in places] for side in ("left", "right"))
+        return left, right
 
 
 _TEMPLATE = """\
@@ -87,18 +94,11 @@ def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
         right_ticks_per_revolution=_real(robot.right_ticks_per_revolution),
         left_wheel_noise=_real(robot.left_wheel_noise),
         right_wheel_noise=_real(robot.right_wheel_noise),
-        left_wheel_names=", ".join(joints("left", robot.wheels_a_side)),
-        right_wheel_names=", ".join(joints("right", robot.wheels_a_side)),
+        left_wheel_names=", ".join(robot.joints[0]),
+        right_wheel_names=", ".join(robot.joints[1]),
     )
     path.write_text(text, encoding="utf-8")
     return path
-
-
-def joints(side: str, count: int) -> list[str]:
-    """Names of the wheel joints of one side."""
-    if count == 1:
-        return [f"{side}_wheel_joint"]
-    return [f"{place}_{side}_wheel_joint" for place in ("front", "rear")]
 
 
 def _real(value: float) -> str:

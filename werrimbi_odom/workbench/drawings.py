@@ -23,6 +23,7 @@ from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
 from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure
+from werrimbi_odom.report.comparison.document import angle_told, length_told
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.workbench.session import ModelVersion
 
@@ -88,12 +89,8 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
 
 def empty_floor() -> style.Figure:
     """An empty floor plan with equal scales, which can be panned."""
-    figure = style.blank()
-    figure.update_xaxes(title="x [m]")
-    figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
-    style.plain(figure, height=480).update_xaxes(zeroline=False).update_yaxes(zeroline=False)
-    figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
-    return figure
+    figure = style.from_above(style.blank(), 480, zeroline=False)
+    return figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
 
 
 def _add_texts(
@@ -122,12 +119,21 @@ def leg_told(comparison: Comparison, index: int) -> str:
     """Hover text of one leg in two lines."""
     legs = comparison.legs
     run = comparison.runs[legs.run[index]].run.name
-    along, sideways, heading = legs.errors.error[index]
+    told = ", ".join(f"{name} {size}" for name, size in errors_told(comparison, index).items())
     return (
         f"{style.escaped(run)}, {leg_when(comparison, index)}, {legs.errors.kind[index]}<br>"
-        f"measured − predicted: along {1e3 * along:+.1f} mm, "
-        f"sideways {1e3 * sideways:+.1f} mm, heading {np.degrees(heading):+.2f}°"
+        f"measured − predicted: {told}"
     )
+
+
+def errors_told(comparison: Comparison, index: int) -> dict[str, str]:
+    """Errors of one leg by their names; a dash for what was not measured."""
+    along, sideways, heading = comparison.legs.errors.error[index].tolist()
+    return {
+        "along": length_told(along, signed=True),
+        "sideways": length_told(sideways, signed=True),
+        "heading": angle_told(heading, signed=True),
+    }
 
 
 def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
@@ -165,8 +171,7 @@ def _joined(
 def gain_figure(steps: Sequence[ModelVersion]) -> style.Figure:
     """Errors of held-out and fitted drives, and the error of the former by noise alone."""
     added = steps[-1].added
-    explained = added is not None and added.explained
-    floor = added.noise_alone(added.holdout) if added is not None and explained else math.nan
+    floor = added.noise_alone(added.holdout) if added and added.explained else math.nan
     errors = [
         ErrorOfModel(
             step.name if step.added is None else f"+ {step.name}",

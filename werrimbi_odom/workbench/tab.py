@@ -216,9 +216,11 @@ def size_told(error: float, unit: str) -> str:
     return f"{value:.2f} mm" if value < 10.0 else f"{value:.1f} mm"
 
 
-def percent(share: float) -> str:
-    """A relative change, with a minus sign instead of a hyphen."""
-    return f"{share:+.0f} %".replace("-", "−")
+def change_told(before: float, after: float) -> str:
+    """A relative change, with a minus sign instead of a hyphen; "" if it is not known."""
+    if not (before > 0.0 and math.isfinite(after)):
+        return ""
+    return f"{100.0 * (after / before - 1.0):+.0f} %".replace("-", "−")
 
 
 class Opening:

@@ -15,8 +15,8 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
-from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, START_YAW
-from werrimbi_odom.inference.fitting.likelihood import relative_errors
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS
+from werrimbi_odom.inference.fitting.likelihood import errors_between
 from werrimbi_odom.inference.fitting.noise import (
     NoiseEstimate,
     beyond_wheel_noise,
@@ -24,10 +24,11 @@ from werrimbi_odom.inference.fitting.noise import (
     with_noise,
 )
 from werrimbi_odom.inference.fitting.precision import Precision
-from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.fitting.prediction import predict, right_handed
 from werrimbi_odom.inference.fitting.run_phases import own_parameters, with_own_values
 from werrimbi_odom.inference.fitting.whitened_innovations import Costs
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -66,7 +67,7 @@ class Calibration:
     @property
     def twin(self) -> dict[str, float]:
         """Equivalent multipliers where only two are identifiable: given base, other radii."""
-        if self.fit.held != ("wheel_radius_scale",) or len(self.multipliers) != len(MULTIPLIERS):
+        if self.fit.held != ("wheel_radius_scale",):
             return {}
         base, left, right = (self.multipliers[name] for name in MULTIPLIERS)
         share = base.before / base.value
@@ -92,8 +93,7 @@ def calibrate(
     numbers = (*CALIBRATION, *own_parameters(begin), *begin.model.nuisance_parameters)
     fit = fit_model(laid, begin, numbers)
     held = options.sigmas_known
-    local = [number for number in numbers if number.name != START_YAW]
-    precision = Precision.of(laid, fit.point, local, fit.directions.matrix)
+    precision = Precision.of(laid, fit.point, numbers, fit.directions.matrix)
     noises = noise_estimates(
         Costs(laid, fit.point), fit.point.variances, held, precision.information
     )
@@ -102,7 +102,8 @@ def calibrate(
     misfit = tuple(item for item in found if item.p_value < rules.SURE)
     strange = _strange(fit, noises)
     names = [number.name for number in fit.free]
-    spread = np.sqrt(np.diag(fit.covariance)) * precision.widening(noises, names)
+    usual = np.sqrt(np.diag(fit.covariance))
+    spread = usual * precision.widening(noises, names)
     multipliers = {}
     for name in MULTIPLIERS:
         determined = name in names
@@ -119,7 +120,6 @@ def calibrate(
         if noises[name].determined and not beyond_wheel_noise(noises[name])
     }
     changes = {name: item.value for name, item in multipliers.items() if item.determined}
-    usual = np.sqrt(np.diag(fit.covariance))
     return Calibration(
         robot=with_noise(fit.robot, wheels),
         multipliers=multipliers,
@@ -151,9 +151,9 @@ def errors_of_legs(
 
     NaN where the reference gives no relative pose.
     """
-    return np.concatenate(
-        [
-            relative_errors(robot, run, predict(robot, run, heading))
-            for run, heading in zip(runs, headings, strict=True)
-        ]
-    )
+    view, found = view_of(robot.effects), []
+    for run, heading in zip(runs, headings, strict=True):
+        legs = concatenated([run])
+        start, finish = (right_handed(poses, view) for poses in (legs.start, legs.finish))
+        found.append(errors_between(start, finish, predict(robot, run, heading)))
+    return np.concatenate(found)

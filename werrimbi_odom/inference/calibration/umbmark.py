@@ -151,27 +151,25 @@ def recomputed(squares: Squares, robot: Robot, factors: Factors) -> Squares:
 
     `robot`: the robot that the odometry of `squares` assumed.
     """
-    moved, track = [], effective_track(robot)
-    for sense, offsets in ((-1, squares.cw), (1, squares.ccw)):
-        ends = [
-            run.end(track * factors.base, factors.left, factors.right) - run.end(track)
-            for run in squares.driven(sense, track)
-        ]
-        moved.append(offsets - np.array(ends))
-    return replace(squares, cw=moved[0], ccw=moved[1])
+    cw, ccw = _moves(squares, effective_track(robot), factors.base, factors.left, factors.right)
+    return replace(squares, cw=squares.cw - cw, ccw=squares.ccw - ccw)
 
 
 def _offsets(squares: Squares, track: float, off: float, imbalance: float) -> Floats:
     """Mean offsets (x, y clockwise, x, y anticlockwise) [m] predicted for wrong factors."""
-    means = []
-    for sense in (-1, 1):
-        driven = squares.driven(sense, track)
-        ends = [
-            run.end(track * (1.0 + off), 1.0 - imbalance, 1.0 + imbalance) - run.end(track)
-            for run in driven
-        ]
-        means.append(np.mean(ends, axis=0))
-    return np.concatenate(means)
+    moves = _moves(squares, track, 1.0 + off, 1.0 - imbalance, 1.0 + imbalance)
+    return np.concatenate([each.mean(axis=0) for each in moves])
+
+
+def _moves(
+    squares: Squares, track: float, base: float, left: float, right: float
+) -> tuple[Floats, Floats]:
+    """By how much factors on base and wheels move the ends by odometry, cw and ccw, (n, 2) [m]."""
+    cw, ccw = (
+        np.array([run.end(track * base, left, right) - run.end(track) for run in driven])
+        for driven in (squares.driven(-1, track), squares.driven(1, track))
+    )
+    return cw, ccw
 
 
 def _estimate(value: float, slope: Floats, squares: Squares) -> ValueAndStd:

@@ -21,12 +21,11 @@ from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
     paces,
-    quantisation_of_legs,
-    quantisation_variance,
     stated_shares,
     wheel_covariance,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, extrinsics_of, right_handed
+from werrimbi_odom.inference.fitting.quantisation import quantisation_of_legs, quantisation_variance
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion

@@ -12,7 +12,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.reference_group import ReferenceGroup
 from werrimbi_odom.inference.comparison.reference_noise import independent_for
-from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
+from werrimbi_odom.inference.fitting.quantisation import quantisation_variance
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -24,7 +24,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.likelihood import quantisation_variance
+from werrimbi_odom.inference.fitting.quantisation import quantisation_variance
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

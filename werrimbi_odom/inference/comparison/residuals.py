@@ -61,7 +61,9 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
         kept = reference.chosen(position)
         start = np.where(np.arange(kept.yaw.size) == 0, kept.yaw, np.nan)
         return replace(run, reference=replace(kept, yaw=start)), "position"
-    return replace(run, reference=reference.chosen(yaw)), "heading"
+    headings = reference.chosen(yaw)
+    unknown = np.full(headings.time.size, np.nan)
+    return replace(run, reference=replace(headings, x=unknown, y=unknown)), "heading"
 
 
 def residuals_of(

@@ -34,6 +34,7 @@ WORTH_COPIES = range(30_000, 250_000)
 """Numbers of steps for which whole fits are worth threads and caches of their own: an hour at 50 Hz
 takes 1.4 GB so, and 1.0 GB without."""
 Found = TypeVar("Found")
+Values = TypeVar("Values", Floats, NDArray[np.intp])
 Clocks = tuple[tuple[float, float], ...]
 """Delay [s] and clock drift [s/s] of the reference in each run."""
 
@@ -144,11 +145,8 @@ class Concatenated:
         if len(stated) < len(self.runs) or any(None in each for each in usual):
             return None
         place, heading = np.array(usual).max(axis=0)
-        begin, end = (
-            np.concatenate([each[side] for each in stated]) for side in (slice(-1), slice(1, None))
-        )
         unit = np.array([place, place, heading])
-        return np.stack([begin, end]) / np.outer(unit, unit)
+        return _at_both_ends(stated) / np.outer(unit, unit)
 
     @property
     def lost(self) -> NDArray[np.bool_]:
@@ -161,20 +159,15 @@ class Concatenated:
 
         In the units of `shares`. Zero where a run does not state them.
         """
-        found = np.zeros((self.count, 2))
-        for column, name in enumerate(("sigma_xy", "sigma_yaw")):
-            usual = [getattr(run, name) for run in self.runs]
-            walks = [run.measured.walked for run in self.runs]
-            if None in usual:
-                continue
-            growth = np.concatenate(
-                [
-                    np.zeros(run.legs) if walked is None else np.diff(walked[:, column])
-                    for run, walked in zip(self.runs, walks, strict=True)
-                ]
-            )
-            found[:, column] = np.maximum(growth, 0.0) / max(usual) ** 2  # a new piece starts anew
-        return found
+        walks = (
+            np.zeros((run.legs + 1, 2)) if run.measured.walked is None else run.measured.walked
+            for run in self.runs
+        )
+        growth = np.concatenate([np.diff(walk, axis=0) for walk in walks])
+        growth = np.maximum(growth, 0.0)  # a new piece starts anew
+        stated = [(run.sigma_xy, run.sigma_yaw) for run in self.runs]
+        usual = np.array(stated, dtype=np.float64).max(axis=0)
+        return np.where(np.isfinite(usual), growth / np.square(usual), 0.0)
 
     @property
     def run_of_step(self) -> NDArray[np.intp]:
@@ -188,13 +181,8 @@ class Concatenated:
 
     @property
     def rounding(self) -> Floats:
-        """Variance of the counts' rounding at each leg's start and end, (2, m), relative to full.
-
-        Full is that at a message.
-        """
-        known = [run.counters.rounding_at(run.time[run.ends]) for run in self.runs]
-        sides = (slice(-1), slice(1, None))
-        return np.stack([np.concatenate([each[side] for each in known]) for side in sides])
+        """Variance of the counts' rounding at both ends of each leg, (2, m); 1 at a message."""
+        return _at_both_ends([run.counters.rounding_at(run.time[run.ends]) for run in self.runs])
 
     @property
     def inside(self) -> NDArray[np.intp]:
@@ -244,8 +232,8 @@ class Concatenated:
         assert self.finer is not None
         runs = zip(self.finer.runs, self.runs, self.finer.legs, strict=False)
         nodes = [np.searchsorted(fine.rows, run.rows) + first for fine, run, first in runs]
-        begin, end = ([part[which] for part in nodes] for which in (slice(-1), slice(1, None)))
-        return np.concatenate(begin), np.concatenate(end)
+        begin, end = _at_both_ends(nodes)
+        return begin, end
 
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
         """Wheel travel of all steps before any effect."""
@@ -271,20 +259,20 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
     `runs`: runs in order. `finer`: the same runs in shorter legs, from which these are `joined`.
     """
     keep_freed_memory()
-    steps = _starts([run.time.size - 1 for run in runs])
-    legs = _starts([run.legs for run in runs])
+    steps = np.cumsum([0, *(run.time.size - 1 for run in runs)], dtype=np.intp)
+    legs = np.cumsum([0, *(run.legs for run in runs)], dtype=np.intp)
     poses = [np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1) for run in runs]
+    nodes = [run.ends + first for run, first in zip(runs, steps, strict=False)]
+    (begin, end), (start, finish) = _at_both_ends(nodes), _at_both_ends(poses)
     return Concatenated(
         runs=tuple(runs),
         steps=steps,
         legs=legs,
-        begin=np.concatenate(
-            [run.ends[:-1] + first for run, first in zip(runs, steps, strict=False)]
-        ),
-        end=np.concatenate([run.ends[1:] + first for run, first in zip(runs, steps, strict=False)]),
+        begin=begin,
+        end=end,
         run_of_leg=np.repeat(np.arange(len(runs)), np.diff(legs)),
-        start=np.concatenate([pose[:-1] for pose in poses]),
-        finish=np.concatenate([pose[1:] for pose in poses]),
+        start=start,
+        finish=finish,
         intervals=np.concatenate([run.intervals for run in runs]),
         duration=np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
         gap=np.concatenate([run.gap for run in runs]),
@@ -305,5 +293,7 @@ def _stated(measured: Reference) -> Floats | None:
     return np.asarray(sigmas[..., None] ** 2 * np.eye(3))
 
 
-def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
-    return np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp)
+def _at_both_ends(nodes: Sequence[Values]) -> Values:
+    """Values at the starts and ends of all legs, (2, m, ...), from those at each run's nodes."""
+    sides = (slice(-1), slice(1, None))
+    return np.stack([np.concatenate([each[side] for each in nodes]) for side in sides])

@@ -21,8 +21,14 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.correlated_loop import CorrelatedLoop, run_loop
-from werrimbi_odom.inference.fitting.filtering import FilterInput, FilterResult, Ways, in_rounds
-from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, rows_before
+from werrimbi_odom.inference.fitting.filtering import (
+    FilterInput,
+    FilterResult,
+    Ways,
+    in_rounds,
+    rows_before,
+)
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
 from werrimbi_odom.model.pose import Floats
 
 ANEW = 1e2

@@ -10,12 +10,14 @@ takes as many iterations of the loop as a minute.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, carry_on, rows_before, run_loop
+from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, run_loop
+from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.pose import Floats
 
 STRETCH = 300
@@ -221,3 +223,36 @@ def filtered(legs: FilterInput) -> FilterResult:
     return FilterResult(
         of.values, of.covariances, Ways(leg, of.turns, of.carry, leave, free, bounds)
     )
+
+
+def rows_before(bounds: NDArray[np.intp]) -> Iterator[tuple[slice, slice]]:
+    """Of each round but the first: the rows of the legs before its own, and its own."""
+    for before, begin, end in zip(bounds[:-2], bounds[1:-1], bounds[2:], strict=True):
+        yield slice(before, before + end - begin), slice(begin, end)
+
+
+def carry_on(carry: Floats, bounds: NDArray[np.intp], change: Floats) -> None:
+    """Add to changes of the states (m, s, p), in the order of the rounds, those of the legs before.
+
+    The faster way: `carried_in_scalars`, or array by array.
+    """
+    machine = compiled(carried_in_scalars)
+    if machine is not None:
+        machine(carry, bounds, change)
+        return
+    for last, now in rows_before(bounds):
+        change[now] += carry[now] @ change[last]
+
+
+def carried_in_scalars(carry: Floats, bounds: NDArray[np.intp], change: Floats) -> None:
+    """`carry_on`, number by number."""
+    states, columns = change.shape[1], change.shape[2]
+    for step in range(1, bounds.size - 1):
+        back = bounds[step] - bounds[step - 1]
+        for row in range(bounds[step], bounds[step + 1]):
+            for to in range(states):
+                for by in range(states):
+                    share = carry[row, to, by]
+                    if share != 0.0:
+                        for column in range(columns):
+                            change[row, to, column] += share * change[row - back, by, column]

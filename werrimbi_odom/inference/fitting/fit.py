@@ -87,9 +87,7 @@ class ModelFit:
 
 
 def start_point(
-    runs: Concatenated,
-    robot: Robot,
-    options: EvaluationOptions = EvaluationOptions(),
+    runs: Concatenated, robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Point:
     """Start of a fit: the robot as given, no leg excluded, start headings from the first legs."""
     guess = (

@@ -12,6 +12,7 @@ import numpy as np
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import NUISANCES, Model
+from werrimbi_odom.inference.fitting.leg_loop import turn_into
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
 from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of, wiring_of
@@ -38,7 +39,8 @@ def predict_joined(model: Model, runs: Concatenated) -> Prediction:
     leg = np.repeat(np.arange(runs.count), counts)
     index = np.repeat(begin - bounds[:-1], counts) + np.arange(leg.size)
     lever = np.exp(-1j * yaw[begin[leg]]) * (place[end[leg]] - place[index + 1])
-    carry = _turns(yaw[index] - yaw[begin[leg]])
+    carry = np.empty((leg.size, 3, 3))
+    turn_into(carry, yaw[index] - yaw[begin[leg]])
     carry[:, 0, 2], carry[:, 1, 2] = -lever.imag, lever.real
 
     def whole(values: Floats) -> Floats:
@@ -66,13 +68,3 @@ def joins(model: Model) -> bool:
 def _sums(values: Floats) -> Floats:
     """Cumulative sum with a leading zero."""
     return np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
-
-
-def _turns(angle: Floats) -> Floats:
-    """Rotation matrices of (x, y, yaw), (n, 3, 3)."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    turn = np.zeros((angle.size, 3, 3))
-    turn[:, 0, 0], turn[:, 0, 1] = cos, -sin
-    turn[:, 1, 0], turn[:, 1, 1] = sin, cos
-    turn[:, 2, 2] = 1.0
-    return turn

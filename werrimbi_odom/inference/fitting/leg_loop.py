@@ -9,7 +9,6 @@ into machine code (plain Python would take fifty times as long as the arrays).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -254,41 +253,8 @@ def loop_over_scalars(
                 )
 
 
-def rows_before(bounds: NDArray[np.intp]) -> Iterator[tuple[slice, slice]]:
-    """Of each round but the first: the rows of the legs before its own, and its own."""
-    for before, begin, end in zip(bounds[:-2], bounds[1:-1], bounds[2:], strict=True):
-        yield slice(before, before + end - begin), slice(begin, end)
-
-
-def carry_on(carry: Floats, bounds: NDArray[np.intp], change: Floats) -> None:
-    """Add to changes of the states (m, s, p), in the order of the rounds, those of the legs before.
-
-    The faster way: `carried_in_scalars`, or array by array.
-    """
-    machine = compiled(carried_in_scalars)
-    if machine is not None:
-        machine(carry, bounds, change)
-        return
-    for last, now in rows_before(bounds):
-        change[now] += carry[now] @ change[last]
-
-
-def carried_in_scalars(carry: Floats, bounds: NDArray[np.intp], change: Floats) -> None:
-    """`carry_on`, number by number."""
-    states, columns = change.shape[1], change.shape[2]
-    for step in range(1, bounds.size - 1):
-        back = bounds[step] - bounds[step - 1]
-        for row in range(bounds[step], bounds[step + 1]):
-            for to in range(states):
-                for by in range(states):
-                    share = carry[row, to, by]
-                    if share != 0.0:
-                        for column in range(columns):
-                            change[row, to, column] += share * change[row - back, by, column]
-
-
 def turn_into(turn: Floats, yaw: Floats) -> None:
-    """Write rotation matrices of (x, y, yaw) for angles of shape (g, s)."""
+    """Write rotation matrices of (x, y, yaw) for angles of any shape."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     turn[:] = 0.0
     turn[..., 0, 0] = turn[..., 1, 1] = cos

@@ -24,17 +24,11 @@ from werrimbi_odom.inference.fitting.correlated_filter import (
     GyroHeading,
     filtered_with_correlated_error,
 )
-from werrimbi_odom.inference.fitting.filtering import (
-    STRETCH,
-    FilterInput,
-    Shocks,
-    Ways,
-    filtered,
-)
-from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of, lever_of
+from werrimbi_odom.inference.fitting.filtering import STRETCH, FilterInput, Shocks, Ways, filtered
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, diagonal_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
+from werrimbi_odom.inference.fitting.quantisation import quantisation, quantisation_of_legs
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
-from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.inference.linear import inverse_root, square_and_volume
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -132,7 +126,9 @@ class Innovations:
         The last column is for the heading at the run's first reference pose; it is zero if
         measured.
         """
-        return _alone(slopes) if self.ways is None else self.ways.innovations(slopes)
+        if self.ways is not None:
+            return self.ways.innovations(slopes)
+        return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
 
     def _root(self) -> Floats:
         if not self._roots:
@@ -222,23 +218,12 @@ def _of_increments(
     return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, None, known)
 
 
-def _alone(slopes: Floats) -> Floats:
-    """Jacobian of the innovations where legs are independent and no start heading is fitted."""
-    return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
-
-
-def relative_errors(robot: Robot, run: MatchedRun, prediction: Prediction) -> Floats:
+def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
     """Measured minus predicted relative pose of each leg, shape (m, 3); NaN where not measured.
 
-    In the frame of the robot at the leg's start, as measured by the reference.
+    In the frame of the robot at the leg's start. `start`, `finish` (m, 3): measured poses at both
+    ends, right-handed.
     """
-    measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
-    measured = right_handed(measured, view_of(robot.effects))
-    return errors_between(measured[:-1], measured[1:], prediction)
-
-
-def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
-    """As `relative_errors`, for measured poses (m, 3) at the starts and ends of the legs."""
     step = finish - start
     cos, sin = np.cos(start[:, 2]), np.sin(start[:, 2])
     relative = np.stack(
@@ -306,47 +291,3 @@ def wheel_covariance(
     )
     noise[:, runs.stepped] += rules.EVENT_STEP * np.eye(3)
     return noise
-
-
-def quantisation_variance(robot: Robot) -> Floats:
-    """Diagonal of `quantisation`, in the axes of a reference in which the robot heads anywhere."""
-    return np.asarray(np.diagonal(quantisation(robot, np.array([np.nan]))[0]))
-
-
-def quantisation(robot: Robot, heading: Floats) -> Floats:
-    """Quantisation covariance of a pose from one reading of both counters (uniform), (m, 3, 3).
-
-    Counts err along the path and in heading, never sideways. So they do at a message. Between two
-    they err less (`Counters.rounding_at`), which fits leave out: how much depends on the speed, and
-    a delay for which it seems to be least would be preferred. `heading` (m,): of the robot, in the
-    axes of the covariance [rad]; where it is NaN, the mean over all headings.
-    """
-    left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
-    along, yaw = 0.25 * (left + right), (left + right) / robot.track**2
-    both = 0.5 * (right - left) / robot.track
-    cos, sin = np.nan_to_num(np.cos(heading)), np.nan_to_num(np.sin(heading))
-    twice = np.nan_to_num(np.exp(2j * heading))
-    found = np.empty((heading.size, 3, 3))
-    found[:, 0, 0] = 0.5 * along * (1.0 + twice.real)
-    found[:, 1, 1] = 0.5 * along * (1.0 - twice.real)
-    found[:, 0, 1] = found[:, 1, 0] = 0.5 * along * twice.imag
-    found[:, 0, 2] = found[:, 2, 0] = both * cos
-    found[:, 1, 2] = found[:, 2, 1] = both * sin
-    found[:, 2, 2] = yaw
-    return found
-
-
-def quantisation_of_legs(
-    robot: Robot, relative: Floats, rounding: Sequence[float] | Floats = (1.0, 1.0)
-) -> Floats:
-    """Quantisation covariance of the legs' errors, from the readings at both ends, (m, 3, 3).
-
-    `relative` (m, 3): predicted, in the frame of the reference at each leg's start. `rounding`:
-    shares of it at the starts and ends (`Concatenated.rounding`).
-    """
-    axis = view_of(robot.effects).yaw
-    lever = lever_of(relative)
-    begun = quantisation(robot, np.array([-axis]))
-    ended = quantisation(robot, relative[:, 2] - axis)
-    first, last = (np.reshape(share, (-1, 1, 1)) for share in rounding)
-    return np.asarray(last * ended + first * (lever @ begun @ lever.swapaxes(-1, -2)))

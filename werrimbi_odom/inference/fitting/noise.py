@@ -93,10 +93,7 @@ def with_known_noise(variances: Variances, options: EvaluationOptions) -> Varian
 
 
 def map_variances(
-    costs: Costs,
-    start: Variances,
-    held: tuple[bool, bool],
-    prediction: Prediction | None = None,
+    costs: Costs, start: Variances, held: tuple[bool, bool], prediction: Prediction | None = None
 ) -> Variances:
     """Maximum a posteriori variances for a fixed model or prediction (`fisher_scoring`)."""
     prediction = prediction or costs.prediction()
@@ -132,20 +129,10 @@ def posterior_cost(
 def _prior(costs: Costs) -> tuple[Floats, Floats]:
     """Log means of the prior standard deviations, and their spread; infinite where unknown."""
     runs = costs.runs
-    middle = np.array(
-        [rules.TYPICAL_WHEEL_NOISE, rules.TYPICAL_WHEEL_NOISE, 1.0, 1.0, rules.TYPICAL_STAMP_NOISE]
-    )
-    spread = np.array(
-        [
-            rules.WHEEL_NOISE_SPREAD,
-            rules.WHEEL_NOISE_SPREAD,
-            np.inf,
-            np.inf,
-            rules.STAMP_NOISE_SPREAD,
-        ]
-    )
-    middle = np.concatenate([middle, rules.TYPICAL_WALK])
-    spread = np.concatenate([spread, np.full(3, np.inf)])
+    wheel, stamp = rules.TYPICAL_WHEEL_NOISE, rules.TYPICAL_STAMP_NOISE
+    middle = np.array([wheel, wheel, 1.0, 1.0, stamp, *rules.TYPICAL_WALK])
+    spread = np.full(len(_ALL), np.inf)
+    spread[:2], spread[4] = rules.WHEEL_NOISE_SPREAD, rules.STAMP_NOISE_SPREAD
     if costs.point.options.reference_kind == "local_map":
         middle[2:4], spread[2:4] = rules.TYPICAL_MATCH, rules.MATCH_SPREAD
         spread[5:] = rules.WALK_SPREAD
@@ -156,11 +143,7 @@ def _prior(costs: Costs) -> tuple[Floats, Floats]:
 
 
 def _scored(
-    costs: Costs,
-    prediction: Prediction,
-    base: Variances,
-    moving: NDArray[np.bool_],
-    logs: Floats,
+    costs: Costs, prediction: Prediction, base: Variances, moving: NDArray[np.bool_], logs: Floats
 ) -> tuple[float, Floats, Floats]:
     """Cost at log variances, its gradient and its expected Hessian (Fisher information).
 
@@ -200,7 +183,11 @@ def noise_estimates(
     maximum likelihood (Patterson and Thompson, Biometrika 58, 1971), by one Newton step.
     """
     moving = _moving(costs, held)
-    function = _in_logs(costs, variances, moving)
+    prediction = costs.prediction()
+
+    def function(logs: Floats) -> Floats:
+        return posterior_cost(costs, _variances(variances, moving, logs), prediction)
+
     sigmas = np.sqrt(_row(variances))
     logs = 2.0 * np.log(sigmas[moving])
     curved, highest = hessian(function, logs), _HIGHEST[moving]
@@ -288,15 +275,3 @@ def _variances(base: Variances, moving: NDArray[np.bool_], logs: Floats) -> Vari
     table = np.tile(_row(base), (logs.shape[0], 1))
     table[:, moving] = np.exp(logs)
     return Variances(*table.T)
-
-
-def _in_logs(
-    costs: Costs, base: Variances, moving: NDArray[np.bool_]
-) -> Callable[[Floats], Floats]:
-    prediction = costs.prediction()
-
-    def cost(logs: Floats) -> Floats:
-        sets = _variances(base, moving, logs)
-        return posterior_cost(costs, sets, prediction)
-
-    return cost

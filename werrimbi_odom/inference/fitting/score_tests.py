@@ -21,17 +21,9 @@ import numpy as np
 from werrimbi_odom.inference.fitting.angle_score import best_angles
 from werrimbi_odom.inference.fitting.candidate import Candidate as Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.free_parameters import (
-    FreeParameter,
-    Model,
-    parameters_to_fit,
-)
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter, Model, parameters_to_fit
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
-from werrimbi_odom.inference.fitting.prediction import (
-    Prediction,
-    predict_all,
-    predicted_legs,
-)
+from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, predicted_legs
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, stacked, unexpected
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test, within_reach
 from werrimbi_odom.model.effect import Effect

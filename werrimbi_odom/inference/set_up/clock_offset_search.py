@@ -11,6 +11,7 @@ would be that of the jitter and not of the motion.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
@@ -40,8 +41,10 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     most = round(rules.DELAY_LONGEST / _PERIOD)
     sums = [_Sums(width, most) for width in (2, 3)]  # of turns, and of squared steps
     for record in records:
-        grid = np.arange(record.time[0], record.time[-1], _PERIOD)
-        if grid.size < rules.DELAY_SPANS * most or record.seen.size < rules.FEWEST_CUTS:
+        if record.seen.size < rules.FEWEST_CUTS:
+            continue
+        grid = _grid(record, most)
+        if grid.size < rules.DELAY_SPANS * most:
             continue
         wheels = _wheels(record, grid)
         unseen = [*record.not_driven, *record.taken_out, *_silences(record.seen)]
@@ -124,6 +127,24 @@ class _Sums:
         explained = np.einsum("ki,kij,kj->k", self.cross, inverse, self.cross)
         explained = explained / np.maximum(self.square, np.finfo(np.float64).tiny)
         return np.asarray(np.clip(1.0 - explained, rules.DELAY_UNEXPLAINED, 1.0))
+
+
+def _grid(record: SetUpRecord, most: int) -> Floats:
+    """Instants a period apart, as far as a lag of `most` periods reaches into silences [s].
+
+    In a silence a clock may leap by years: from zero to the time of day, once that is known.
+    """
+    begin, reach = record.time[0], most + _STEPS
+    silences = _silences(record.seen)
+    until = [*(silence[0] for silence in silences), record.seen[-1]]
+    since = [record.seen[0], *(silence[1] for silence in silences)]
+    last = math.ceil((record.time[-1] - begin) / _PERIOD)
+    parts, done = [], 0
+    for first, end in zip(since, until, strict=True):
+        low = max(int((first - begin) / _PERIOD) - reach, done)
+        done = max(min(int((end - begin) / _PERIOD) + reach + 1, last), done)
+        parts.append(np.arange(low, done))
+    return np.asarray(begin + _PERIOD * np.concatenate(parts))
 
 
 def _interval(record: SetUpRecord) -> float:

@@ -28,12 +28,7 @@ from werrimbi_odom.inference.set_up.explanation import (
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
 from werrimbi_odom.inference.set_up.misentered_values import FACTORS
-from werrimbi_odom.inference.set_up.records import (
-    Cuts,
-    SetUpRecord,
-    cut,
-    ratio_of_ticks,
-)
+from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, ratio_of_ticks
 from werrimbi_odom.inference.set_up.regression import errors, path_swept
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -25,12 +25,7 @@ from werrimbi_odom.inference.set_up.explanation import (
     wirings,
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, arm_finding, findings_of
-from werrimbi_odom.inference.set_up.records import (
-    Cuts,
-    SetUpRecord,
-    cut,
-    ratio_of_ticks,
-)
+from werrimbi_odom.inference.set_up.records import Cuts, SetUpRecord, cut, ratio_of_ticks
 from werrimbi_odom.inference.set_up.regression import (
     HeadingRegression,
     Moving,

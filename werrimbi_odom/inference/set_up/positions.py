@@ -21,13 +21,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import effective_track
 from werrimbi_odom.inference.set_up.explanation import Setting, SetUpEstimate, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
-from werrimbi_odom.inference.set_up.records import (
-    Complexes,
-    Cuts,
-    SetUpRecord,
-    cut,
-    ratio_of_ticks,
-)
+from werrimbi_odom.inference.set_up.records import Complexes, Cuts, SetUpRecord, cut, ratio_of_ticks
 from werrimbi_odom.inference.set_up.regression import swept
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

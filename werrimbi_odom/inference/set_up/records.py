@@ -3,7 +3,7 @@
 """Runs cut up for the set-up search, independently of the robot file's scale.
 
 A cut is half a turn of the faster wheel, whatever its length: the file's metres may be off by 1000,
-and so may the reference's. What the robot file says of the reference (mirror, mounting, delay) is
+and so may the reference's. What the robot file says of the reference (mirror, mounting, clock) is
 undone first, so that findings are what is still wrong.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.inference.legs.monotone_cubic import between_messages
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
-from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import after_stage, view_of, wiring_of
 from werrimbi_odom.model.effects_over_run import PLACE, watched
@@ -35,6 +35,7 @@ from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import channel_spans
 
 Complexes = NDArray[np.complex128]
 
@@ -104,7 +105,7 @@ class Cuts:
 
 
 def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpRecord | None:
-    """Usable part of a run; None where there is no reference or no travel."""
+    """Usable part of a run; None without reference or travel, or where a clock was set back."""
     reference, ticks = run.reference, run.ticks
     if reference is None:
         return None
@@ -124,13 +125,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpReco
     of_wheels = [applied for applied in robot.effects if applied.effect.stage == "wheels"]
     if of_wheels:
         first = (float(ticks.left[steps.first_row]), float(ticks.right[steps.first_row]))
-        channels = {}
-        for name, values in ticks.channels.items():
-            there = np.asarray(values, dtype=np.float64)[rows]
-            known = np.isfinite(there)
-            if known.any():
-                there = np.interp(time, time[known], there[known])
-                channels[name] = Span(there[:-1], there[1:])
+        channels = channel_spans(steps, ticks.channels)
         drive = features(robot, np.diff(time), raw, wheels(*first), channels)
         for applied in of_wheels:
             seen = watched(drive)
@@ -144,16 +139,20 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> SetUpReco
     stamps = np.asarray(reference.time, dtype=np.float64)
     latest = np.maximum.accumulate(np.where(known, stamps, -math.inf))
     known &= np.concatenate([[True], stamps[1:] > latest[:-1]])
+
+    def seen_at(stamp: Any) -> Any:
+        return stamp - view.late(stamp - time[0])
+
     return SetUpRecord(
         time,
         summed(raw.left),
         summed(raw.right),
-        stamps[known],
+        seen_at(stamps[known]),
         ((reference.x + 1j * sign * np.asarray(reference.y)) / np.complex128(ways))[known],
         sign * np.asarray(reference.yaw)[known] / turns,
         tuple((part.begin, part.end) for part in run.no_driving or ()),
-        run.taken_out,
-    ).delayed(view.delay)
+        tuple((seen_at(begin), seen_at(end)) for begin, end in run.taken_out),
+    )
 
 
 def measured_by(records: Sequence[SetUpRecord]) -> Measure | None:

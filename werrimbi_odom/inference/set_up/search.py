@@ -138,15 +138,15 @@ def look_for_mistakes(
     measured = measured_by(records)
     if measured is None:
         return SetUp((), robot)
-    extra = []
+    degrees, late = [], []
     gain = degrees_gain(records, robot, measured)
     if gain > 1.0:
         records = [each.in_degrees() for each in records]
-        extra.append(_in_degrees(gain))
+        degrees.append(_in_degrees(gain))
     lag, gain = lag_of(records)
     if lag != 0.0:
         records = [each.delayed(lag) for each in records]
-        extra.append(_late(lag, gain))
+        late.append(_late(lag, gain))
     if measured == "heading":
         found, setting = _search_headings(records, robot)
     elif is_sparse(records, robot, measured):
@@ -166,8 +166,6 @@ def look_for_mistakes(
     )
     if skids_in_turns(robot):
         wheels = [as_skid_steer(each) for each in wheels]
-    degrees = [each for each in extra if each.effect == IN_DEGREES]
-    late = [each for each in extra if each.effect != IN_DEGREES]
     try:
         mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
     except ValueError as error:  # a size beyond what its effect allows

@@ -65,8 +65,8 @@ def figures_of(added: Added) -> list[Shown]:
             Shown(
                 "remaining",
                 "What the errors still go with",
-                "Fields beyond chance are left to explain: `werrimbi diagnose` with the new robot "
-                "file looks for what they are.".replace("`", ""),
+                "Fields beyond chance are left to explain: werrimbi diagnose with the new robot "
+                "file looks for what they are.",
                 {"": evidence_map_figure(added.remaining)},
                 main=False,
             )

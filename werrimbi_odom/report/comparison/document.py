@@ -145,8 +145,8 @@ def _cells(figures: LegFigures) -> list[str]:
     item = figures.figures
     return [
         str(item.count),
-        _length(item.rmse_position_m),
-        _angle(item.rmse_yaw_rad),
+        length_told(item.rmse_position_m),
+        angle_told(item.rmse_yaw_rad),
         _number(item.nees),
         _percent(item.coverage_95),
     ]
@@ -158,9 +158,9 @@ def _runs(comparison: Comparison) -> Table:
             _short(item.run.name),
             f"{item.distance_m:.1f} m",
             f"{item.duration_s:.0f} s",
-            _length(item.end_error_m),
-            _angle(abs(item.end_error_rad)),
-            _length(item.legs.figures.rmse_position_m),
+            length_told(item.end_error_m),
+            angle_told(abs(item.end_error_rad)),
+            length_told(item.legs.figures.rmse_position_m),
             _number(item.legs.figures.nees),
         ]
         for item in comparison.runs
@@ -190,9 +190,9 @@ def _variable(item: ByVariable) -> Table:
             [
                 f"{low:.3g} to {high:.3g}",
                 str(part.figures.count),
-                _length(part.mean[0], signed=True),
-                _length(part.mean[1], signed=True),
-                _angle(part.mean[2], signed=True),
+                length_told(part.mean[0], signed=True),
+                length_told(part.mean[1], signed=True),
+                angle_told(part.mean[2], signed=True),
                 _number(part.figures.nees),
             ]
         )
@@ -201,7 +201,8 @@ def _variable(item: ByVariable) -> Table:
     return Table(f"{title} with it)", heads, rows)
 
 
-def _length(value: float, *, signed: bool = False) -> str:
+def length_told(value: float, *, signed: bool = False) -> str:
+    """A length [m] in m or mm; a dash if it is not measured."""
     if not math.isfinite(value):
         return "-"
     sign = "+" if signed else ""
@@ -210,7 +211,8 @@ def _length(value: float, *, signed: bool = False) -> str:
     return f"{1e3 * value:{sign}.1f} mm"
 
 
-def _angle(value: float, *, signed: bool = False) -> str:
+def angle_told(value: float, *, signed: bool = False) -> str:
+    """An angle [rad] in degrees; a dash if it is not measured."""
     if not math.isfinite(value):
         return "-"
     return f"{math.degrees(value):{'+' if signed else ''}.2f}°"

@@ -9,10 +9,11 @@ from collections.abc import Sequence
 
 from werrimbi_odom.inference.comparison.compare import Comparison, OfLength
 from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
+from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.report.number_format import from_start, listed, two_digits
-from werrimbi_odom.report.phrases import leg_words
+from werrimbi_odom.report.phrases import left_out_words, leg_words, remark_words
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 
@@ -176,3 +177,53 @@ def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
 
 def _times(value: float) -> str:
     return f"{value:.1f}" if value < 10.0 else f"{value:.0f}" if value < 1e4 else f"{value:.0e}"
+
+
+_NO_NOISE = 1e-7  # rad; below that of any gyro, so its digits would be numerical noise
+
+
+def reference_words(comparison: Comparison) -> list[str]:
+    """The reference's own noise, its jumps, what is suspect in it, and what is left out."""
+    lines = []
+    each = "interval" if comparison.prepared.options.reference_kind == "incremental" else "pose"
+    wanders = comparison.prepared.options.reference_kind == "local_map"
+    for measure, noise in comparison.prepared.noises:
+        hows = [noise.xy_told] if measure != "heading" else []
+        hows += [noise.yaw_told] if measure != "position" else []
+        values = _sizes(measure, noise.sigma_xy, noise.sigma_yaw)
+        told = hows[0] if len(set(hows)) == 1 else listed(hows)
+        how = {
+            "estimated": "fitted with the calibration"
+            if wanders
+            else "estimated from its own small differences",
+            "assumed": "assumed, for its poses are too few to tell; --reference-sigma-xy says it",
+            "stated": "as the record states it",
+            "given": "as given",
+        }.get(told, told)
+        what = {"pose": "", "position": " (positions alone)", "heading": " (headings alone)"}
+        if measure == "heading" and told == "estimated" and noise.sigma_yaw < _NO_NOISE:
+            lines.append(
+                "The reference's own noise (headings alone) is too small to tell: its small "
+                "differences scatter no more than reading the counters makes."
+            )
+            continue
+        lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
+        if wanders:
+            lines[-1] += (
+                f" Its error also wanders, by {_sizes(measure, noise.walk_xy, noise.walk_yaw)} in "
+                f"a second and {_sizes(measure, *noise.wander)} in the long run."
+            )
+    outliers = comparison.main.all.outliers
+    if outliers:
+        total = outliers + comparison.main.all.figures.count
+        they = "it is" if outliers == 1 else "they are"
+        lines.append(f"On {outliers} of {total} legs the reference jumped; {they} left out.")
+    lines += [remark_words(remark) for remark in comparison.remarks]
+    return [*lines, *left_out_words(comparison.left_out)]
+
+
+def _sizes(measure: Measure, xy: float, yaw: float) -> str:
+    """Sizes of the measured quantities in words."""
+    parts = [f"{two_digits(1e3 * xy)} mm"] if measure != "heading" else []
+    parts += [f"{math.degrees(yaw):.2g}°"] if measure != "position" else []
+    return " and ".join(parts)

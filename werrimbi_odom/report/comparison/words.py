@@ -11,7 +11,6 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import skids_in_turns
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.consistency import judged_lengths
-from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.inference.seldom_measured import more_to_judge, tell_sizes
@@ -19,6 +18,7 @@ from werrimbi_odom.report.comparison.phrases import (
     NAMES,
     covariance_words,
     length_of,
+    reference_words,
     systematic_told,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -30,7 +30,7 @@ from werrimbi_odom.report.number_format import (
     more_like_these,
     two_digits,
 )
-from werrimbi_odom.report.phrases import left_out_words, leg_words, rarer_than_asked, remark_words
+from werrimbi_odom.report.phrases import leg_words, rarer_than_asked
 
 _CHANNELS = {
     "along": "the error along the way",
@@ -61,7 +61,7 @@ def words_of(
             said += _elsewhere(comparison, verdict)
             said += _own_scale(comparison, verdict)
             said += covariance_words(verdict, comparison.main.all.figures.nees)
-    said += _reference(comparison)
+    said += reference_words(comparison)
     step = _next(verdict, next_step)
     if fit and _is_seldom(comparison, verdict) and tell_sizes(comparison.prepared.runs):
         step, command = "Base and radii alone are told by these drives together:", fit
@@ -240,8 +240,7 @@ def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
 def _dependence(item: Depends, others: list[str]) -> str:
     variable = item.variable.split(" [")[0]
     channels = listed([_CHANNELS[channel] for channel in (item.channel, *others)])
-    verb = "go" if others or item.channel == "size" else "goes"
-    verb = "goes" if item.channel == "size" and not others else verb
+    verb = "go" if others else "goes"
     return f"{capital(channels)} {verb} with the {variable} ({_chance(item.p_value)})."
 
 
@@ -258,55 +257,6 @@ def _run_told(comparison: Comparison, index: int) -> str:
         f"- Run {item.run.name} stands out: NEES {figures.nees:.3g} over its "
         f"{counted(figures.count, 'leg')}."
     )
-
-
-_NO_NOISE = 1e-7  # rad; below that of any gyro, so its digits would be numerical noise
-
-
-def _reference(comparison: Comparison) -> list[str]:
-    lines = []
-    each = "interval" if comparison.prepared.options.reference_kind == "incremental" else "pose"
-    wanders = comparison.prepared.options.reference_kind == "local_map"
-    for measure, noise in comparison.prepared.noises:
-        hows = [noise.xy_told] if measure != "heading" else []
-        hows += [noise.yaw_told] if measure != "position" else []
-        values = _sizes(measure, noise.sigma_xy, noise.sigma_yaw)
-        told = hows[0] if len(set(hows)) == 1 else listed(hows)
-        how = {
-            "estimated": "fitted with the calibration"
-            if wanders
-            else "estimated from its own small differences",
-            "assumed": "assumed, for its poses are too few to tell; --reference-sigma-xy says it",
-            "stated": "as the record states it",
-            "given": "as given",
-        }.get(told, told)
-        what = {"pose": "", "position": " (positions alone)", "heading": " (headings alone)"}
-        if measure == "heading" and told == "estimated" and noise.sigma_yaw < _NO_NOISE:
-            lines.append(
-                "The reference's own noise (headings alone) is too small to tell: its small "
-                "differences scatter no more than reading the counters makes."
-            )
-            continue
-        lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
-        if wanders:
-            lines[-1] += (
-                f" Its error also wanders, by {_sizes(measure, noise.walk_xy, noise.walk_yaw)} in "
-                f"a second and {_sizes(measure, *noise.wander)} in the long run."
-            )
-    outliers = comparison.main.all.outliers
-    if outliers:
-        total = outliers + comparison.main.all.figures.count
-        they = "it is" if outliers == 1 else "they are"
-        lines.append(f"On {outliers} of {total} legs the reference jumped; {they} left out.")
-    lines += [remark_words(remark) for remark in comparison.remarks]
-    return [*lines, *left_out_words(comparison.left_out)]
-
-
-def _sizes(measure: Measure, xy: float, yaw: float) -> str:
-    """Sizes of the measured quantities in words."""
-    parts = [f"{two_digits(1e3 * xy)} mm"] if measure != "heading" else []
-    parts += [f"{math.degrees(yaw):.2g}°"] if measure != "position" else []
-    return " and ".join(parts)
 
 
 def _next(verdict: Verdict, next_step: str) -> str:

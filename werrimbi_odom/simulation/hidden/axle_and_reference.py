@@ -70,6 +70,7 @@ class DriftingClock(Peculiarity):
     another one in each. The rate changes little, with the temperature of the quartz.
     """
 
+    live = False
     rate: float
     """Mean of what its clock gains in a second [s/s]."""
     unset: float = 100.0
@@ -90,6 +91,7 @@ class WarmingGyro(Peculiarity):
     zero at the start of a drive, as after a calibration.
     """
 
+    live = False
     rate: float
     """Mean size of the initial rate of change of the bias over drives [rad/s^2]."""
     settles: float = 200.0
@@ -101,7 +103,7 @@ class WarmingGyro(Peculiarity):
         """Add the integral of the bias to the measured yaw."""
         rate = self.rate * float(rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 1.5))
         time = recording.reference_t_s
-        steps = np.diff(time, prepend=0.0)
+        steps = np.diff(time, prepend=min(0.0, time[0]))  # its clock may be behind the drive's
         walked = np.cumsum(rng.standard_normal(time.size) * np.sqrt(steps)) * self.unrest
         bias = rate * (self.settles * (1.0 - np.exp(-time / self.settles)) + walked)
         off = np.cumsum(0.5 * (bias + np.concatenate(([0.0], bias[:-1]))) * steps)

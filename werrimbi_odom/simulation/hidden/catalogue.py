@@ -236,7 +236,7 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("oval_right_wheel", lambda s, rng: OvalWheel("right", s), "m", 6e-4, 2.5e-3,
             "half the difference of the right wheel's radii", signed=False),
     Entry("radius_by_channel", _by_channel, "per swing", 0.005, 0.02,
-            "growth of both radii in 10 K or 10 kg, measured"),
+            "growth of both radii in 10 K, or loss in 10 kg, measured"),
     Entry("tyre_squash", lambda s, rng: TyreSquash(s), "1", 0.01, 0.06,
             "loss of each radius at 1 m/s"),
     Entry("load_transfer", _load_transfer, "1", 0.05, 0.3,

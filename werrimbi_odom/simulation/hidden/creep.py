@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tyres that creep under their forces, and wheel bases that depend on the kind of turn.
+"""Tyres that creep under their forces, wheel bases that depend on the turn, and castors.
 
 The engine's contacts do not creep by themselves, so the body is moved after the step.
 """

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -28,6 +29,9 @@ class Peculiarity:
     A subclass overrides the stage at which its physics acts. Each stage gets a new `rng` with the
     same seed for a run, so values drawn per run are the same in all stages.
     """
+
+    live: ClassVar[bool] = True
+    """Whether a robot that is driven live can have it: not what is made in a whole record."""
 
     def robot(self, robot: TrueRobot) -> TrueRobot:
         """The true robot, derived from its nominal one."""

@@ -107,21 +107,25 @@ def wished(wishes: Sequence[str], *, seed: int) -> list[Hidden]:
             found = hide(name, _strength(name, strength), seed=seed, number=number)
         if name == "random":
             names.append(found.entry.name)
-        least, most = found.entry.possible
-        if not least <= found.strength <= most:
-            unit = found.entry.unit_in_words
-            raise StrengthError(
-                f"the strength of {found.entry.name} cannot be {found.strength:g}{unit}: "
-                f"a robot can have {least:.3g} to {most:.3g}{unit}"
-            )
         hidden.append(found)
     return hidden
 
 
 def _strength(name: str, told: str) -> float | None:
+    """Strength that was asked for; None if it is to be drawn."""
     if told and name == "random":
         raise StrengthError("random draws its strength itself; name the effect to give one")
+    if not told:
+        return None
+    entry = find(name)
     try:
-        return float(told) if told else None
+        strength = float(told)
     except ValueError:
         raise StrengthError(f"the strength {told!r} of {name} is not a number") from None
+    (least, most), unit = entry.possible, entry.unit_in_words
+    if not least <= strength <= most:
+        raise StrengthError(
+            f"the strength of {name} cannot be {strength:g}{unit}: "
+            f"a robot can have {least:.3g} to {most:.3g}{unit}"
+        )
+    return strength

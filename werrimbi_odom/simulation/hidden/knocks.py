@@ -89,6 +89,7 @@ class Knock(Peculiarity):
 class ReferenceJump(Peculiarity):
     """The reference jumps to another position, for one pose or permanently."""
 
+    live = False
     size: float
     """Length of the jump [m]."""
     stays: bool

@@ -29,14 +29,14 @@ class SkidSteer(Peculiarity):
     """
 
     multiplier: float
-    """Turn by the wheels over turn of the body, above 1; determines the lateral stiffness."""
+    """Turn by the wheels over turn of the body, at least 1; determines the lateral stiffness."""
     front: float = 0.5
     left: float = 0.5
     """Share of the load on the front and on the left wheels."""
 
     def __post_init__(self) -> None:
-        if self.multiplier <= 1.0:
-            raise ValueError("wheels that skid turn a robot less than they roll: above 1")
+        if self.multiplier < 1.0:
+            raise ValueError("wheels that skid turn a robot less than they roll: at least 1")
 
     def written(self, robot: TrueRobot) -> TrueRobot:
         """List two wheels per side, as the user knows their number."""
@@ -61,7 +61,8 @@ class SkidSteer(Peculiarity):
         # The lost share of the turn is linear in the lateral stiffness.
         lost = [2.0 / base / self._balance(base, across)[2] for across in (1.0, 2.0)]
         across = 1.0 + (self.multiplier - lost[0]) / (lost[1] - lost[0])
-        return self._balance(base, across)
+        # Without any, no balance would say how it moves sideways.
+        return self._balance(base, max(across, 1e-6))
 
     def _balance(self, base: float, across: float) -> Floats:
         """Solve for the motion at which the forces and torques of the four tyres sum to zero."""

@@ -11,7 +11,7 @@ from werrimbi_odom.report.number_format import listed
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.session import ModelVersion
-from werrimbi_odom.workbench.tab import Tab, percent, size_told
+from werrimbi_odom.workbench.tab import Tab, change_told, size_told
 
 NOTHING = (
     "Nothing is added yet. Diagnose, and press Add beside an effect: it is fitted together with "
@@ -51,11 +51,12 @@ def _gain(tab: Tab) -> None:
     told = ", then ".join(f"{step.name} {size}" for step, size in zip(past, sizes, strict=True))
     before, after = errors[-2], errors[-1]
     word = "fell" if after < before else "did not fall"
+    change = change_told(before, after)
+    beside = f" ({change})" if change else ""
     with box("p", "verdict headline"):
         text(
             "span",
-            f"With {past[-1].name} the held-out error {word}: {sizes[-2]} → {sizes[-1]} "
-            f"({percent(100.0 * (after / before - 1.0))}).",
+            f"With {past[-1].name} the held-out error {word}: {sizes[-2]} → {sizes[-1]}{beside}.",
         )
     figure(gain_figure(past), tab.dark, f"Held-out error, bar by bar: {told}", "plot low")
 

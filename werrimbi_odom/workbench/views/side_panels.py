@@ -15,7 +15,7 @@ from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.number_format import capital, counted
 from werrimbi_odom.report.sketches import effect_sketch
-from werrimbi_odom.workbench.drawings import floor_figure
+from werrimbi_odom.workbench.drawings import errors_told, floor_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.leg_selection import figures_of, worst
 from werrimbi_odom.workbench.loaded_input import error_of
@@ -45,19 +45,15 @@ def floor(tab: Tab) -> None:
             _which_drives(tab)
         figure(floor_figure(comparison, which), tab.dark, f"The floor from above. {told}")
         legs = comparison.legs
-        lines = []
-        for index in worst(comparison, chosen, 5):
-            along, sideways, heading = legs.errors.error[index]
-            lines.append(
-                [
-                    comparison.runs[legs.run[index]].run.name,
-                    leg_when(comparison, index),
-                    str(legs.errors.kind[index]),
-                    f"{1e3 * along:+.1f} mm",
-                    f"{1e3 * sideways:+.1f} mm",
-                    f"{np.degrees(heading):+.2f}°",
-                ]
-            )
+        lines = [
+            [
+                comparison.runs[legs.run[index]].run.name,
+                leg_when(comparison, index),
+                str(legs.errors.kind[index]),
+                *errors_told(comparison, index).values(),
+            ]
+            for index in worst(comparison, chosen, 5)
+        ]
         heads = ["run", "when", "motion", "along", "sideways", "heading"]
         prose([Table("The worst of these legs, measured minus predicted", heads, lines)])
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from werrimbi_odom.workbench.html import box, button, text
 from werrimbi_odom.workbench.saving import file_of
-from werrimbi_odom.workbench.tab import VIEWS, Tab, percent, size_told
+from werrimbi_odom.workbench.tab import VIEWS, Tab, change_told, size_told
 
 TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
 
@@ -74,9 +74,8 @@ def _meter(tab: Tab) -> None:
             text("div", "Held-out error", "label", title="rms error of the legs of drives "
                  "that took no part in any fit")  # fmt: skip
             text("strong", size_told(now, unit), "value", data_key="error")
-            if session.can_undo and np.isfinite([now, first]).all():
-                share = 100.0 * (now / first - 1.0)
-                text("span", f" {percent(share)} (was {size_told(first, unit)})", "fall")
+            if session.can_undo and (change := change_told(first, now)):
+                text("span", f" {change} (was {size_told(first, unit)})", "fall")
         _bars(tab, errors)
 
 
