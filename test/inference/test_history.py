@@ -17,6 +17,7 @@ from werrimbi_odom.inference.changes.drive_estimate import DriveEstimate, estima
 from werrimbi_odom.inference.changes.history import Course, course_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms
+from werrimbi_odom.inference.changes.scatter import scatter_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 
@@ -105,6 +106,12 @@ def test_wear_over_a_thousand_drives_is_one_trend() -> None:
     assert wear.kind == "trend"
     assert wear.after - wear.before == pytest.approx(-0.01, abs=5e-4)
     assert len(found.changes) == 2
+
+
+def test_drives_that_differ_all_alike_scatter_by_what_the_median_says() -> None:
+    """The search ended at the largest difference, 5 % below it."""
+    seen = np.tile([0.0, 1.0], 5)
+    assert scatter_of(seen, np.full(10, 1e-6)) == pytest.approx(1.0 / np.sqrt(2.0 * 0.4549))
 
 
 def test_the_scatter_of_a_number_is_that_of_the_drives_that_know_it() -> None:

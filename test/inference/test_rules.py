@@ -141,7 +141,7 @@ BARE = {
     ("events/steps.py", 2.0): "either side",
     ("fitting/fisher_scoring.py", 0.01): "damping of a search",
     ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",
-    ("legs/count_interpolation.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
+    ("legs/monotone_cubic.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
     ("manoeuvres/ideal_drives.py", 0.2): "messages of an ideal drive [s]",
     ("manoeuvres/next_manoeuvre.py", 0.1): "in mm below it, in m above",
     ("set_up/positions.py", 0.002): "the last step of a descent",

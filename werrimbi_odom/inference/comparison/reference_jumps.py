@@ -108,9 +108,7 @@ def pieces_between(jumps: Floats) -> NDArray[np.intp]:
     """
     happened = np.concatenate([[False], np.any(jumps != 0.0, axis=1), [False]])
     edges = np.flatnonzero(happened[1:] != happened[:-1])
-    lasting = jumped_legs(jumps, edges, "absolute")[::2] if edges.size else happened[:0]
-    found = np.zeros(jumps.shape[0] + 1, dtype=np.intp)
-    for (first, last), stays in zip(edges.reshape(-1, 2).tolist(), lasting, strict=True):
-        found[last:] += int(stays)
-        found[first + 1 : last] = -1
-    return found
+    begun = np.zeros(jumps.shape[0] + 1, dtype=np.intp)
+    if edges.size:
+        begun[edges[1::2]] = jumped_legs(jumps, edges, "absolute")[::2]
+    return np.where(happened[1:] & happened[:-1], -1, np.cumsum(begun))

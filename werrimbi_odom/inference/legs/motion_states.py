@@ -15,7 +15,6 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.inference.legs.windows import standing_below
-from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -65,8 +64,7 @@ def driven(
     """
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(np.arange(first, last, _GRID), last)
-    counted = wiring_of(robot.effects).wheels(*np.diff(counters.at(grid), axis=0).T)
-    left, right = counted[0] * robot.left_tick, counted[1] * robot.right_tick
+    left, right = counters.travel(robot, grid)
     way, turn = 0.5 * (left + right), (right - left) / robot.track
     rolled = 0.5 * (np.abs(left) + np.abs(right))
     moving = rolled > standing_below(rolled)
