@@ -77,7 +77,7 @@ def _options(given: Recordings) -> Iterator[str]:
             continue
         for each in value if isinstance(value, list | tuple) else [value]:
             yield f"--{name.removesuffix('s').replace('_', '-')}"
-            yield f"{each:g}" if isinstance(each, float) else str(each)
+            yield str(each).removesuffix(".0") if isinstance(each, float) else str(each)
 
 
 def _paths(runs: Sequence[Run], in_order: bool) -> str:
