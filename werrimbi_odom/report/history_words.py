@@ -178,8 +178,12 @@ def _drives(history: History) -> str:
 
 
 def _against_words(history: History, differing: Sequence[Against]) -> str:
+    missing = not_compared(history)
+    more = (
+        f" It holds {listed(missing)}, which this file does not: not compared." if missing else ""
+    )
     if not differing:
-        return "Against the other robot file nothing is new."
+        return f"Against the other robot file nothing is new.{more}"
     parts = []
     for each in differing:
         title = TITLES.get(each.what, each.what)
@@ -190,7 +194,16 @@ def _against_words(history: History, differing: Sequence[Against]) -> str:
             value, unit = in_small_unit(each.now, each.std, number.unit)
             other, unit_there = in_small_unit(each.there, 0.0, number.unit)
             parts.append(f"{title} {value} {unit}, there {other} {unit_there}")
-    return f"New against the other robot file: {listed(parts)}."
+    return f"New against the other robot file: {listed(parts)}.{more}"
+
+
+def not_compared(history: History) -> list[str]:
+    """Effects of the other robot file that these drives were not asked about: this one has none."""
+    if history.like is None:
+        return []
+    asked = {number.name.rpartition(".")[0] for number in history.course.numbers}
+    asked |= {applied.name for applied in history.robot.effects}
+    return [applied.name for applied in history.like.effects if applied.name not in asked]
 
 
 def there(history: History, number: Number) -> float:
