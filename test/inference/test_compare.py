@@ -382,6 +382,26 @@ def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
     assert found.main.all.outliers == 0
 
 
+def test_a_heading_in_whole_degrees_does_not_jump_from_one_to_the_next() -> None:
+    """In a wide curve steps are rare, and far from what most intervals err by.
+
+    One that jumps by many of its steps still does.
+    """
+    random = np.random.default_rng(4)
+    curve = np.full(1500, 0.3), np.full(1500, 0.02)
+    run = drive(TRUE, curve, random, every=3, sigma_yaw=2e-4)
+    assert run.reference is not None
+    whole = np.radians(np.rint(np.degrees(run.reference.yaw)))
+    by_degrees = with_reference(run, yaw=whole)
+    (group,) = prepare([by_degrees], RIGHT).groups
+    assert not group.jumps[0].any()
+    assert compare([by_degrees], RIGHT).main.all.outliers == 0
+    late = run.reference.time > np.quantile(run.reference.time, 0.6)
+    lost = with_reference(run, yaw=whole + np.radians(10.0) * late)
+    (group,) = prepare([lost], RIGHT).groups
+    assert np.flatnonzero(group.jumps[0].any(axis=1)).tolist() == [np.flatnonzero(late)[0] - 1]
+
+
 def test_fixes_at_fifty_hertz_that_scatter_by_a_third_of_their_spacing_are_no_jumps() -> None:
     """An RTK receiver: quiet while the robot stands, shaken while it drives at 1.2 m/s."""
     random = np.random.default_rng(8)
