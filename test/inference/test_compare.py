@@ -382,6 +382,33 @@ def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
     assert found.main.all.outliers == 0
 
 
+def test_noise_of_a_camera_that_is_alike_at_all_lengths_is_not_put_down_to_the_wheels() -> None:
+    """Tags that are measured worse from afar: legs of 0.25 m err as those of 4 m."""
+    runs = []
+    for seed in (0, 1):
+        random = np.random.default_rng(seed)
+        run = drive(TRUE, wandering(random, 90.0), random, every=5, sigma_xy=0.0, sigma_yaw=0.0)
+        assert run.reference is not None
+        afar = (run.reference.x % 3.0) / 3.0
+        errors = (0.005 + 0.03 * afar) * random.normal(size=(3, afar.size))
+        told = {
+            name: getattr(run.reference, name) + error
+            for name, error in zip(("x", "y", "yaw"), errors, strict=True)
+        }
+        seen = with_reference(run, **told)
+        assert seen.reference is not None
+        runs.append(
+            replace(seen, path=Path(f"{seed}"), reference=seen.reference.chosen(afar < 0.8))
+        )
+    found = compare(runs, RIGHT)
+    assert verdict_of(found).noise == "comes and goes"
+    words = as_text(words_of(found))
+    assert "wheels' noise k" not in words
+    assert "the reference's own noise" in " ".join(words.split())
+    quiet = replace(RIGHT, left_wheel_noise=2.5e-5, right_wheel_noise=2.5e-5)
+    assert verdict_of(compare([recorded(7)], quiet)).noise == "too small", "a noise of wheels is"
+
+
 def test_a_heading_in_whole_degrees_does_not_jump_from_one_to_the_next() -> None:
     """In a wide curve steps are rare, and far from what most intervals err by.
 
