@@ -133,7 +133,8 @@ def _end_error(
     reckoned = compose(start, moved)
     error = np.array(measured) - np.array(reckoned)
     heading = wrap(float(error[2])) if math.isfinite(error[2]) else math.nan
-    covariance = _gained(driven, *reference.time[[first, last]].tolist(), start.yaw)
+    begin, end = (float(reference.time[row]) for row in (first, last))
+    covariance = _gained(driven, begin, end, start.yaw)
     return EndError(
         float(reference.time[last]),
         measured,
