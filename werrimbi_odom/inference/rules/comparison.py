@@ -111,6 +111,12 @@ Some ten numbers are tested in a comparison, and the node's window slides over t
 ALIKE = 1.3
 """Factor between the intervals of the noise at short and at long legs, above which they differ."""
 
+WHEELS_SHARE, WHEELS_GROWTH = 0.1, 0.5
+"""Share of the wheels in the promised variance of legs, up to which the reference makes nearly all
+of it; then what a larger noise of the wheels adds to NEES grows with at least the length of a leg,
+and with the power `WHEELS_GROWTH` or less it is none (halfway to what the reference adds: the same
+at every length)."""
+
 NOISE_FACTOR_TOLD = 100.0
 """Ratio of the ends of the interval of a variance's factor, up to which it is reported: the
 variance is then known to a factor of ten either way, the noise to three."""
