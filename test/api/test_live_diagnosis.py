@@ -11,9 +11,14 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from test.cli.commands import RECORDING
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.api.drives import recordings_of
 from werrimbi_odom.api.live_diagnosis import halves, of_now
+from werrimbi_odom.api.next_command import next_command
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.report.phrases import left_out_words
 from werrimbi_odom.simulation.robot import TrueRobot, write_robot_file
 
 SOUND = WhiteNoiseRobot(0.35, 0.05, 0.05, 4.0e-4, 5.8e-4)
@@ -57,3 +62,15 @@ def test_a_counter_that_begins_anew_is_no_travel() -> None:
     ticks = Ticks(time, *2 * [(counts + 2**15 - 1000 + 2**15) % 2**16 - 2**15])
     older, younger = halves(Run("drive", Path("drive"), ticks, poses), 16)
     assert older.ticks.time[-1] == younger.ticks.time[0] == 50.0
+
+
+def test_what_is_told_of_a_half_says_which() -> None:
+    """A stretch left out of the younger half; in a command both are what a user recorded."""
+    robot = wo.read_robot(RECORDING / "robot.yaml")
+    both = halves(wo.read_run(RECORDING, robot), 0)
+    left_out = [LeftOut(half.path, 1.0, 2.0, "gap", "the reference is silent") for half in both]
+    said = left_out_words(left_out)
+    assert [" of older_half " in words for words in said] == [True, False]
+    assert [" of younger_half " in words for words in said] == [False, True]
+    command = next_command(["diagnose"], recordings_of(robot, both))
+    assert command.split("\n")[-1].split() == ["RUN..."]

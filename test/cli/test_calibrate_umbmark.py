@@ -126,6 +126,32 @@ def test_exchanged_senses_of_few_squares_are_no_proof_that_all_was_right(
     assert "were right" not in said
 
 
+def test_exchanged_senses_of_two_squares_that_scatter_are_not_put_down_to_scatter(
+    desk: Path, printed: Printed
+) -> None:
+    """290 mm beside 30 mm of scatter: no test of two squares a sense can prove it."""
+    rows = "ccw,-0.22,-0.18\nccw,-0.19,-0.23\ncw,-0.10,0.13\ncw,-0.14,0.11\n"
+    (desk / "exchanged.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
+    assert umbmark(desk, table="exchanged.csv") == 0
+    said = printed()
+    assert "do not explain where these squares ended" in said
+    assert "no more than the scatter" not in said
+    assert "Or so few squares scatter more" in said
+
+
+def test_corrections_within_their_error_bars_are_not_determined(
+    desk: Path, printed: Printed
+) -> None:
+    """Half a metre of scatter: what is worked out is chance, and no proof that all was right."""
+    rows = "cw,0.30,-0.42\ncw,-0.51,0.33\nccw,0.20,0.45\nccw,-0.40,-0.31\n"
+    (desk / "scattered.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
+    assert umbmark(desk, table="scattered.csv") == 0
+    said = printed()
+    assert "These squares determine no correction" in said
+    assert "They tell the base to 2.5 % and the ratio of the radii to 0.36 %" in said
+    assert "were right" not in said
+
+
 def test_squares_that_end_where_they_should_are_told_as_that(desk: Path, printed: Printed) -> None:
     rows = "cw,0,0\n" * 2 + "ccw,0,0\n" * 2
     (desk / "nothing.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")

@@ -257,3 +257,16 @@ def test_drives_none_of_which_can_be_used_are_an_error(
 def test_processes_are_one_or_more(months: Path, complaint: Complaint, jobs: int) -> None:
     given = ("--robot", months / "robot.yaml", *sorted(months.glob("drive_*")), "--jobs", jobs)
     assert "not a whole number greater than zero" in complaint("history", *given)
+
+
+def test_what_only_the_other_file_holds_is_told(tmp_path: Path) -> None:
+    """These drives were not asked about it: silence would mean that it is alike on both."""
+    (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
+    more = "    effects: [lateral_slip]\n    lateral_slip:\n      creep: 0.01\n"
+    (tmp_path / "other.yaml").write_text(ROBOT_FILE + more)
+    own, other = (wo.read_robot(tmp_path / f"{name}.yaml") for name in ("robot", "other"))
+    run = run_of(PLAIN, 1, 25)
+    said = " ".join(str(part) for part in words_of(wo.history(own, [run], like=other).found))
+    assert "It holds lateral_slip, which this file does not: not compared." in said
+    alike = " ".join(str(part) for part in words_of(wo.history(other, [run], like=other).found))
+    assert "not compared" not in alike

@@ -91,3 +91,11 @@ def test_what_was_forced_is_forced_again(tmp_path: Path) -> None:
     assert " --force " in next_command(["diagnose"], given)
     sound = recordings_of(robot, RECORDING, force_reference=True)
     assert "--force" not in next_command(["diagnose"], sound)
+
+
+@pytest.mark.parametrize("leg", [1.0, 0.1, 0.47123889, 1234.5678])
+def test_legs_are_cut_as_they_were(leg: float) -> None:
+    """To the last digit: a little longer, and other legs are judged."""
+    robot = wo.read_robot(RECORDING / "robot.yaml")
+    again = pasted(next_command(["diagnose"], recordings_of(robot, RECORDING, leg=leg)))
+    assert _parser(again).parse_args(again).leg == leg

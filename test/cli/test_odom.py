@@ -110,6 +110,19 @@ def test_the_end_against_the_reference(place: Path, printed: Printed) -> None:
     assert f"0.0300 m ({sigmas:.1f} σ)" in printed()
 
 
+def test_a_reference_that_begins_late_judges_the_way_since_then(place: Path) -> None:
+    """In sigmas too: what happened before it began is no part of the error at the end."""
+    way = [(0.1 * n, 80 * n, 120 * n) for n in range(11)]
+    poses = ("0.5,1,2,0.5", "1,1.2,2.2,0.9")
+    reference(place, *poses)
+    ticks(place, way)
+    late = figures(place)
+    ticks(place, way[5:])
+    of_the_rest = figures(place)
+    for name in ("end_error_m", "end_error_position_sigmas", "end_error_heading_sigmas"):
+        assert late[name] == pytest.approx(of_the_rest[name], rel=1e-6), name
+
+
 def test_sigmas_along_and_across_go_with_the_heading(place: Path) -> None:
     """The same drive, begun in another direction, has the same spread as the robot sees it."""
     straight = figures(place)["final"]

@@ -103,7 +103,7 @@ def test_what_cannot_be_driven_is_said(tmp_path: Path, told: dict[str, object], 
     found.write_text(json.dumps({"verdict": "unknown", "next_manoeuvre": None}))
     with pytest.raises(InputError, match="depend on nothing that was measured"):
         proposed(found, LIMITS)
-    told = {"verdict": "unknown", "next_manoeuvre": None, "changes": [{"group": "radii"}]}
+    told = {"verdict": "unknown", "next_manoeuvre": None, "drives_differ": True}
     found.write_text(json.dumps(told))
     with pytest.raises(InputError, match="diagnose those since the change alone"):
         proposed(found, LIMITS)

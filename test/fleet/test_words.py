@@ -250,7 +250,8 @@ def test_what_comes_at_each_start_is_to_be_driven_and_no_law_is_drafted() -> Non
 def test_of_a_robot_that_changed_the_drives_since_are_asked_and_no_law_is_drafted() -> None:
     place = [{"words": "how far both wheels roll goes with the place on the floor"}]
     loaded = row(
-        "robot_9", "unknown", 0.002, 0.002, depends_on=place, changes=[{"group": "radii"}],
+        "robot_9", "unknown", 0.002, 0.002, depends_on=place, drives_differ=True,
         next_manoeuvre=None,
     )  # fmt: skip
+    assert missing_words(loaded) == ["not the same in all drives"], "no law of the mean of two"
     assert next_words(loaded) == "diagnose the drives since the change"

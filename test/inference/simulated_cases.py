@@ -21,10 +21,10 @@ from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.either_sign import variances_by_sign
 from werrimbi_odom.inference.diagnosis.uncertainty import (
     as_written,
     noises_of,
-    variances_by_sign,
     with_spread,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated

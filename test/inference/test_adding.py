@@ -30,6 +30,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.robot import Robot
@@ -205,6 +206,22 @@ def test_words_and_json_tell_the_same(creep: Added) -> None:
     assert max(map(len, words.splitlines())) <= 80
     assert f"{1e3 * figures['holdout']['after']:.2f} mm" in words
     assert figures["parameters"]["creep"]["unit"] == "s"
+
+
+def test_of_a_single_drive_too_all_is_fitted_that_is_written() -> None:
+    """What was put aside judges as if it were another drive, and is then fitted with the rest."""
+    truth = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.02),))
+    runs = runs_of(truth, (1,), 30)
+    whole = add_effects([find("lateral_slip")], runs, PLAIN)
+    fitted, kept = set_aside(runs)
+    parts = add_effects([find("lateral_slip")], fitted, PLAIN, holdout=kept)
+    assert whole.holdout.sides.after == pytest.approx(parts.holdout.sides.after, rel=1e-9)
+    one, other = (each.parameters["creep"] for each in (whole, parts))
+    assert one.std is not None
+    assert other.std is not None
+    assert one.value != pytest.approx(other.value, rel=1e-4)
+    assert one.std < other.std
+    assert "were then fitted on all of it" in " ".join(as_text(words_of(whole)).split())
 
 
 def test_legs_on_which_the_reference_jumped_are_fitted_as_in_a_diagnosis() -> None:

@@ -382,6 +382,53 @@ def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
     assert found.main.all.outliers == 0
 
 
+def test_noise_of_a_camera_that_is_alike_at_all_lengths_is_not_put_down_to_the_wheels() -> None:
+    """Tags that are measured worse from afar: legs of 0.25 m err as those of 4 m."""
+    runs = []
+    for seed in (0, 1):
+        random = np.random.default_rng(seed)
+        run = drive(TRUE, wandering(random, 90.0), random, every=5, sigma_xy=0.0, sigma_yaw=0.0)
+        assert run.reference is not None
+        afar = (run.reference.x % 3.0) / 3.0
+        errors = (0.005 + 0.03 * afar) * random.normal(size=(3, afar.size))
+        told = {
+            name: getattr(run.reference, name) + error
+            for name, error in zip(("x", "y", "yaw"), errors, strict=True)
+        }
+        seen = with_reference(run, **told)
+        assert seen.reference is not None
+        runs.append(
+            replace(seen, path=Path(f"{seed}"), reference=seen.reference.chosen(afar < 0.8))
+        )
+    found = compare(runs, RIGHT)
+    assert verdict_of(found).noise == "comes and goes"
+    words = as_text(words_of(found))
+    assert "wheels' noise k" not in words
+    assert "the reference's own noise" in " ".join(words.split())
+    quiet = replace(RIGHT, left_wheel_noise=2.5e-5, right_wheel_noise=2.5e-5)
+    assert verdict_of(compare([recorded(7)], quiet)).noise == "too small", "a noise of wheels is"
+
+
+def test_a_heading_in_whole_degrees_does_not_jump_from_one_to_the_next() -> None:
+    """In a wide curve steps are rare, and far from what most intervals err by.
+
+    One that jumps by many of its steps still does.
+    """
+    random = np.random.default_rng(4)
+    curve = np.full(1500, 0.3), np.full(1500, 0.02)
+    run = drive(TRUE, curve, random, every=3, sigma_yaw=2e-4)
+    assert run.reference is not None
+    whole = np.radians(np.rint(np.degrees(run.reference.yaw)))
+    by_degrees = with_reference(run, yaw=whole)
+    (group,) = prepare([by_degrees], RIGHT).groups
+    assert not group.jumps[0].any()
+    assert compare([by_degrees], RIGHT).main.all.outliers == 0
+    late = run.reference.time > np.quantile(run.reference.time, 0.6)
+    lost = with_reference(run, yaw=whole + np.radians(10.0) * late)
+    (group,) = prepare([lost], RIGHT).groups
+    assert np.flatnonzero(group.jumps[0].any(axis=1)).tolist() == [np.flatnonzero(late)[0] - 1]
+
+
 def test_fixes_at_fifty_hertz_that_scatter_by_a_third_of_their_spacing_are_no_jumps() -> None:
     """An RTK receiver: quiet while the robot stands, shaken while it drives at 1.2 m/s."""
     random = np.random.default_rng(8)

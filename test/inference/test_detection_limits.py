@@ -22,6 +22,7 @@ from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.detection_limits import (
+    _best,
     _calibrated,
     _limits,
     _looked_at,
@@ -31,6 +32,7 @@ from werrimbi_odom.inference.manoeuvres.expected_evidence import Experiment
 from werrimbi_odom.model.pose import Floats
 
 TRIED = 60
+THREE = (-2.1, 0.0, 2.1)
 NOISE = EvaluationOptions(sigma_xy=NOISE_XY, sigma_yaw=NOISE_YAW)
 
 
@@ -152,6 +154,19 @@ def test_a_bump_at_any_place_is_seen_beside_the_radius_that_it_is_too(runs: list
         for one, other in random.integers(len(shown), size=(200, 2))
     ]
     assert np.mean(anywhere) == pytest.approx(noncentrality(3, rules.SURE / TRIED, 0.95), rel=0.1)
+
+
+def test_an_effect_of_ones_own_may_try_three_places(runs: list[Run]) -> None:
+    """One with fewer than four ended a diagnosis with a ValueError."""
+    bump = find("left_tread_bump")
+    place = bump.parameters["place"]
+    three = replace(bump, parameters={**bump.parameters, "place": replace(place, tries=THREE)})
+    found = []
+    for effect in (bump, three):
+        candidate = _typical(effect)
+        look = _looked_at(drives_of(runs), [candidate, *_calibrated()], ())
+        found.append(_best(candidate, look, TRIED, ()).minimum_detectable)
+    assert found[1] == pytest.approx(found[0], rel=0.15)
 
 
 def test_more_noise_and_fewer_drives_show_less(runs: list[Run]) -> None:

@@ -12,18 +12,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.inference.driven import COMMON, parts
+from test.inference.driven import COMMON, parts, run_of
+from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
-from werrimbi_odom.inference.comparison.prepared_runs import prepare
+from werrimbi_odom.inference.comparison.prepared_runs import for_fit, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.common_cause import alike
-from werrimbi_odom.inference.events.events import Events, at_every_pose
+from werrimbi_odom.inference.events.events import (
+    Events,
+    EventSide,
+    at_every_pose,
+    events_among,
+)
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
@@ -95,6 +104,76 @@ def _stepped(run: Run, at: float, sideways: float, turn: float = 0.0) -> Run:
         return replace(seen, x=place.real, y=place.imag, yaw=np.where(after, yaw + turn, yaw))
 
     return _measured(run, change)
+
+
+def _beside_the_truth(run: Run, robot: Robot, kind: ReferenceKind = "absolute") -> Events:
+    """What is told beside the robot itself, with noise near the true one."""
+    options = EvaluationOptions(reference_kind=kind)
+    runs = concatenated(for_fit(prepare([run], robot, options), robot))
+    point = start_point(runs, robot, options)
+    small = [1e-2 * point.variances.walk_xy, 1e-2 * point.variances.walk_yaw]
+    point = replace(point, variances=replace(point.variances, walk_xy=small[0], walk_yaw=small[1]))
+    return events_among([EventSide(runs.runs, [run.path], point, held_out=False)], kind)
+
+
+@pytest.mark.parametrize("every", [1, 10])
+def test_a_push_that_two_poses_see_is_one_of_their_sum(sound: Drives, every: int) -> None:
+    """It was not told, or as two: a wrong pose between them says no more than two steps do."""
+    runs, robot = sound
+    assert runs[0].reference is not None
+    rare = runs[0].reference.chosen(np.arange(runs[0].reference.time.size) % every == 0)
+    row = int(np.searchsorted(rare.time, 20.0))
+    x = rare.x.copy()
+    x[row:] += 0.03
+    x[row + 1 :] += 0.02
+    pushed = replace(runs[0], reference=replace(rare, x=x))
+    [event] = _beside_the_truth(pushed, robot).events
+    assert event.stays
+    assert np.hypot(*event.sizes[:2]) == pytest.approx(0.05, abs=4.0 * NOISE_XY)
+    assert max(event.stds[:2]) < NOISE_XY
+
+
+def test_kicks_between_rare_headings_are_told_each_by_itself(sound: Drives) -> None:
+    """Each was also a neighbour of the other, which left both unknown: none was told."""
+    run = parts(sound[0][0], "yaw")
+    assert run.reference is not None
+    rare = run.reference.chosen(np.arange(run.reference.time.size) % 10 == 0)
+    row = int(np.searchsorted(rare.time, 20.0))
+    yaw = rare.yaw.copy()
+    yaw[row:] += 0.03
+    yaw[row + 1 :] += 0.04
+    kicked = replace(run, reference=replace(rare, yaw=yaw))
+    told = [event for event in _beside_the_truth(kicked, sound[1]).events if event.size > 0.02]
+    assert [event.channel for event in told] == ["heading"] * 2
+    for event, size, after in zip(told, (0.03, 0.04), rare.time[row : row + 2], strict=True):
+        assert event.size == pytest.approx(size, abs=4.0 * np.hypot(NOISE_YAW, event.std))
+        assert 0.0 < after - event.time < 0.5
+
+
+def test_a_pose_on_a_map_that_was_wrong_once_did_not_stay_wrong(sound: Drives) -> None:
+    """Only one of the two steps was fitted: a turn of 28° was told as one of 1° that stayed."""
+    runs, robot = sound
+
+    def glance(seen: Reference) -> Reference:
+        yaw = seen.yaw.copy()
+        yaw[np.searchsorted(seen.time, 20.0)] += 0.5
+        return replace(seen, yaw=yaw)
+
+    [event] = _beside_the_truth(_measured(runs[0], glance), robot, "local_map").events
+    assert (event.channel, event.unit, event.stays) == ("reference", "rad", False)
+    assert event.size == pytest.approx(0.5, abs=4.0 * event.std)
+
+
+def test_more_pushes_at_once_than_are_looked_for_are_too_many() -> None:
+    """Fifty in so long a drive were told to be too many, and seventy to be none."""
+    run = run_of(ROBOT, 1, 280)
+
+    def pushed(seen: Reference) -> Reference:
+        return replace(seen, x=seen.x + 0.03 * np.floor(seen.time / 4.0))
+
+    found = _beside_the_truth(_measured(run, pushed), ROBOT)
+    assert found.many
+    assert found.events == ()
 
 
 def test_where_nothing_happened_nothing_is_told(undisturbed: Diagnosis) -> None:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,12 +14,16 @@ from test.inference.driven import run_of
 from test.model.drives import ROBOT as DRIVEN
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
+from werrimbi_odom.inference.changes.dated_drives import Dated, History
 from werrimbi_odom.inference.changes.drive_estimate import DriveEstimate, estimate_of_drive
 from werrimbi_odom.inference.changes.history import Course, course_of
 from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.logarithmic_sizes import in_logarithms
+from werrimbi_odom.inference.changes.scatter import scatter_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.history_words import words_of
+from werrimbi_odom.report.terminal import as_text
 
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
 DAY = 86400.0
@@ -107,6 +112,12 @@ def test_wear_over_a_thousand_drives_is_one_trend() -> None:
     assert len(found.changes) == 2
 
 
+def test_drives_that_differ_all_alike_scatter_by_what_the_median_says() -> None:
+    """The search ended at the largest difference, 5 % below it."""
+    seen = np.tile([0.0, 1.0], 5)
+    assert scatter_of(seen, np.full(10, 1e-6)) == pytest.approx(1.0 / np.sqrt(2.0 * 0.4549))
+
+
 def test_the_scatter_of_a_number_is_that_of_the_drives_that_know_it() -> None:
     """Of thirty drives four have a reference that shows the mount, which is never quite the same.
 
@@ -189,3 +200,33 @@ def test_a_marker_that_moved_is_seen_though_the_file_does_not_hold_it() -> None:
     (change,) = [each for each in found.changes if each.what == "reference_lever_arm.x"]
     assert change.from_run == "3"
     assert change.after - change.before == pytest.approx(0.008, abs=1e-3)
+
+
+def test_headings_alone_tell_the_base_over_the_radius_and_the_ratio_of_the_radii() -> None:
+    """Of another scale the robot turns alike: no size is told by itself, and the file is off."""
+    names = MULTIPLIERS
+    told = []
+    for level in (1.03, 1.03):
+        # base - (left + right) / 2 and right - left, each to a thousandth.
+        rows = np.array([[1.0, -0.5, -0.5], [0.0, -1.0, 1.0]]) / 1e-3
+        information = rows.T @ rows
+        seen = np.log([level, 1.0, 1.005]) + 1.0
+        told.append(DriveEstimate(names, information, information @ seen, 0.0, 500, 20.0))
+    found = course_of(told, ROBOT, DAY * np.arange(2))
+    assert [each.name for each in found.numbers] == ["unequal_wheel_radii", "base_over_mean_radius"]
+    ratio, base = found.numbers
+    assert ratio.level[-1] == pytest.approx(1.005, abs=1e-4)
+    assert base.level[-1] == pytest.approx(1.03 / 1.0025, abs=1e-4)
+    assert base.level_std[-1] == pytest.approx(1e-3 / np.sqrt(2.0) * base.level[-1], rel=0.05)
+    assert [off.name for off in found.off] == ["unequal_wheel_radii", "base_over_mean_radius"]
+    sized = course(np.ones((8, 3)), np.random.default_rng(1))
+    assert "base_over_mean_radius" not in [each.name for each in sized.numbers]
+
+
+def test_drives_that_tell_nothing_are_no_proof_that_nothing_changed() -> None:
+    dumb = DriveEstimate(MULTIPLIERS, np.zeros((3, 3)), np.zeros(3), 0.0, 50, 2.0)
+    found = course_of([dumb, dumb], ROBOT, DAY * np.arange(2))
+    drives = tuple(Dated(Path(name), dumb, 0.0, "order") for name in ("one", "other"))
+    said = as_text(words_of(History(ROBOT, drives, found, (), None)))
+    assert "These drives tell no number of this robot" in said
+    assert "Nothing changed" not in said

@@ -25,11 +25,11 @@ from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figures_of, paths
 from werrimbi_odom.inference.comparison.prepared_runs import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.either_sign import cheapest_of, variances_by_sign
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of, fitted
-from werrimbi_odom.inference.diagnosis.uncertainty import variances_by_sign
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,

@@ -93,6 +93,17 @@ def test_odometry_that_is_logged_in_millimetres_is_refused_by_its_headings(seed:
         require_independent(replace(run, reference=logged), ROBOT)
 
 
+def test_a_heading_that_is_missing_hides_no_circle_of_headings() -> None:
+    """After it all turns of the drive were unknown."""
+    run, _ = recorded(1, seconds=180.0)
+    own = own_odometry(run, OTHER)
+    yaw = own.yaw.round(5)
+    yaw[yaw.size // 8 : yaw.size // 6] = np.nan
+    logged = Reference(own.time, own.x.round(3), own.y.round(3), yaw)
+    with pytest.raises(InputError, match="its headings agree"):
+        require_independent(replace(run, reference=logged), ROBOT)
+
+
 @SEEDS
 def test_odometry_has_the_stamps_of_its_wheels_right_or_wrong(seed: int) -> None:
     """Wheels whose stamps scatter by 4 ms are put right for a measurement, and not for this."""

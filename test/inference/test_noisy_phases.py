@@ -14,6 +14,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.legs.aligned_run import record_of
 from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.report.phrases import left_out_words
 
@@ -50,6 +51,25 @@ def test_a_phase_of_much_more_noise_is_told_as_such_and_left_out(run: Run) -> No
     assert FLOATS[1] - 0.2 < part.end < FLOATS[1] + reach
     assert part.words.startswith("the reference scatters ")
     assert int(part.words.split()[3]) == pytest.approx(0.04 / FIXED, abs=2.0)
+
+
+def test_a_pose_that_came_twice_hides_no_phase(run: Run) -> None:
+    seen = floating(run, *FLOATS, 0.04).reference
+    assert seen is not None
+    twice = seen.chosen(np.sort(np.append(np.arange(seen.time.size), 100)))
+    found = with_no_driving(replace(run, reference=twice), ROBOT).no_driving or ()
+    assert len([part for part in found if "scatters" in part.words]) == 1
+
+
+def test_what_is_stated_of_poses_that_are_left_out_is_no_noise_of_the_others(run: Run) -> None:
+    """A receiver states 4 cm while it floats; all poses were taken to err by 15 mm."""
+    given = floating(run, *FLOATS, 0.04)
+    seen = given.reference
+    assert seen is not None
+    floats = (seen.time > FLOATS[0]) & (seen.time < FLOATS[1])
+    stated = replace(seen, sigma_xy=np.where(floats, 0.04, FIXED))
+    found = record_of(replace(given, reference=stated), ROBOT)
+    assert found.sigma_xy == pytest.approx(FIXED, rel=0.2)
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ import pytest
 
 from test.evidence import in_evidence
 from test.recorded_robots import ROBOTS, with_recordings
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
@@ -46,11 +47,12 @@ def remarks(
     spoil: Callable[[Reference], Reference] = lambda it: it,
     *hidden: Peculiarity,
     kind: ReferenceKind = "absolute",
+    robot: Robot = ROBOT,
 ) -> dict[str, ReferenceRemark]:
     runs = [replace(run, reference=spoil(run.reference)) for run in drives(*hidden)]  # type: ignore[arg-type]
     return {
         each.what: each
-        for each in remarks_on(prepare(runs, ROBOT, EvaluationOptions(reference_kind=kind)))
+        for each in remarks_on(prepare(runs, robot, EvaluationOptions(reference_kind=kind)))
     }
 
 
@@ -75,6 +77,19 @@ def test_a_heading_askew_of_its_path() -> None:
     assert set(found) == {"sideways"}
     assert np.degrees(found["sideways"].size) == pytest.approx(-6.0, abs=0.2)
     assert "sideways to its own heading by 6.0°" in remark_words(found["sideways"])
+
+
+@pytest.mark.parametrize("angle", [0.2, -0.5 * np.pi])
+def test_a_marker_that_is_turned_as_the_file_says_goes_where_it_faces(angle: float) -> None:
+    """Turned by 11 degrees, a metre 5 % long was told as 7 %; by 90 degrees, not at all."""
+
+    def turned(it: Reference) -> Reference:
+        return replace(it, x=1.05 * it.x, y=1.05 * it.y, yaw=it.yaw + angle)
+
+    stated = replace(ROBOT, effects=(find("reference_yaw_offset").using(angle=angle),))
+    found = remarks(turned, robot=stated)
+    assert set(found) == {"metre"}
+    assert found["metre"].size == pytest.approx(0.05, abs=0.005)
 
 
 def test_a_heading_that_drifts_from_its_path() -> None:

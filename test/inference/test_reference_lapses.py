@@ -62,6 +62,13 @@ def test_a_reference_that_leaps_away_and_comes_back_is_told_with_its_times(
     )
 
 
+def test_a_pose_that_came_twice_hides_no_lapse(run: Run) -> None:
+    seen = reference_of(exchanged(run, *AWAY))
+    twice = seen.chosen(np.sort(np.append(np.arange(seen.time.size), 500)))
+    (part,) = found_in(replace(run, reference=twice))
+    assert (part.begin, part.end) == pytest.approx(AWAY, abs=0.01)
+
+
 def test_a_sound_reference_one_wrong_pose_and_a_place_that_is_lost_are_no_lapse(run: Run) -> None:
     assert found_in(run) == ()
     assert found_in(exchanged(run, 20.01, 20.03)) == ()
@@ -84,6 +91,8 @@ def test_what_a_reference_does_once_a_second_is_no_lapse(run: Run) -> None:
 def test_markers_that_are_exchanged_for_a_second_spoil_no_judgement(run: Run) -> None:
     """The legs between both leaps began with a heading that was 51 degrees off: NEES 100."""
     found = compare([exchanged(run, *AWAY)], ROBOT, EvaluationOptions(leg=0.25))
+    wheels = run.ticks.left * ROBOT.left_tick + run.ticks.right * ROBOT.right_tick
+    assert found.runs[0].distance_m == pytest.approx(0.5 * np.abs(np.diff(wheels)).sum())
     assert 0.6 < found.main.all.figures.nees < 1.4
     assert found.main.all.outliers == 0
     (line,) = left_out_words(found.left_out)

@@ -22,9 +22,9 @@ from werrimbi_odom.inference.diagnosis.effect_support import askable
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Round,
     fit_calibration,
-    instead_of_calibration,
     search_round,
 )
+from werrimbi_odom.inference.diagnosis.instead_of_calibration import instead_of_calibration
 from werrimbi_odom.inference.diagnosis.p_values import p_value_of_size
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.rivals import halves, rivals_in_halves, rivals_of

@@ -141,7 +141,7 @@ BARE = {
     ("events/steps.py", 2.0): "either side",
     ("fitting/fisher_scoring.py", 0.01): "damping of a search",
     ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",
-    ("legs/count_interpolation.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
+    ("legs/monotone_cubic.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
     ("manoeuvres/ideal_drives.py", 0.2): "messages of an ideal drive [s]",
     ("manoeuvres/next_manoeuvre.py", 0.1): "in mm below it, in m above",
     ("set_up/positions.py", 0.002): "the last step of a descent",
@@ -346,6 +346,7 @@ def test_the_figures_in_the_reasons_hold() -> None:
     assert stats.t.isf(r.SURE_OF_LEGS / 2, r.LEGS_OF_A_PART - 1) == pytest.approx(11.2, abs=0.05)
     cells = r.CELLS_ACROSS**2
     assert stats.t.isf(r.SURE_OF_LEGS / cells, r.LEGS_IN_A_CELL - 1) == pytest.approx(89, abs=0.5)
+    assert 1.0 / math.sqrt(2.0 * 3.0 * r.MANY_LEGS) == pytest.approx(0.07, abs=5e-3)
     bounds = chance_bounds(3 * r.FEWEST_LEGS, r.HONEST_CHANCE)
     assert bounds == pytest.approx((0.29, 2.33), abs=0.02)
 

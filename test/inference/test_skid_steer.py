@@ -8,9 +8,10 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from test.inference.driven import COMMON
+from test.inference.driven import COMMON, parts, run_by, run_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
@@ -81,6 +82,23 @@ def test_a_gyro_tells_its_multiplier_and_nothing_of_its_point() -> None:
     assert sizes_among(("reference_delay", "skid_steer"), found.final) == {"track_width"}
     assert "x is not determined by these drives" in said(found)
     assert "y is not determined by these drives" in said(found)
+
+
+def test_by_another_name_a_base_is_no_surer() -> None:
+    """A gyro's scale does what a base does, and on one circle the radii do."""
+    truth = replace(ROBOT, wheel_separation_multiplier=1.04)
+    skid = find("skid_steer").using(multiplier=1.5)
+    held = replace(ROBOT, effects=(skid,), wheel_separation_multiplier=1.0 / 1.5)
+    turned = [parts(run_of(truth, seed, 40), "yaw") for seed in (1, 2)]
+    circle = [run_by(truth, np.full(600, 0.3), np.full(600, 0.6), seed) for seed in (1, 2)]
+    for runs, robot, rivals in (
+        (turned, ROBOT, {"track_width", "reference_scale"}),
+        (turned, held, {"skid_steer", "reference_scale"}),
+        (circle, held, {"skid_steer", "unequal_wheel_radii", "wheel_radius_scale"}),
+    ):
+        found = diagnose(runs, robot, COMMON[:3])
+        assert found.verdict == "ambiguous"
+        assert set(found.rivals) == rivals
 
 
 def test_two_wheels_keep_the_base_and_hear_of_skidding() -> None:

@@ -28,6 +28,7 @@ from werrimbi_odom.report.adding.words import _headline
 from werrimbi_odom.report.diagnosis import ambiguous, as_json, costs, phrases, tables, words
 from werrimbi_odom.report.diagnosis.ambiguous import how_long
 from werrimbi_odom.report.diagnosis.costs import by_sizes_alone, cost, whole
+from werrimbi_odom.report.diagnosis.document import document_of
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.phrases import hang_together
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
@@ -286,6 +287,9 @@ def test_drives_that_no_mount_fits_are_not_said_to_be_lost() -> None:
     assert "Between run_1 and run_2 the reference came to be mounted otherwise" in words
     assert "No mount of the reference fits all of these drives" in words
     assert "It is lost" not in words
+    assert told.drives_differ
+    assert document_of(told).title == "Not the same in all of these drives"
+    assert not replace(told, changes=()).drives_differ
 
 
 def test_of_what_could_not_be_judged_no_number_is_told() -> None:

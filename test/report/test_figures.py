@@ -34,7 +34,12 @@ from werrimbi_odom.report.calibration.document import leg_figure
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.over_variable import error_against_figure, variables_of
-from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure, evidence_map_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import (
+    before_after_figure,
+    best_by_name,
+    best_cells,
+    evidence_map_figure,
+)
 from werrimbi_odom.report.diagnosis.figures import manoeuvre_figure, ranking_figure
 from werrimbi_odom.report.events import over_time
 from werrimbi_odom.report.path_figure import PathDrawing
@@ -115,6 +120,17 @@ def test_the_strongest_field_of_the_evidence_map_is_the_left_wheels_angle(
     row, column = np.unravel_index(np.nanargmax(heat.z), np.shape(heat.z))
     assert heat.y[row] == "left"
     assert tuple(heat.customdata[row][column]) == ("left", "left_wheel_angle", "cell", 0)
+
+
+def test_the_workbench_chooses_the_dependence_that_the_page_chooses(diagnosis: Diagnosis) -> None:
+    """However small the chances of two forms are: of two that are 0, the stronger one."""
+    cell = diagnosis.depends_on[0]
+    simple = replace(cell, p_value=0.0, gain=3000.0, degrees=2)
+    strong = replace(cell, p_value=0.0, gain=5000.0, degrees=4)
+    (of_page,) = best_cells([simple, strong]).values()
+    (of_tab,) = best_by_name([simple, strong]).values()
+    assert of_tab is of_page
+    assert of_page is strong
 
 
 def test_the_ranking_shows_what_the_diagnosis_says(diagnosis: Diagnosis) -> None:

@@ -128,6 +128,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[AdvisedDiagnosis
         document=lambda: document_of(advised, steps()),
         figures_of_json=lambda: {
             **json_of(advised.diagnosis, advised.manoeuvre, advised.sights, advised.changes),
+            "drives_differ": advised.drives_differ,
             "leg_m": advised.leg,
         },
     )

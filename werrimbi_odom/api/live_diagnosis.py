@@ -24,6 +24,7 @@ import numpy as np
 
 from werrimbi_odom.api.compare_diagnose_add import add, diagnose
 from werrimbi_odom.api.drives import Options, read_robot, read_run
+from werrimbi_odom.api.next_command import NOT_STORED
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_writing import BagWriter
@@ -33,8 +34,6 @@ from werrimbi_odom.files.text_files import replacing
 
 MESSAGES, ASKED, FOUND, BETTER = "messages", "asked.json", "found.json", "better.yaml"
 """Files of the folder."""
-RECORDED = Path("RUN...")
-"""Placeholder in the printed commands, as the stored data do not persist."""
 OF_NOW = "\n\nThe younger half of these drives alone:\n"
 """Separates the words on all drives from those on the younger half, where the robot changed."""
 
@@ -111,7 +110,7 @@ def halves(run: Run, bits: int = 0) -> list[Run]:
         replace(
             run,
             name=name,
-            path=RECORDED,
+            path=NOT_STORED / name,
             ticks=Ticks(ticks.time[tick], ticks.left[tick], ticks.right[tick]),
             reference=reference.chosen(pose),
         )

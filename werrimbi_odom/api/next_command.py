@@ -14,6 +14,9 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 
+NOT_STORED = Path("RUN...")
+"""In place of drives that are in no file: where their parts have paths below it, as placeholder."""
+
 
 def next_command(
     verb: Sequence[str],
@@ -74,12 +77,13 @@ def _options(given: Recordings) -> Iterator[str]:
             continue
         for each in value if isinstance(value, list | tuple) else [value]:
             yield f"--{name.removesuffix('s').replace('_', '-')}"
-            yield f"{each:g}" if isinstance(each, float) else str(each)
+            yield str(each).removesuffix(".0") if isinstance(each, float) else str(each)
 
 
 def _paths(runs: Sequence[Run], in_order: bool) -> str:
     """Paths as given; a complete folder as FOLDER/*, unless they must stay `in_order`."""
-    paths = list(dict.fromkeys(run.path for run in runs))
+    paths = [NOT_STORED if run.path.parent == NOT_STORED else run.path for run in runs]
+    paths = list(dict.fromkeys(paths))
     folders = {path.parent for path in paths}
     if len(paths) > 1 and len(folders) == 1 and paths[0].exists() and not in_order:
         (folder,) = folders

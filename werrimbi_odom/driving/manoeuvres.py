@@ -98,7 +98,7 @@ def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> ManoeuvrePlan:
             raise InputError(
                 "diagnosis: no manoeuvre tells its rivals apart in reasonable time; a ruler may"
             )
-        if verdict == "unknown" and told.get("changes"):
+        if told.get("drives_differ"):
             raise InputError(
                 "diagnosis: it proposes nothing to drive: the robot was not the same in all of its "
                 "drives; diagnose those since the change alone"

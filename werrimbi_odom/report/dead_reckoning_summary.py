@@ -14,7 +14,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.start_pose import StartPose
-from werrimbi_odom.model.covariance import PoseCovariance, sigmas_along_and_across
+from werrimbi_odom.model.covariance import PoseCovariance, carried, sigmas_along_and_across
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.model.reference_measurement import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
@@ -133,8 +133,8 @@ def _end_error(
     reckoned = compose(start, moved)
     error = np.array(measured) - np.array(reckoned)
     heading = wrap(float(error[2])) if math.isfinite(error[2]) else math.nan
-    at = max(int(np.searchsorted(driven.time, reference.time[last], side="right")) - 1, 0)
-    covariance = np.asarray(driven.covariance.matrix()[at])
+    begin, end = (float(reference.time[row]) for row in (first, last))
+    covariance = _gained(driven, begin, end, start.yaw)
     return EndError(
         float(reference.time[last]),
         measured,
@@ -143,6 +143,19 @@ def _end_error(
         _sigmas(error[:2], covariance[:2, :2]),
         _sigmas(np.array([heading]), covariance[2:, 2:]),
     )
+
+
+def _gained(path: ShownPath, begin: float, end: float, yaw: float) -> Floats:
+    """Covariance that the way between two times adds, begun exactly and with heading `yaw`."""
+    rows = np.searchsorted(path.time, (begin, end), side="right") - 1
+    first, last = np.maximum(rows, 0).tolist()
+    before = PoseCovariance(*(float(entry[first]) for entry in path.covariance))
+    moved = (float(part[last] - part[first]) for part in (path.x, path.y))
+    added = path.covariance.matrix()[last] - carried(before, *moved).matrix()
+    turn = yaw - float(path.yaw[first])
+    frame = np.eye(3)
+    frame[:2, :2] = [[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]
+    return np.asarray(frame @ added @ frame.T)
 
 
 def _pose_at(path: Trajectory | ShownPath, time: float) -> Pose:

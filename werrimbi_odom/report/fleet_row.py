@@ -14,7 +14,9 @@ def missing_words(row: Row) -> list[str]:
         return ["nothing"]
     said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
     said += [_with_values(row, effect) for effect in row.missing]
-    if wheel := _one_wheel(row):
+    if _drives_differ(row):
+        said.append("not the same in all drives")
+    elif wheel := _one_wheel(row):
         said.append("the wheels err" if wheel == "both" else f"the {wheel} wheel errs")
         said[-1] += ", by no law"
     elif when := _by_events(row):
@@ -39,6 +41,11 @@ def _one_wheel(row: Row) -> str:
     return told["side"] if told else ""
 
 
+def _drives_differ(row: Row) -> bool:
+    """Whether changes between its drives may be all that no effect explains."""
+    return bool(row.figures and row.figures.get("drives_differ"))
+
+
 def _by_events(row: Row) -> str:
     """With what abrupt errors come that alone say that something is missing; "" if none do."""
     told = row.figures if row.figures and row.figures.get("by_events") else None
@@ -49,7 +56,7 @@ def next_words(row: Row) -> str:
     """Next step in a few words; `add` and `draft` are verbs of this tool."""
     if row.verdict == "named":
         return f"add {','.join(row.missing)}"
-    if row.verdict == "unknown" and row.figures is not None and row.figures.get("changes"):
+    if _drives_differ(row):
         return "diagnose the drives since the change"
     if wheel := _one_wheel(row):
         return "look at the wheels" if wheel == "both" else f"look at the {wheel} wheel"

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.inference.changes.dated_drives import Dated, History
-from werrimbi_odom.inference.changes.history import Number
+from werrimbi_odom.inference.changes.history import BASE_OVER_RADIUS, Number
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import history_words as words
 from werrimbi_odom.report import style
@@ -30,11 +31,17 @@ def document_of(history: History) -> Document:
     """The complete report."""
     some = bool(history.course.numbers)
     return Document(
-        title="What changed" if history.course.changes else "Nothing changed",
+        title=_title(history),
         words=words.words_of(history),
         tables=[words.table_of(history)] if some else (),
         draw=lambda: _figures(history) if some else (),
     )
+
+
+def _title(history: History) -> str:
+    if history.course.changes:
+        return "What changed"
+    return "Nothing changed" if history.course.numbers else "Nothing is known"
 
 
 def _figures(history: History) -> list[Shown]:
@@ -121,8 +128,9 @@ def _panel(
 
 def _moves(what: str, name: str) -> bool:
     """Whether a change of one parameter also changes the other."""
-    of_radii = name in ("unequal_wheel_radii", "wheel_radius_scale")
-    return what == name or ("radius_multiplier" in what and of_radii)
+    of_radii = name in ("unequal_wheel_radii", "wheel_radius_scale", BASE_OVER_RADIUS)
+    of_base = what == MULTIPLIERS[0] and name == BASE_OVER_RADIUS
+    return what == name or of_base or ("radius_multiplier" in what and of_radii)
 
 
 def _scale(number: Number) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from datetime import datetime, timezone
 
 from werrimbi_odom.inference.changes.between_drives import ParameterChange
 from werrimbi_odom.inference.changes.dated_drives import Dated, History
-from werrimbi_odom.inference.changes.history import Number
+from werrimbi_odom.inference.changes.history import BASE_OVER_RADIUS, Number
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.report.changes import changes_words, in_small_unit
 from werrimbi_odom.report.document import Paragraph, Table, paragraphs
@@ -23,6 +23,7 @@ TITLES = {
     "right_wheel_radius_multiplier": "right radius",
     "unequal_wheel_radii": "right over left radius",
     "wheel_radius_scale": "mean radius",
+    BASE_OVER_RADIUS: "base over mean radius",
     "reference_yaw_offset.angle": "mount: angle to the left",
     "reference_lever_arm.x": "mount: ahead of the axle",
     "reference_lever_arm.y": "mount: left of the middle",
@@ -158,6 +159,8 @@ def day_of(drive: Dated) -> str:
 
 
 def _headline(history: History) -> str:
+    if not history.course.numbers:
+        return "These drives tell no number of this robot, so no change of one either."
     count = len({(move.group, move.from_run) for move in history.course.changes})
     if not count:
         return "Nothing changed on this robot that these drives could show."
@@ -178,8 +181,12 @@ def _drives(history: History) -> str:
 
 
 def _against_words(history: History, differing: Sequence[Against]) -> str:
+    missing = not_compared(history)
+    more = (
+        f" It holds {listed(missing)}, which this file does not: not compared." if missing else ""
+    )
     if not differing:
-        return "Against the other robot file nothing is new."
+        return f"Against the other robot file nothing is new.{more}"
     parts = []
     for each in differing:
         title = TITLES.get(each.what, each.what)
@@ -190,7 +197,16 @@ def _against_words(history: History, differing: Sequence[Against]) -> str:
             value, unit = in_small_unit(each.now, each.std, number.unit)
             other, unit_there = in_small_unit(each.there, 0.0, number.unit)
             parts.append(f"{title} {value} {unit}, there {other} {unit_there}")
-    return f"New against the other robot file: {listed(parts)}."
+    return f"New against the other robot file: {listed(parts)}.{more}"
+
+
+def not_compared(history: History) -> list[str]:
+    """Effects of the other robot file that these drives were not asked about: this one has none."""
+    if history.like is None:
+        return []
+    asked = {number.name.rpartition(".")[0] for number in history.course.numbers}
+    asked |= {applied.name for applied in history.robot.effects}
+    return [applied.name for applied in history.like.effects if applied.name not in asked]
 
 
 def there(history: History, number: Number) -> float:
@@ -207,6 +223,8 @@ def there(history: History, number: Number) -> float:
         return right / left
     if number.name == "wheel_radius_scale":
         return 0.5 * (left + right) * radii
+    if number.name == BASE_OVER_RADIUS:
+        return robot.wheel_separation_multiplier * base / (0.5 * (left + right) * radii)
     try:
         value = value_of(robot, number.name)
     except KeyError:

@@ -40,6 +40,7 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
     sizes_needed,
     with_sizes,
 )
+from werrimbi_odom.inference.diagnosis.either_sign import variances_by_sign
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Judge, begin
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_found
@@ -48,7 +49,6 @@ from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.uncertainty import (
     as_written,
     noises_of,
-    variances_by_sign,
     with_spread,
 )
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
@@ -145,7 +145,7 @@ def add_effects(
     by_sign = variances_by_sign(drives.laid, fits.either.values(), robot, wanted)
     if not holdout:
         show(0.9, "all runs")
-        drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
+        drives, written = _on_all(judge, drives, fit, robot, sizes)
     known = with_spread(effects, drives.laid, written, robot, wanted, sizes, noises, by_sign)
     final = replace(to_write(written.point.model, robot), **noise)
     show(0.95, "comparing")
@@ -168,7 +168,7 @@ def add_effects(
         holdout=kept,
         without={name: sides.before for name, sides in alone.items()},
         set_aside=() if holdout else tuple(run.name for run in judge.kept_back),
-        written_from_all=written is not fit,
+        written_from_all=not holdout,
         noises=noises,
         explained=explained,
         remaining=remaining,
@@ -260,12 +260,9 @@ def _on_all(
     drives: FitDrives,
     fit: Fitted,
     given: Robot,
-    runs: Sequence[Run],
     sizes: FreeSizes,
 ) -> tuple[FitDrives, Fitted]:
     """Fit the same model to all runs, including the held-out parts."""
-    if len(runs) < 2:
-        return drives, fit  # parts of a single run were held out; the fit keeps to the rest
     both = [drives, drives_of(judge.holdout, fit.point.model.robot, drives.options)]
     laid = tuple(run for part in both for run in part.laid.runs)
     skipped = tuple(legs for part in both for legs in part.skipped)

@@ -24,7 +24,8 @@ from werrimbi_odom.inference.adding.start_values import (
     starts,
 )
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed, with_sizes
-from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, cheapest_of, refined
+from werrimbi_odom.inference.diagnosis.either_sign import cheapest_of
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted, refined
 from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import Model, changed
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED

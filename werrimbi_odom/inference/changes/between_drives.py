@@ -89,7 +89,7 @@ def _beside(
     `dependences`: evidence map of the model.
     """
     runs = diagnosis.runs
-    evidence = evidence_of(runs, fit.point, fit.design, fit.scatter)
+    evidence = evidence_of(runs, fit)
     order = driven_in_order([float(run.counters.time[0]) for run in runs.runs])
     drives = evidence.drives(np.arange(order.size, dtype=np.float64)).chosen(order)
     groups = groups_of(

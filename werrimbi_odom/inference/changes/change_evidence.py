@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference.changes.change_points import GroupChange
-from werrimbi_odom.inference.changes.information_of_drives import (
-    DriveNumbers,
-    information_of_drives,
-)
+from werrimbi_odom.inference.changes.information_of_drives import DriveNumbers
 from werrimbi_odom.inference.changes.parameter_groups import DELAY, MOUNT, numbers_of, value_at
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.candidate import Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import STEP, FreeParameter
 from werrimbi_odom.inference.fitting.score_tests import signatures
-from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point
+from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.model.effect import extended_by
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -46,10 +44,21 @@ class Evidence:
     """Drive of each row."""
 
     def drives(self, time: Floats) -> DriveNumbers:
-        """The same as information by drive."""
-        return information_of_drives(
-            self.names, self.values, self.white, self.shared, self.own, self.run, time
-        )
+        """The same as information by drive; `time` (R,): times of the drives.
+
+        The per-run parameters are projected out.
+        """
+        size = len(self.names)
+        information = np.zeros((time.size, size, size))
+        weighted = np.zeros((time.size, size))
+        for index in range(time.size):
+            here = self.run == index
+            own = self.own[here]
+            beside = nuisance(own[:, own.any(axis=0)])
+            slopes, rest = beside.residual(self.shared[here]), beside.residual(self.white[here])
+            information[index] = slopes.T @ slopes
+            weighted[index] = information[index] @ self.values - slopes.T @ rest
+        return DriveNumbers(self.names, information, weighted, time)
 
     def columns(self, step: GroupChange, place: NDArray[np.intp]) -> Floats:
         """Derivative of the innovations in a change, (n, d); `place`: rank of each drive."""
@@ -63,13 +72,9 @@ def held_or_equivalent(robot: Robot) -> set[str]:
     return held | extended_by(robot.effects)
 
 
-def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float) -> Evidence:
-    """Innovations at a point, and their derivatives in all parameters.
-
-    `design`: design of all fitted parameters at the point. `scatter`: dispersion: factor by which
-    squared innovations are too large.
-    """
-    robot = point.model.robot
+def evidence_of(runs: Concatenated, fit: Fitted) -> Evidence:
+    """Innovations at a fit, and their derivatives in all parameters."""
+    point, design, robot = fit.point, fit.design, fit.point.model.robot
     held = held_or_equivalent(robot)
     white, flat = design.flat()
     columns = {number.name: flat[:, n] for n, (number, run) in enumerate(design.columns) if run < 0}
@@ -91,7 +96,7 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
     numbers = tuple(number for number in numbers_of(robot, seen) if number.name in columns)
     named = [number.name for number in numbers]
     names = (*named, *(name for name in columns if name not in named))
-    size = np.sqrt(scatter)
+    size = np.sqrt(fit.scatter)
     return Evidence(
         numbers,
         names,

@@ -65,7 +65,7 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
     )
     fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
     fit = _with_its_reference(laid, fit, robot)
-    evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
+    evidence = evidence_of(laid, fit)
     drive = in_logarithms(evidence.drives(np.zeros(1)), evidence.values, robot)
     # Fitted, and told for no drive: a length of a law, a phase, a delay that the file lacks.
     every = (*evidence.numbers, *(number for number, run in fit.design.columns if run < 0))

@@ -18,7 +18,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
@@ -40,6 +39,11 @@ from werrimbi_odom.inference.distributions import chi2_survival
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+BASE_OVER_RADIUS = "base_over_mean_radius"
+"""What turns tell of base and radii where nothing tells the robot's scale, as headings alone."""
+
+RATIOS = ("unequal_wheel_radii", BASE_OVER_RADIUS)
 
 KINDS: tuple[Kind, ...] = ("step", "alone", "trend")
 
@@ -115,23 +119,25 @@ def course_of(estimates: Sequence[DriveEstimate], robot: Robot, time: Floats) ->
     )
     found = replace(found, levels=levels.value, spread=levels.spread)
     values = Values(given[None], np.zeros((1, given.size, given.size)))
+    whole = heard[:, [names.index(name) for name in MULTIPLIERS]].any(axis=0)
+    shown = tuple(
+        Number(name, unit, float(there[0][0]), *alone, *pooled, *level, size)
+        for (name, unit, size), there, alone, pooled, level in zip(
+            _titles(numbers, scatter, given),
+            _shown(names, values),
+            _silenced(_shown(names, own), [*limits, *limits[[1, 2, 0]]]),
+            _shown(names, pooled),
+            _shown(names, Values(found.levels, found.spread)),
+            strict=True,
+        )
+        if np.isfinite(alone[0]).any() and not (name == BASE_OVER_RADIUS and whole.any())
+    )
     return Course(
-        tuple(
-            Number(name, unit, float(there[0][0]), *alone, *pooled, *level, size)
-            for (name, unit, size), there, alone, pooled, level in zip(
-                _titles(numbers, scatter, given),
-                _shown(names, values),
-                _silenced(_shown(names, own), [*limits, *limits[1:3]]),
-                _shown(names, pooled),
-                _shown(names, Values(found.levels, found.spread)),
-                strict=True,
-            )
-            if np.isfinite(alone[0]).any()
-        ),
+        shown,
         parameter_changes_of(
             found, numbers, names, [str(number) for number in range(len(estimates))]
         ),
-        _off(names, given, found, heard),
+        _off(shown, RATIOS if not whole.any() else MULTIPLIERS),
     )
 
 
@@ -192,45 +198,44 @@ def _titles(
         (number.name, number.unit, float(size))
         for number, size in zip(numbers, scatter, strict=True)
     ]
-    left, right = (scatter[side] / given[side] for side in (1, 2))
-    both, mean = math.hypot(float(left), float(right)), 0.5 * float(given[1] + given[2])
+    base, left, right = (float(scatter[part] / given[part]) for part in (0, 1, 2))
+    both, mean = math.hypot(left, right), 0.5 * float(given[1] + given[2])
     return [
         *found,
         ("unequal_wheel_radii", "", both),
         ("wheel_radius_scale", "", 0.5 * both * mean),
+        (BASE_OVER_RADIUS, "", math.hypot(base, 0.5 * both) * float(given[0]) / mean),
     ]
 
 
 def _shown(names: Sequence[str], values: Values) -> list[tuple[Floats, Floats]]:
-    """Values and standard deviations of the parameters, and of the radii's ratio and mean."""
+    """Values and standard deviations: parameters, the radii's ratio and mean, base over mean."""
     std = np.sqrt(np.maximum(np.einsum("rii->ri", values.spread), 0.0))
     found = [(values.value[:, number], std[:, number]) for number in range(len(names))]
-    where = [names.index(name) for name in MULTIPLIERS[1:]]
-    left, right = (values.value[:, number] for number in where)
+    where = [names.index(name) for name in MULTIPLIERS]
+    base, left, right = (values.value[:, number] for number in where)
     spread = values.spread[:, where][:, :, where]
-    ratio = right / left
+    ratio, mean, none = right / left, 0.5 * (left + right), np.zeros_like(left)
+    half = -0.5 * base / mean**2
     for value, slopes in (
-        (ratio, np.stack([-ratio / left, 1.0 / left], axis=-1)),
-        (0.5 * (left + right), np.full((left.size, 2), 0.5)),
+        (ratio, np.stack([none, -ratio / left, 1.0 / left], axis=-1)),
+        (mean, np.stack([none, none + 0.5, none + 0.5], axis=-1)),
+        (base / mean, np.stack([1.0 / mean, half, half], axis=-1)),
     ):
         variance = np.einsum("ri,rij,rj->r", slopes, spread, slopes)
         found.append((value, np.sqrt(np.maximum(variance, 0.0))))
     return found
 
 
-def _off(
-    names: Sequence[str], given: Floats, found: ChangePoints, heard: NDArray[np.bool_]
-) -> tuple[OffNow, ...]:
-    """Sizes in the robot file that differ significantly, and noticeably, from the last drives."""
-    values, spread = found.levels[-1], found.spread[-1]
+def _off(numbers: Sequence[Number], names: Sequence[str]) -> tuple[OffNow, ...]:
+    """Those of the sizes that differ significantly, and noticeably, from the last drives."""
     off = []
-    for number, name in enumerate(names):
-        if name not in MULTIPLIERS or not heard[:, number].any():
+    for number in numbers:
+        if number.name not in names:
             continue
-        away, variance = values[number] - given[number], float(spread[number, number])
-        chance = len(MULTIPLIERS) * chi2_survival(float(away**2) / max(variance, 1e-30), 1)
-        if chance < rules.SURE and abs(away / given[number]) > rules.CALIBRATE_AGAIN:
-            off.append(
-                OffNow(name, float(values[number]), math.sqrt(variance), float(given[number]))
-            )
+        value, std = float(number.level[-1]), float(number.level_std[-1])
+        away = value - number.given
+        chance = len(MULTIPLIERS) * chi2_survival(away**2 / max(std**2, 1e-30), 1)
+        if chance < rules.SURE and abs(away / number.given) > rules.CALIBRATE_AGAIN:
+            off.append(OffNow(number.name, value, std, number.given))
     return tuple(off)

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.model.pose import Floats
 
 
@@ -81,32 +80,3 @@ class DriveNumbers:
             (shrunk @ self.weighted[..., None])[..., 0],
             self.time,
         )
-
-
-def information_of_drives(
-    names: tuple[str, ...],
-    values: Floats,
-    white: Floats,
-    shared: Floats,
-    own: Floats,
-    run: NDArray[np.intp],
-    time: Floats,
-) -> DriveNumbers:
-    """Summarise the whitened innovations of each drive.
-
-    `values` (s,): values of the parameters. `white` (n,): innovations at these values. `shared` (n,
-    s): their derivatives in the parameters. `own` (n, k): their derivatives in all per-run
-    parameters, which are projected out. `run` (n,): drive of each innovation. `time` (R,): time of
-    each drive.
-    """
-    size = len(names)
-    information = np.zeros((time.size, size, size))
-    weighted = np.zeros((time.size, size))
-    for index in range(time.size):
-        here = run == index
-        mine = own[here]
-        beside = nuisance(mine[:, mine.any(axis=0)])
-        slopes, rest = beside.residual(shared[here]), beside.residual(white[here])
-        information[index] = slopes.T @ slopes
-        weighted[index] = information[index] @ values - slopes.T @ rest
-    return DriveNumbers(names, information, weighted, time)

@@ -37,7 +37,8 @@ def scatter_of(values: Floats, std: Floats) -> float:
     def lacking(size: float) -> float:
         return float(np.median(squares / (noise + 2.0 * size**2))) - _MEDIAN_CHI2_1
 
-    low, high = 0.0, math.sqrt(float(np.max(squares)))
+    # With that much, not even the largest difference exceeds the usual one.
+    low, high = 0.0, math.sqrt(float(np.max(squares)) / (2.0 * _MEDIAN_CHI2_1))
     if lacking(low) <= 0.0:
         return 0.0
     for _ in range(60):

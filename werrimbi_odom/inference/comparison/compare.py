@@ -240,16 +240,16 @@ def _run_figures(
     off = np.abs(path.measured - path.predicted)
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
     in_pieces = run.reference is not None and run.reference.own_axes and run.taken_out
+    handled = by_hand(run.no_driving)
     # Each piece has axes of its own; a hand is no dead reckoning.
-    if in_pieces or by_hand(run.no_driving):
+    if in_pieces or handled:
         off, turned = np.full_like(off, np.nan), turned[:0]
     known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0
     # The counters are unwrapped, and bridged where they leapt.
     left, right = wiring_of(robot.effects).wheels(counters.left, counters.right)
     travel = 0.5 * np.diff(left * robot.left_tick + right * robot.right_tick)
-    stretches = [(part.begin, part.end) for part in run.no_driving or ()]
-    no_driving = touched(counters.time, stretches)
+    no_driving = touched(counters.time, [(part.begin, part.end) for part in handled])
     return RunFigures(
         run,
         float(np.abs(travel[~no_driving]).sum()),

@@ -24,7 +24,7 @@ from werrimbi_odom.inference.fitting.likelihood import (
     stated_shares,
     wheel_covariance,
 )
-from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
+from werrimbi_odom.inference.fitting.prediction import Prediction, extrinsics_of, right_handed
 from werrimbi_odom.inference.fitting.quantisation import quantisation_of_legs, quantisation_variance
 from werrimbi_odom.inference.fitting.reference_walk import map_walk, walked
 from werrimbi_odom.model.effect import view_of
@@ -56,7 +56,8 @@ class LegErrors:
     turn: Floats
     """Heading change, shape (m,) [rad]."""
     heading: Floats
-    """Heading at the leg's start in the reference's frame, shape (m,); NaN where unknown [rad]."""
+    """Heading of the robot at the leg's start, in the reference's frame, shape (m,); NaN where
+    unknown [rad]."""
 
     @property
     def distance(self) -> Floats:
@@ -147,6 +148,8 @@ def errors_of(
         reference = _reference_part(
             robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind, shares, start[:, 2]
         )
+    turned_by = extrinsics_of(model, runs).yaw
+    error, wheels, reference = _of_the_robot(turned_by, error, wheels, reference)
     return LegErrors(
         error,
         wheels + reference,
@@ -155,8 +158,25 @@ def errors_of(
         wheels,
         prediction.along,
         prediction.turn,
-        heading,
+        heading - turned_by,
     )
+
+
+def _of_the_robot(
+    yaw: float | Floats, error: Floats, wheels: Floats, reference: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Errors and covariances of legs in the axes of the robot, from those of the reference.
+
+    `yaw`: angle of the reference's forward axis relative to the robot's, of all legs or each [rad].
+    """
+    if not np.any(yaw):
+        return error, wheels, reference
+    turn = np.empty((len(error), 3, 3))
+    turn_into(turn, np.zeros(len(error)) + yaw)
+    turned = error.copy()  # a heading that was not measured leaves the position as it is
+    turned[:, :2] = (turn[:, :2, :2] @ error[:, :2, None])[..., 0]
+    wheels, reference = (turn @ each @ turn.transpose(0, 2, 1) for each in (wheels, reference))
+    return turned, wheels, reference
 
 
 def _headings(model: Model, runs: Concatenated, start: Floats) -> Floats:

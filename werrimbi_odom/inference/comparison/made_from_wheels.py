@@ -23,8 +23,9 @@ from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
+from werrimbi_odom.inference.legs.windows import later_than_all_before
 from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -131,7 +132,7 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     if rows.size <= rules.CIRCLE_FEWEST:
         return None
     ways, known = _ways(reference, rows)
-    turns = np.diff(np.unwrap(reference.yaw[rows]))
+    turns = wrap_all(np.diff(reference.yaw[rows]))
     turning = np.isfinite(turns)
     ticks = [robot.left_tick, robot.right_tick]
     moments = [reference.time[rows] - delay for delay in rules.CIRCLE_DELAYS]
@@ -161,7 +162,7 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
     rows: NDArray[np.intp] = np.flatnonzero(reference.has_position & inside)
     if rows.size == 0:
         return rows
-    rows = rows[np.concatenate([[True], np.diff(np.maximum.accumulate(reference.time[rows])) > 0])]
+    rows = rows[later_than_all_before(reference.time[rows])]
     gone = np.interp(reference.time[rows], counters.time, counters.way(robot, 1.0, np.inf))
     gone -= gone[0]
     way = min(rules.CIRCLE_WAY, float(gone[-1]) / (rules.CIRCLE_FEWEST + 2))
@@ -185,7 +186,7 @@ def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[list[Floats], b
     chord = np.abs(steps)
     known = bool(np.isfinite(yaw).all())
     if known:
-        turns = np.angle(np.exp(1j * np.diff(yaw)))
+        turns = wrap_all(np.diff(yaw))
         ahead = (steps * np.exp(-1j * (yaw[:-1] + 0.5 * turns))).real
         chord = np.where(ahead < 0.0, -chord, chord)
     steps_by = [chord / np.sinc(0.5 * turns / np.pi), chord] if known else [chord]

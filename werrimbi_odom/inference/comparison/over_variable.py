@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 
 _BINS = 12
@@ -82,8 +83,11 @@ def wheel_errors(comparison: Comparison, index: int, side: int) -> tuple[Floats,
     sums = np.concatenate([[0.0], np.cumsum(rolled)])
     last = np.maximum(end, begin + 1) - 1
     middle = 0.5 * (angle.start[begin] + angle.end[last])
-    along, turned = path.intervals[:, 0], path.intervals[:, 2]
-    return middle, along + side * 0.5 * robot.track * turned, sums[end] - sums[begin]
+    # From the point and the axes of the reference to those of the robot.
+    view, turned = view_of(robot.effects), path.intervals[:, 2]
+    along = np.cos(view.yaw) * path.intervals[:, 0] - np.sin(view.yaw) * path.intervals[:, 1]
+    error = along + (view.left + side * 0.5 * robot.track) * turned
+    return middle, error, sums[end] - sums[begin]
 
 
 def over_a_turn(angle: Floats, error: Floats, travel: Floats) -> tuple[Floats, Floats, Floats]:

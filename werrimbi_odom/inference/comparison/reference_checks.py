@@ -25,7 +25,8 @@ from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.cutting import leg_ends
-from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats, wrap, wrap_all
 
 _PAIRED = 100
 """Stretches of a drive whose pairwise slopes are used (Theil-Sen)."""
@@ -99,7 +100,8 @@ def remarks_on(prepared: PreparedRuns) -> tuple[ReferenceRemark, ...]:
                 paths.append((prepared.runs[index], item, run.gap))
     if not paths:
         return ()
-    cuts = [_cuts(item, gap, prepared.options.leg) for _, item, gap in paths]
+    mount = view_of(prepared.robot.effects).yaw
+    cuts = [_cuts(item, gap, prepared.options.leg, mount) for _, item, gap in paths]
     runs = [run for run, _, _ in paths]
     wander = min(rules.SUSPECT_WANDER, max(noise.wander[1] for _, noise in prepared.noises))
     return (
@@ -125,24 +127,27 @@ class _Cuts:
     surge: Floats
     """Gain of speed over forward travel [1/s]: a delay stretches the path in proportion to it."""
     angle: Floats
-    """Angle from the reference's heading to its path, reversed in backward driving [rad]; NaN if
+    """Angle from the measured heading to the path, reversed in backward driving [rad]; NaN if
     unknown."""
     turns: tuple[float, float]
     """Total turn over all cuts, turning ones too, by wheels and as measured, both times the sign of
     the wheels' turn."""
 
 
-def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
+def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float, mount: float) -> _Cuts:
+    """Cuts in the axes of the robot, from which the file says that the reference's are turned."""
     rolled = np.nan_to_num(item.relative)
+    forward = np.cos(mount) * rolled[:, 0] - np.sin(mount) * rolled[:, 1]
+    along = np.concatenate([[0.0], np.cumsum(forward)])
     way = np.concatenate([[0.0], np.cumsum(np.hypot(rolled[:, 0], rolled[:, 1]))])
     length = rules.SUSPECT_CUT * leg
     ends = leg_ends(way, gap, length)
     way_of = np.diff(way[ends])
-    ahead = np.diff(np.concatenate([[0.0], np.cumsum(rolled[:, 0])])[ends])
-    speed = np.gradient(np.concatenate([[0.0], np.cumsum(rolled[:, 0])]), item.time)[ends]
+    ahead = np.diff(along[ends])
+    speed = np.gradient(along, item.time)[ends]
     by_wheels = np.diff(np.concatenate([[0.0], np.cumsum(rolled[:, 2])])[ends])
     moved = np.diff(item.measured[ends])
-    yaw = item.measured_yaw[ends]
+    yaw = item.measured_yaw[ends] - mount
     turned = wrap_all(np.diff(yaw))
     whole = np.diff(np.concatenate([[0], np.cumsum(gap)])[ends]) == 0
     turn = np.where(np.isfinite(turned), turned, by_wheels)
@@ -223,12 +228,8 @@ def _lengths(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[Referen
     off = looked.value / usual - 1.0
     odd = _odd(looked, off, rules.SUSPECT_SHARE)
     if odd.size >= rules.SUSPECT_STRETCHES:
-        yield ReferenceRemark(
-            "short",
-            float(np.median(off[odd])),
-            usual - 1.0,
-            tuple(_as_stretches(runs, looked, off, odd)),
-        )
+        short = tuple(_as_stretches(runs, looked, off, odd))
+        yield ReferenceRemark("short", float(np.median(off[odd])), usual - 1.0, short)
 
 
 def _angles(
@@ -254,7 +255,7 @@ def _angles(
         yield ReferenceRemark(
             "sideways_by_place", size, 0.0, tuple(_as_stretches(runs, looked, off, odd))
         )
-    mount = float(wrap_all(np.array([axis + usual]))[0])
+    mount = wrap(float(axis) + usual)
     sure = rules.SUSPECT_SIGMA * float(np.median(looked.sigma))
     if max(rules.SUSPECT_ANGLE, sure) < abs(mount) < rules.ASKEW and drift is None:
         yield ReferenceRemark("sideways", mount)
@@ -285,18 +286,14 @@ def _drifting(looked: _Stretches, off: Floats) -> float | None:
 
 def _metre(cuts: list[_Cuts]) -> Iterator[ReferenceRemark]:
     """Radii and base off by the same factor: lengths are wrong, turns are not."""
-    share = np.concatenate([own.share for own in cuts]) if cuts else np.zeros(0)
+    share = np.concatenate([own.share for own in cuts])
     by_wheels, measured = (sum(own.turns[side] for own in cuts) for side in (0, 1))
-    if (
-        share.size < rules.SUSPECT_CUTS * rules.SUSPECT_STRETCHES
-        or by_wheels < rules.SUSPECT_TURNED
-    ):
+    few = share.size < rules.SUSPECT_CUTS * rules.SUSPECT_STRETCHES
+    if few or by_wheels < rules.SUSPECT_TURNED:
         return
     usual = float(np.median(share))
     scatter = MEDIAN_TO_SIGMA * float(np.median(np.abs(share - usual)))
     sigma = np.sqrt(0.5 * np.pi / share.size) * scatter
-    off = abs(usual - 1.0)
-    if off > max(rules.SUSPECT_METRE, rules.SUSPECT_SIGMA * sigma) and (
-        abs(measured / by_wheels - 1.0) < rules.SUSPECT_TURNS_AGREE
-    ):
+    off = abs(usual - 1.0) > max(rules.SUSPECT_METRE, rules.SUSPECT_SIGMA * sigma)
+    if off and abs(measured / by_wheels - 1.0) < rules.SUSPECT_TURNS_AGREE:
         yield ReferenceRemark("metre", usual - 1.0)

@@ -14,7 +14,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -23,9 +23,9 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
 
     A jump is an error of one interval that exceeds the dispersion of all errors, the errors of its
     neighbours, and a share of the motion around it (over `JUMP_SPAN` at least) by more than a count
-    of both wheels of `robot`. No wrong model causes such errors. Intervals in a `gap` (n - 1,) are
-    not tested. A spike is recorded with its neighbours: the poses before and after it err as well,
-    so it comes and goes in several steps.
+    of both wheels of `robot`, and a step of a heading that is given in steps. No wrong model causes
+    such errors. Intervals in a `gap` (n - 1,) are not tested. A spike is recorded with its
+    neighbours: the poses before and after it err as well, so it comes and goes in several steps.
     """
     tested = ~gap & np.isfinite(item.intervals).any(axis=1)
     errors = np.where(np.isfinite(item.intervals) & tested[:, None], item.intervals, 0.0)
@@ -64,11 +64,22 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_], robot: Robot) -> Floats:
     # A reference's noise has the axes of its room, the robot's turn: of two, the larger is of both.
     scatter[:2] = scatter[:2].max()
     count = np.array([0.5, 0.5, 1.0 / robot.track]) * (robot.left_tick + robot.right_tick)
+    count[2] += _step_of(item.measured_yaw)
     wrong = np.abs(left) > np.maximum(rules.JUMP_SCATTER * scatter, least) + count
     total = _windows(left, rules.JUMP_NEIGHBOURS, "constant").sum(axis=-1)
     stays = np.abs(total) > rules.JUMP_LASTS * np.abs(left)
     returns = _windows(wrong & ~stays, rules.JUMP_NEIGHBOURS).any(axis=-1)
     return np.where(wrong | returns, left, 0.0)
+
+
+def _step_of(yaw: Floats) -> float:
+    """Step in which a heading is given [rad]; 0 where it is not seen to be."""
+    changes = np.abs(wrap_all(np.diff(yaw)))
+    changes = changes[changes > 1e-9]  # NaN and the rounding of a whole turn are left out
+    if not changes.size:
+        return 0.0
+    step = float(changes.min())
+    return step if np.count_nonzero(changes < 1.01 * step) >= rules.JUMP_STEPS else 0.0
 
 
 def _windows(
@@ -108,9 +119,7 @@ def pieces_between(jumps: Floats) -> NDArray[np.intp]:
     """
     happened = np.concatenate([[False], np.any(jumps != 0.0, axis=1), [False]])
     edges = np.flatnonzero(happened[1:] != happened[:-1])
-    lasting = jumped_legs(jumps, edges, "absolute")[::2] if edges.size else happened[:0]
-    found = np.zeros(jumps.shape[0] + 1, dtype=np.intp)
-    for (first, last), stays in zip(edges.reshape(-1, 2).tolist(), lasting, strict=True):
-        found[last:] += int(stays)
-        found[first + 1 : last] = -1
-    return found
+    begun = np.zeros(jumps.shape[0] + 1, dtype=np.intp)
+    if edges.size:
+        begun[edges[1::2]] = jumped_legs(jumps, edges, "absolute")[::2]
+    return np.where(happened[1:] & happened[:-1], -1, np.cumsum(begun))

@@ -42,7 +42,7 @@ def reference_noise(
     """
     reading = quantisation_variance(robot)
     positions = [item.measured.real for item in residuals]
-    headings = [item.measured_yaw for item in residuals]
+    headings = [np.unwrap(item.measured_yaw) for item in residuals]
     roundings = _rounding(positions), _rounding(headings)
     if kind == "incremental":
         errors = np.concatenate([_steps(item) for item in residuals])
@@ -216,11 +216,9 @@ def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
 def _steps(item: Residual) -> Floats:
     """Differences of errors of neighbouring intervals, scaled to one, without the systematic part.
 
-    Shape (n - 2, 4): x, y, yaw, and the path of the two intervals.
+    Shape (n - 2, 3): x, y, yaw.
     """
-    path = np.hypot(item.relative[:, 0], item.relative[:, 1])
-    left = np.diff(item.intervals, axis=0) / np.sqrt(2.0)
-    return np.concatenate([left, 0.5 * (path[1:] + path[:-1])[:, None]], axis=1)
+    return np.asarray(np.diff(item.intervals, axis=0) / np.sqrt(2.0))
 
 
 def _growing(columns: Floats) -> float | None:
@@ -269,12 +267,15 @@ def _less(variance: float | None, reading: float, least: float) -> float | None:
     Counts that the driving interpolates err by less than that: taken off whole, nothing would be
     left, whatever the noise.
     """
-    return None if variance is None else float(np.sqrt(max(variance - reading, least)))
+    return None if variance is None else float(np.sqrt(max(variance - reading, least, 1e-18)))
 
 
 def _rounding(values: Sequence[Floats]) -> float:
-    """Quantisation variance: uniform over the smallest difference between written values."""
-    steps = [np.diff(np.unique(part[np.isfinite(part)])) for part in values]
-    every = np.concatenate(steps) if steps else np.zeros(0)
+    """Quantisation variance: uniform over the smallest difference between written values.
+
+    Or between such differences, as a robot that goes steadily comes nowhere near where it was.
+    """
+    steps = np.concatenate([np.diff(np.unique(part[np.isfinite(part)])) for part in values])
+    every = np.concatenate([steps, np.diff(np.unique(steps))])
     every = every[every > 1e-9]
-    return float(every.min(initial=np.inf)) ** 2 / 12.0 if every.size else 0.0
+    return float(every.min()) ** 2 / 12.0 if every.size else 0.0

@@ -151,14 +151,11 @@ def fitted_heading(
     pieces: NDArray[np.intp] | None = None,
 ) -> float:
     """Start heading that best aligns the predicted path with the measured one, piece by piece."""
-    known = np.isfinite(measured)
     of = np.zeros(measured.size, dtype=np.intp) if pieces is None else pieces
-    total = 0j
-    for piece in np.unique(of[known & (of >= 0)]):
-        own = known & (of == piece)
-        shape = predicted[own] - predicted[own][0]
-        total += np.sum(np.conj(shape) * (measured[own] - measured[own][0]))
-    return float(np.angle(total))
+    rows = np.flatnonzero(np.isfinite(measured) & (of >= 0))
+    _, first, piece = np.unique(of[rows], return_index=True, return_inverse=True)
+    path, seen = (each[rows] - each[rows][first][piece] for each in (predicted, measured))
+    return float(np.angle(np.sum(np.conj(path) * seen)))
 
 
 def _facing(

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -252,6 +253,8 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     if longest not in small or not factor.low > rules.HONEST_WITHIN:
         longest = max(small, key=lambda item: item.consistency_of_dispersion.nees)
         factor = longest.all.noise
+    if _of_the_reference(scatter, longest.consistency_of_dispersion.nees, factor):
+        return "comes and goes", factor, longest.leg
     if factor.determined:
         if factor.low > rules.ALIKE * short.high:
             return "grows" if longest.leg > main.leg else "comes and goes", factor, longest.leg
@@ -265,3 +268,16 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
         return "too small", factor, longest.leg
     growing = trend_of(scatter) == "longer" or longest.leg > main.leg
     return "grows" if growing else "comes and goes", factor, longest.leg
+
+
+def _of_the_reference(scatter: Sequence[AtLength], nees: float, factor: NoiseFactor) -> bool:
+    """Whether NEES is too large by the reference's own noise: nearly alike over all lengths.
+
+    `nees`: at the length of `factor`. It is 1 + share * (factor - 1), with the wheels' share.
+    """
+    judged = judged_lengths(scatter)
+    if len(judged) < 2 or not nees - 1.0 < rules.WHEELS_SHARE * (factor.value - 1.0):
+        return False
+    first, last = judged[0], judged[-1]
+    grown = max(last.nees - 1.0, 0.0) / max(first.nees - 1.0, 1e-9)
+    return bool(grown <= (last.leg / first.leg) ** rules.WHEELS_GROWTH)

@@ -36,15 +36,14 @@ from werrimbi_odom.inference.diagnosis.effects_of_robot_file import (
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
 from werrimbi_odom.inference.diagnosis.forward_selection import (
-    Instead,
     Round,
     fit_calibration,
-    instead_of_calibration,
     refit_to_rest,
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect, lasting
+from werrimbi_odom.inference.diagnosis.instead_of_calibration import Instead, instead_of_calibration
 from werrimbi_odom.inference.diagnosis.misfit import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.no_noise import with_what_is_no_noise
 from werrimbi_odom.inference.diagnosis.p_values import chance, disagreeing, p_value_by_parts

@@ -85,7 +85,12 @@ def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tupl
     Effects that read a channel are kept: their other inputs are not known here.
     """
     effects = able(effects, runs, robot)
-    return _without(effects, ON_THE_FLOOR, runs.drive(robot)) if runs.own_axes else effects
+    if not runs.own_axes:
+        return effects
+    drive = runs.drive(robot)
+    return tuple(
+        each for each in effects if each.lacks(()) or not _reads(each, ON_THE_FLOOR, drive)
+    )
 
 
 def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:
@@ -123,13 +128,6 @@ def _of_a_gyro(effect: Effect) -> bool:
     """Whether an effect is of headings that another sensor gives than places."""
     view = usual_view(effect)
     return bool(view.heading_delay != 0.0 or view.wander != 0.0)
-
-
-def _without(
-    effects: Sequence[Effect], inputs: frozenset[str], drive: Drive[Floats]
-) -> tuple[Effect, ...]:
-    """Effects that read none of some inputs; those that read a channel are kept."""
-    return tuple(each for each in effects if each.lacks(()) or not _reads(each, inputs, drive))
 
 
 def _reads(effect: Effect, inputs: frozenset[str], drive: Drive[Floats]) -> bool:

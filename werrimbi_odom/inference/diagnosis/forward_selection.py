@@ -13,16 +13,17 @@ from typing import Any
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.diagnosis.either_sign import cheapest_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences, fall_of_cost
+from werrimbi_odom.inference.diagnosis.fit_statistics import wald_test
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.p_values import chance_of_score
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import (
     Fitted,
-    cheapest_of,
-    extension_p_value,
     fitted,
     refined,
 )
+from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.inference.fitting.candidate import Candidate, names_with
 from werrimbi_odom.inference.fitting.candidate_starts import (
     looked_for,
@@ -34,8 +35,6 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
-    NUISANCES,
-    own_of,
 )
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.fitting.score_tests import (
@@ -99,46 +98,6 @@ def refit_to_rest(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
         jumps = zip(without_jumps(runs, point).excluded, at_edges(runs.runs), strict=True)
         point = replace(point, excluded=tuple(jumped | edge for jumped, edge in jumps))
     return fitted(runs, point, fit.names, fit.numbers, robot, rounds=4)
-
-
-@dataclass(frozen=True, slots=True)
-class Instead:
-    """An effect in place of a calibration."""
-
-    effect: str
-    total: float
-    """Cost and penalty, comparable with the calibrated model's."""
-
-
-def instead_of_calibration(
-    runs: Concatenated, calibrated: Fitted, effects: Sequence[Effect], given: Robot
-) -> tuple[Instead, ...]:
-    """Effects that would do in place of the calibration that a model needs, cheapest first.
-
-    The multipliers are fixed at the given robot's.
-    """
-    model = calibrated.point.model
-    point = as_given(calibrated.point, given)
-    nuisances = model.nuisance_parameters
-    held = {applied.name for applied in model.robot.effects}
-    # In a map made by a lidar, whose metric scale is its own.
-    wanders = point.options.reference_kind == "local_map"
-    looked_at = candidates(effects, held, runs.channels, len(runs.runs), own_scale=wanders)
-    found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
-    results = []
-    penalty = calibrated.penalty_of_one
-    best = sorted(best_of_each(found), key=lambda score: penalty * score.degrees - score.gain)
-    for score in worth_fitting(best, most=rules.INSTEAD_FITTED):
-        start = started_with(runs, point, score)
-        numbers = (*parameters_with(calibrated.numbers, score.candidate), *nuisances)
-        fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
-        if not fit.at_bound:
-            own = [each.name for each in own_of(numbers) if each.name not in NUISANCES]
-            owned = sum(name in values for values in fit.point.model.own for name in own)
-            paid = penalty * len(fit.free) + calibrated.penalty_of_own * owned
-            total = fit.minus_two_log_likelihood + paid * calibrated.scatter
-            results.append(Instead(score.candidate.name, total))
-    return tuple(sorted(results, key=lambda item: item.total))
 
 
 def search_round(
@@ -262,12 +221,21 @@ def without_nested(runs: Concatenated, tried: Sequence[Fitted]) -> list[Fitted]:
             name = wider.names[-1]
             needless = (
                 dearer
-                or extension_p_value(wider) > rules.SURE
+                or _extension_p_value(wider) > rules.SURE
                 or homogeneity_of_effect(runs, wider, name, find(extended).parameters) > rules.SURE
             )
             name = name if needless else extended
             kept = [fit for fit in kept if fit.names[-1] != name]
     return kept
+
+
+def _extension_p_value(fit: Fitted) -> float:
+    """P-value of what the newest effect of a model has beyond the one that it extends (Wald)."""
+    effect = fit.newest
+    nested = find(effect.extends).parameters
+    freed = [key for key in effect.parameters if key not in nested]
+    rise, degrees = wald_test(effect, freed, fit.design, fit.covariance, fit.point)
+    return fisher_survival(rise / max(degrees, 1), max(degrees, 1), fit.spare)
 
 
 def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:

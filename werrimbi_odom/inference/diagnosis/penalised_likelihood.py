@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.fit_statistics import (
@@ -33,7 +32,6 @@ from werrimbi_odom.inference.diagnosis.size_statistics import (
     freedom_of_sizes,
     variance_inflation_of_sizes,
 )
-from werrimbi_odom.inference.distributions import fisher_survival
 from werrimbi_odom.inference.fitting.clusters import widening
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model
@@ -157,34 +155,6 @@ class Fitted:
     def total(self) -> float:
         """Cost with all penalties."""
         return self.cost + self.needless_gain + self.penalty * self.scatter
-
-
-def cheapest_of(fits: Sequence[Fitted]) -> Fitted:
-    """The cheapest of the fits of one effect, with the cheapest of the other sign as `or_else`.
-
-    A bump, and a flat across from it beside a larger radius, do the same once a turn. Where either
-    may be true, a standard deviation about one of them says nothing of the other.
-    """
-    best, *others = sorted(fits, key=lambda fit: fit.total)
-    effect = best.newest
-    signs = [name for name in effect.parameters if effect.has_null(name)]
-
-    def side(fit: Fitted, name: str) -> float:
-        value = applied_of(fit.point.model.robot.effects, effect.name).values[name]
-        return (
-            math.copysign(1.0, value - effect.nulls[name]) if value != effect.nulls[name] else 0.0
-        )
-
-    other = next(
-        (
-            fit
-            for fit in others
-            if fit.total - best.total < rules.RIVAL * best.scatter
-            and any(side(fit, name) * side(best, name) < 0.0 for name in signs)
-        ),
-        None,
-    )
-    return replace(best, or_else=other)
 
 
 def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
@@ -324,12 +294,3 @@ def _without_sizes(model: Model, given: Robot) -> Model:
         if item.effect.has_null(name)
     }
     return Model(changed(model.robot, nulls), model.own)
-
-
-def extension_p_value(fit: Fitted) -> float:
-    """P-value of what the newest effect of a model has beyond the one that it extends (Wald)."""
-    effect = fit.newest
-    nested = find(effect.extends).parameters
-    freed = [key for key in effect.parameters if key not in nested]
-    rise, degrees = wald_test(effect, freed, fit.design, fit.covariance, fit.point)
-    return fisher_survival(rise / max(degrees, 1), max(degrees, 1), fit.spare)

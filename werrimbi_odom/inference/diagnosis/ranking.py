@@ -34,7 +34,8 @@ class Ranked:
     """Corrected for the number of effects tried. None where nothing was tested: a set-up mistake is
     found by a search of all set-ups, whose statistic has no known distribution."""
     train: Sides | None
-    """Position error before and after adding it [m]; None where it was not fitted.
+    """Position error before and after adding it [m], or heading error where only headings were
+    measured [rad]; None where it was not fitted.
 
     An effect is held against the same model without it: where base and radii are fitted with it, so
     are they before it, as in `add`."""

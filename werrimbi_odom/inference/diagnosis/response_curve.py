@@ -18,6 +18,7 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.effect_support import support_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, summed_over_legs
+from werrimbi_odom.inference.diagnosis.forward_selection import tried_with
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount, step_jacobians
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -74,9 +75,7 @@ def response(
     path = path_of(point.model, runs)
     of_left, of_right = step_jacobians(runs, path, [amount], point)
     left, right = (_marks(side, edges) for side in values)
-    change = summed_over_legs(runs, left, of_left)
-    if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
-        change = change + summed_over_legs(runs, right, of_right)
+    change = summed_over_legs(runs, left, of_left) + summed_over_legs(runs, right, of_right)
     marks = unexpected(runs, point, prediction).marks(change)
     flat = marks[..., : change.shape[-1]].reshape(rest.size, -1)
     length = np.sqrt(np.sum(flat**2, axis=0))
@@ -107,11 +106,11 @@ def _centre(values: tuple[Floats, Floats], edges: Floats, part: int) -> float:
 
 
 _FOR_CALIBRATION = {
-    "track_width": ("heading", "turn", ("yaw_rate", "yaw_rate_size")),
-    "unequal_wheel_radii": ("heading", "travel", ("speed", "distance")),
-    "wheel_radius_scale": ("along", "travel", ("speed", "distance")),
+    "track_width": (Amount("heading", "turn"), ("yaw_rate", "yaw_rate_size")),
+    "unequal_wheel_radii": (Amount("heading", "travel"), ("speed", "distance")),
+    "wheel_radius_scale": (Amount("along", "travel"), ("speed", "distance")),
 }
-"""Channel, amount and variable in which a wrong size shows as a straight line."""
+"""Error and variables in which a wrong size shows as a straight line."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,16 +173,9 @@ def _own_cell(diagnosis: Diagnosis, effect: str | None) -> Dependence | None:
     if effect is None:
         return by_worth[0] if diagnosis.verdict == "unknown" else None
     if effect in _FOR_CALIBRATION:
-        channel, per, names = _FOR_CALIBRATION[effect]
-        for name in names:
-            for cell in by_worth:
-                if (cell.amount.channel, cell.amount.per, cell.variable.name) == (
-                    channel,
-                    per,
-                    name,
-                ):
-                    return cell
-        return None
+        amount, names = _FOR_CALIBRATION[effect]
+        of_it = (cell for name in names for cell in by_worth if cell.variable.name == name)
+        return next((cell for cell in of_it if cell.amount == amount), None)
     for this in diagnosis.rounds:
         for score in this.scores:
             if score.candidate.name != effect:
@@ -205,11 +197,8 @@ def _after(diagnosis: Diagnosis, effect: str) -> Point | None:
     """The fitted model with the effect."""
     if effect in diagnosis.final.names or effect in diagnosis.found:
         return diagnosis.final.point
-    for this in diagnosis.rounds:
-        for fit in this.tried:
-            if fit.names[-1] == effect:
-                return fit.point
-    return None
+    tried = tried_with(diagnosis.rounds, effect)
+    return tried[0].point if tried else None
 
 
 def _values(

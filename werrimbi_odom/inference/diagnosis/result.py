@@ -62,7 +62,8 @@ class Diagnosis:
     deviations allow for what was chosen (`uncertainty.with_spread`)."""
     runs: Concatenated
     train: Sides
-    """Position error with the robot as given, and with everything found [m]."""
+    """Position error with the robot as given, and with everything found [m]; of headings alone
+    theirs [rad]."""
     holdout: Sides
     headings: tuple[Sides, Sides]
     """Heading errors of `train` and `holdout` [rad]: headings alone are judged by them."""

@@ -9,15 +9,16 @@ half. One that beats the chosen effect in a half by the margin for rivals is a r
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.calibration_parametrisation import sizes_of
-from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round, near_to
+from werrimbi_odom.inference.calibration_parametrisation import name_of_base, sizes_of
+from werrimbi_odom.inference.diagnosis.forward_selection import Round, near_to
+from werrimbi_odom.inference.diagnosis.instead_of_calibration import Instead
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
@@ -44,11 +45,12 @@ def rivals_of(
     first: str, rounds: tuple[Round, ...], final: Fitted, instead: tuple[Instead, ...]
 ) -> tuple[str, ...]:
     """The first effect and its rivals, which the runs cannot tell from it; empty if it has none."""
-    if first in CALIBRATED:
-        named = [first, *_but_certain(_sizes_in_place_of(first, final), final)]
+    size = _size(first, final)
+    if size in CALIBRATED:
+        named = [first, *_told(_but_certain(_sizes_in_place_of(size, final), final), final)]
         limit = final.total + rules.RIVAL * final.scatter
         named += [item.effect for item in instead if item.total < limit]
-        named = list(dict.fromkeys((*named, *_in_place_of_a_size(first, rounds, final))))
+        named = list(dict.fromkeys((*named, *_in_place_of_a_size(size, rounds, final))))
         return tuple(named) if len(named) > 1 else ()
     this = round_of(first, rounds, final)
     # What was found beside it explains something else, however alike the gains are.
@@ -87,10 +89,27 @@ def rivals_of_others(
         near: tuple[str, ...] = ()
         if name in final.names:
             near = _near(name, rounds[final.names.index(name)])
-        elif name in CALIBRATED:
-            near = (*_sizes_in_place_of(name, final), *own_scale_instead(name, final, given, laid))
+        elif (size := _size(name, final)) in CALIBRATED:
+            near = _told(_sizes_in_place_of(size, final), final)
+            near = (*near, *own_scale_instead(name, final, given, laid))
         others[name] = tuple(other for other in near if other not in (*found, *rivals))
     return {name: near for name, near in others.items() if near}
+
+
+def _size(name: str, final: Fitted) -> str:
+    """The calibration effect that a name stands for: the base of a robot that skids has its own."""
+    return "track_width" if name not in final.names and name == _base(final) else name
+
+
+def _told(sizes: Iterable[str], final: Fitted) -> tuple[str, ...]:
+    """Calibration effects by the names that they are told by."""
+    base = _base(final)
+    own = "track_width" if base in final.names else base
+    return tuple(own if name == "track_width" else name for name in sizes)
+
+
+def _base(final: Fitted) -> str:
+    return name_of_base(final.point.model.robot)
 
 
 def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
@@ -130,6 +149,7 @@ def own_scale_instead(
     Positions are measured by tape or by satellites, whose metric scale is right. The scale of a
     gyro is unknown, and no tape measures it.
     """
+    name = _size(name, final)
     if not laid.headings_alone or name not in CALIBRATED:
         return ()
     size = sizes_of(final.point.model.robot).over(sizes_of(given)).as_effects[name]

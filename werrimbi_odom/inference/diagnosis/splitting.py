@@ -43,7 +43,7 @@ def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
     time = run.ticks.time if run.reference is None else run.reference.time[_measured(run.reference)]
     share = 1.0 - len(rules.SET_ASIDE) / rules.SET_ASIDE_BLOCKS
     at = float(np.quantile(time, share)) if time.size else np.inf
-    return tuple(_between(runs, -np.inf, at)), tuple(_between(runs, at, np.inf))
+    return (_between(run, -np.inf, at),), (_between(run, at, np.inf),)
 
 
 def _held_whole(few: Sequence[int], poses: Sequence[int]) -> set[int]:
@@ -104,19 +104,16 @@ def _without(run: Run, reference: Reference, kept: np.ndarray) -> Run:
     return replace(run, reference=reference.chosen(kept), taken_out=(*run.taken_out, *gone))
 
 
-def _between(runs: Sequence[Run], begin: float, end: float) -> list[Run]:
-    parts = []
-    for run in runs:
-        ticks, reference = run.ticks, run.reference
-        which = (ticks.time >= begin) & (ticks.time < end)
-        cut = replace(
-            ticks,
-            time=ticks.time[which],
-            left=ticks.left[which],
-            right=ticks.right[which],
-            channels={name: values[which] for name, values in ticks.channels.items()},
-        )
-        if reference is not None:
-            reference = reference.chosen((reference.time >= begin) & (reference.time < end))
-        parts.append(replace(run, ticks=cut, reference=reference))
-    return parts
+def _between(run: Run, begin: float, end: float) -> Run:
+    ticks, reference = run.ticks, run.reference
+    which = (ticks.time >= begin) & (ticks.time < end)
+    cut = replace(
+        ticks,
+        time=ticks.time[which],
+        left=ticks.left[which],
+        right=ticks.right[which],
+        channels={name: values[which] for name, values in ticks.channels.items()},
+    )
+    if reference is not None:
+        reference = reference.chosen((reference.time >= begin) & (reference.time < end))
+    return replace(run, ticks=cut, reference=reference)

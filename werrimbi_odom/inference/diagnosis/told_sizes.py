@@ -20,13 +20,13 @@ from werrimbi_odom.inference.diagnosis.calibration_selection import (
     sizes_needed,
     with_sizes,
 )
+from werrimbi_odom.inference.diagnosis.either_sign import variances_by_sign
 from werrimbi_odom.inference.diagnosis.forward_selection import Round, tried_with
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.uncertainty import (
     as_written,
     noises_of,
-    variances_by_sign,
     with_spread,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated

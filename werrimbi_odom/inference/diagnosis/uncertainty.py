@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +14,6 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import with_sizes_in_multipliers
 from werrimbi_odom.inference.diagnosis.calibration_selection import (
     FreeSizes,
-    sizes_needed,
-    with_sizes,
 )
 from werrimbi_odom.inference.diagnosis.fit_statistics import grain_of
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -129,34 +127,6 @@ def with_spread(
     wider = np.sqrt(variances / np.diag(within))
     covariance[np.ix_(told, told)] = within * np.outer(wider, wider)
     return replace(fit, covariance=covariance)
-
-
-def variances_by_sign(
-    runs: Concatenated, either: Iterable[Fitted], given: Robot, wanted: Collection[str]
-) -> dict[str, float]:
-    """Variances of shared parameters, by name, for the signs that effects may have (`or_else`).
-
-    A flat instead of a bump goes with another base and another radius. Each sign has a probability
-    by its cost and penalty, as all choices do (`model_averaged_covariance`). The effect's own size
-    has none here: that of the other sign is told beside it. `either`: fits with an effect as their
-    newest, to these runs.
-    """
-    found: dict[str, float] = {}
-    for fit in either:
-        other = fit.or_else
-        if other is None:
-            continue
-        share = 1.0 / (1.0 + math.exp(0.5 * (other.total - fit.total) / fit.scatter))
-        robots = []
-        for each in (fit, other):
-            sizes = sizes_needed(each, given, wanted)
-            robots.append(with_sizes(runs, each, given, sizes).point.model.robot)
-        own = f"{fit.newest.name}."
-        for name in (*MULTIPLIERS, *(number.name for number in shared_of(fit.numbers))):
-            if not name.startswith(own):
-                here, there = (value_of(robot, name) for robot in robots)
-                found[name] = found.get(name, 0.0) + share * (there - here) ** 2
-    return found
 
 
 def _optional(effect: Effect) -> Law:

@@ -20,7 +20,6 @@ from werrimbi_odom.inference.fitting.prediction import (
     path_of,
     right_handed,
 )
-from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats
 
 CONSTANT = "constant"
@@ -115,35 +114,15 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
         ),
         Variable("heading", "rad", heading, heading, "turns", ("heading",)),
     ]
-    for harmonic in (1, 2):
-        times = "" if harmonic == 1 else "_twice"
-        found += [
-            Variable(
-                f"left_wheel_angle{times}",
-                "rad",
-                drive.left_angle.mean,
-                drive.left_angle.mean,
-                "turns",
-                ("left_angle",),
-                True,
-                harmonic,
-            ),
-            Variable(
-                f"right_wheel_angle{times}",
-                "rad",
-                drive.right_angle.mean,
-                drive.right_angle.mean,
-                "turns",
-                ("right_angle",),
-                True,
-                harmonic,
-            ),
-        ]
+    for harmonic, times in ((1, ""), (2, "_twice")):
+        for side, span in (("left", drive.left_angle), ("right", drive.right_angle)):
+            name, angle, read = f"{side}_wheel_angle{times}", span.mean, (f"{side}_angle",)
+            found.append(Variable(name, "rad", angle, angle, "turns", read, True, harmonic))
     place = _places(runs, path.position, heading, path.yaw, right_handed(runs.start, view))
     if place is not None:
         found.append(Variable("position", "m", place[0], place[1], "place", ("x", "y")))
     for name, span in drive.channels.items():
-        found.append(robots(name, "", _mean(span), name))
+        found.append(robots(name, "", np.asarray(span.mean), name))
     if np.mean(np.abs(acceleration) > rules.GRIP) > rules.SELDOM_BEYOND:
         found = [item for item in found if item.name != "acceleration"]
     way = np.abs(drive.distance.change)
@@ -153,10 +132,6 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
     if runs.own_axes:
         found = [item for item in found if not ON_THE_FLOOR & set(item.looks_at)]
     return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)
-
-
-def _mean(span: Span[Floats]) -> Floats:
-    return np.asarray(span.mean)
 
 
 def _places(

@@ -21,8 +21,9 @@ from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.forward_selection import Instead, Round
+from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.holdout import Begun
+from werrimbi_odom.inference.diagnosis.instead_of_calibration import Instead
 from werrimbi_odom.inference.diagnosis.misfit import Misfit
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from, p_value_of_size
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides

@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Abrupt errors that no law explains: a push, a kick, a wheel slip, a jump of the reference.
 
-Reading order: `steps` (detection and estimation of steps), `events` (which steps are sudden,
-large and rare), `common_cause` (what they have in common).
+Reading order: `steps` (detection of steps), `groups` (which are one event, and what they come to),
+`events` (which are sudden, large and rare), `common_cause` (what they have in common).
 """

@@ -27,8 +27,8 @@ Common = Literal["reversal", "start or stop", "x", "y", "place"]
 PLACES: tuple[Common, ...] = ("x", "y", "place")
 
 MOVES = 1e-3
-"""Travel in an interval [m] from which its direction counts: the noise of standing counters is
-less."""
+"""Travel in an interval [m] from which its direction counts, and turn [rad] from which it is no
+standing: the noise of standing counters is less."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ import numpy as np
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.events.common_cause import Alike, alike
+from werrimbi_odom.inference.events.groups import groups_of, net_of, returned_by
 from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.prediction import predict_all
@@ -43,8 +44,8 @@ class Event:
     channel: Channel
     """Channel of the largest size in standard deviations; "reference" if the reference jumped."""
     size: float
-    """Size in that channel [m, rad]; for a jump of the reference its distance [m], or its angle if
-    it was in heading alone [rad]."""
+    """Size in that channel [m, rad]; for a jump of the reference its distance [m], or its angle
+    where that is the larger one in standard deviations [rad]."""
     std: float
     unit: str
     sizes: tuple[float, float, float]
@@ -125,7 +126,11 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
     for side in sides:
         runs = at_every_pose(side.runs)
         steps = steps_of(runs, side.point)
-        found = [(own, event) for own in _groups(steps) if (event := _event(steps, own, side))]
+        fitted = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0]
+        sizes = np.asarray(fitted.reshape(-1, 3), dtype=np.float64)
+        found = [
+            (own, event) for own in groups_of(steps) if (event := _event(steps, own, side, sizes))
+        ]
         events += [event for _, event in found]
         legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
         jumped.append(
@@ -138,7 +143,7 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
             spans[path] = spans.get(path, 0.0) + float(own.sum())
         time += float(runs.duration[~runs.gap].sum())
     if not events:
-        return Events()
+        return Events(many=many, kind=kind)
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
     many |= len(events) * rules.RARE > time or any(
@@ -181,24 +186,11 @@ def at_every_pose(runs: Sequence[MatchedRun]) -> Concatenated:
     return concatenated(found)
 
 
-def _groups(steps: Steps) -> list[list[int]]:
-    """Groups of step indices that are one event each, in order of time."""
-    runs = steps.runs
-    groups: list[list[int]] = []
-    last = -1
-    for index in sorted(range(len(steps.found)), key=lambda index: steps.found[index].leg):
-        leg = steps.found[index].leg
-        same = last >= 0 and runs.run_of_leg[last] == runs.run_of_leg[leg]
-        if same and runs.ends_at[leg] - runs.ends_at[last] <= rules.EVENT_JOIN:
-            groups[-1].append(index)
-        else:
-            groups.append([index])
-        last = leg
-    return groups
+def _event(steps: Steps, group: list[int], side: EventSide, fitted: Floats) -> Event | None:
+    """The event that a group of steps makes, if it is sudden and large.
 
-
-def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
-    """The event that a group of steps makes, if it is sudden and large."""
+    `fitted`: least-squares sizes of all steps together, (q, 3).
+    """
     runs = steps.runs
     spike = all(steps.found[index].shape == "spike" for index in group)
     # Beside a step, a spike only says how it is divided between two intervals.
@@ -214,8 +206,11 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     if np.diff(clock[before - 1 : after + 1]).max() > rules.EDGE:
         return None  # nor is the motion of the wheels known while their counters are silent
     scatter = float(steps.scatter[run])
-    sizes, spread = _net(steps, group, scatter, beside=False)
-    beside, spread_beside = _net(steps, group, scatter, beside=True)
+    of_robot = any(steps.found[index].shape == "robot" for index in group)
+    returned = spike or (not of_robot and returned_by(fitted[group] / steps.noise[legs]))
+    net = group[:1] if returned else group
+    sizes, spread = net_of(steps, net, scatter, beside=False)
+    beside, spread_beside = net_of(steps, net, scatter, beside=True)
     stds = np.sqrt(np.diag(spread))
     large = np.abs(sizes) > rules.EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
     sudden = np.abs(beside) > rules.EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
@@ -224,9 +219,8 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
     if not told.any():
         return None
     channel = int(np.argmax(np.where(told, np.abs(sizes) / stds, 0.0)))
-    jumped = all(steps.found[index].shape != "robot" for index in group) or _beyond_any_push(
-        sizes, len(group), float(runs.duration[first])
-    )
+    interval = float(runs.duration[first])
+    jumped = not of_robot or _beyond_any_push(sizes, len(group), interval)
     name: Channel = "reference" if jumped else CHANNELS[channel]
     size, std, unit = float(sizes[channel]), float(stds[channel]), UNITS[channel]
     if jumped and channel < 2:
@@ -234,7 +228,7 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
         std = float(np.sqrt(sizes[:2] @ spread[:2, :2] @ sizes[:2])) / size
     end = runs.ends_at[legs]
     middle = end if spike else end - 0.5 * runs.duration[legs]
-    weight = np.abs(_fitted(steps)[group, channel])
+    weight = np.abs(fitted[group, channel])
     seen = float(np.sum(weight * middle) / np.sum(weight))
     own = runs.runs[run]
     stamp = seen + own.record.delay
@@ -252,7 +246,7 @@ def _event(steps: Steps, group: list[int], side: EventSide) -> Event | None:
         (float(sizes[0]), float(sizes[1]), float(sizes[2])),
         (float(stds[0]), float(stds[1]), float(stds[2])),
         (float(runs.finish[first, 0]), float(runs.finish[first, 1])),
-        not spike,
+        not returned,
         min(steps.p_values[index] for index in group),
         _is_beside_lost(own.record, seen),
     )
@@ -267,33 +261,3 @@ def _is_beside_lost(record: AlignedRun, seen: float) -> bool:
 def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:
     """Whether no force moves a robot this far in one interval, or two."""
     return bool(np.hypot(*sizes[:2]) > 0.5 * rules.JOLT * (parts * interval) ** 2)
-
-
-def _fitted(steps: Steps) -> Floats:
-    """Least-squares sizes of all steps together, (q, 3)."""
-    return np.asarray(np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0].reshape(-1, 3))
-
-
-def _net(steps: Steps, group: list[int], scatter: float, *, beside: bool) -> tuple[Floats, Floats]:
-    """Total of a group of steps (3,), in the axes of the first step, and its covariance.
-
-    All steps are fitted together, if `beside` with a slow drift about the event as well. A prior of
-    1 m and 1 rad keeps undetermined coordinates finite.
-    """
-    legs = [steps.found[index].leg for index in group]
-    first, shape = steps.found[group[0]].leg, steps.found[group[0]].shape
-    others = np.ones(len(steps.found), dtype=np.bool_)
-    others[group] = False
-    own = steps.about(legs) if shape == "robot" else steps.columns[:, _columns(group[:1])]
-    parts = [own, steps.columns[:, _columns(np.flatnonzero(others).tolist())]]
-    columns = np.concatenate([*parts, steps.creeping(first)] if beside else parts, axis=-1)
-    square = columns.T @ columns / scatter
-    covariance = np.linalg.inv(square + np.eye(square.shape[0]))
-    solution = covariance @ (columns.T @ steps.white) / scatter
-    summed = np.zeros((3, columns.shape[1]))
-    summed[:, : own.shape[1]] = np.tile(np.eye(3), own.shape[1] // 3)
-    return summed @ solution, summed @ covariance @ summed.T
-
-
-def _columns(steps: Sequence[int]) -> list[int]:
-    return [3 * step + axis for step in steps for axis in range(3)]

@@ -87,15 +87,19 @@ class Steps:
         """Steps in some legs and their neighbours, each of its own size, (3 m, 3 k).
 
         In the axes of the first leg. However the error is divided between them, their sum is all of
-        it. (An unmeasured heading is not divided: that would be a sideways motion.)
+        it. (An unmeasured heading is not divided: that would be a sideways motion.) A neighbour in
+        which the robot stepped by itself, as it may between rare poses, is left to that step.
         """
         runs = self.runs
         first, last = min(legs) - 1, max(legs) + 1
         seen = self.innovations.known[legs[0]]
+        others = {step.leg for step in self.found if step.shape == "robot"}.difference(legs)
         near = [
             self.spread(np.array([leg]), np.array([legs[0]])) * (seen | (leg in legs))
             for leg in range(max(first, 0), min(last + 1, runs.count))
-            if runs.run_of_leg[leg] == runs.run_of_leg[legs[0]] and not runs.gap[leg]
+            if runs.run_of_leg[leg] == runs.run_of_leg[legs[0]]
+            and not runs.gap[leg]
+            and leg not in others
         ]
         return np.concatenate(near, axis=-1)
 
@@ -164,7 +168,8 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     scatter = np.maximum(scatter, _scatter(runs, gains["robot"], told))
     kept = _kept(runs, steps, columns, white.ravel(), scatter, tests)
     columns = columns[:, [3 * step + axis for step in kept for axis in range(3)]]
-    many = bool(new) and 2 * len(kept) > rules.MOST_EVENTS
+    # More at once than are looked for at all: none of them was taken.
+    many = bool(new) and (not steps or 2 * len(kept) > rules.MOST_EVENTS)
     steps, chances = [steps[step] for step in kept], [chances[step] for step in kept]
     spread = np.diagonal(told.covariance[0], axis1=1, axis2=2)
     return Steps(

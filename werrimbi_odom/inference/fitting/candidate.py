@@ -38,7 +38,7 @@ class Candidate:
             size = STEP * self.effect.parameters[amplitude].scale
             return tuple(null | {amplitude: size, phase: angle} for angle in (0.0, 0.5 * math.pi))
         if self.place is not None:  # as for its first harmonic, which dominates
-            return self.round_the_wheel[:: len(self.round_the_wheel) // 4][:2]
+            return self.round_the_wheel[:: max(len(self.round_the_wheel) // 4, 1)][:2]
         return tuple(
             null | {name: null[name] + STEP * item.scale}
             for name, item in self.effect.parameters.items()

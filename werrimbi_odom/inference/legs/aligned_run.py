@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +17,10 @@ from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
-from werrimbi_odom.inference.legs.matched_run import AlignedRun, poses_at, typical_sigma
-from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
+from werrimbi_odom.inference.legs.matched_run import AlignedRun, typical_sigma
 from werrimbi_odom.inference.legs.stray_poses import stray_poses
-from werrimbi_odom.inference.legs.usable_run import with_no_driving
-from werrimbi_odom.model.effect import wiring_of
+from werrimbi_odom.inference.legs.usable_run import clock_offset, with_no_driving
+from werrimbi_odom.inference.legs.windows import later_than_all_before
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -61,7 +61,9 @@ def record_of(
             f"{run.path}: fewer than two reference poses between the first tick "
             f"(t_s {first:g}) and the last ({last:g}); are both clocks the same?"
         )
-    measured = poses_at(reference, rows)
+    usable = reference.chosen(rows)
+    # Scans state their noise per match; a localiser states its absolute error.
+    measured = usable if usable.own_axes else replace(usable, sigma_xy=None, sigma_yaw=None)
     found = _silences(run, robot, counters, measured, taken_out, leg, turn)
     gap = touched(measured.time, [*map(_surely_around, found), *taken_out])
     return AlignedRun(
@@ -72,8 +74,8 @@ def record_of(
         gap,
         stray_poses(measured, gap),
         found,
-        typical_sigma(reference.sigma_xy),
-        typical_sigma(reference.sigma_yaw),
+        typical_sigma(usable.sigma_xy),
+        typical_sigma(usable.sigma_yaw),
         happened,
         run.at_rest,
     )
@@ -172,8 +174,7 @@ def _named(
 def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     within = (counters.time > begin) & (counters.time < end)
     time = np.concatenate([[begin], counters.time[within], [end]])
-    counts = wiring_of(robot.effects).wheels(*np.diff(counters.at(time), axis=0).T)
-    left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
+    left, right = counters.travel(robot, time)
     path = float(np.abs(0.5 * (left + right)).sum())
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
     words = [f"drove {path:.1f} m"] if path >= rules.WAY_WORTH_SAYING else []
@@ -195,8 +196,4 @@ def usable_rows(
         # the first tick and after the last.
         within = known & (time >= first - rules.MOMENT) & (time <= last + rules.MOMENT)
     rows = np.flatnonzero(within)
-    if rows.size == 0:
-        return rows
-    latest = np.maximum.accumulate(time[rows])
-    later = np.concatenate([[True], time[rows][1:] > latest[:-1]])
-    return np.asarray(rows[later])
+    return np.asarray(rows[later_than_all_before(time[rows])])

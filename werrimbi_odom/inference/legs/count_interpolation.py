@@ -16,6 +16,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
+from werrimbi_odom.inference.legs.monotone_cubic import between_messages, interval_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -60,13 +61,17 @@ class Counters:
         """Counts at any times, (n, 2): left and right; see `between_messages`."""
         return between_messages(time, self.time, self.left, self.right)
 
+    def travel(self, robot: Robot, time: Floats) -> Floats:
+        """Travel of both wheels between any times (n,), as the file wires them, (2, n - 1) [m]."""
+        return _travel(robot, np.diff(self.at(time), axis=0).T)
+
     def rounding_at(self, time: Floats) -> Floats:
         """Variance of the counts' rounding at any times, relative to that at a message; (n,).
 
         Between two messages both have their weights in `between_messages`, and what they round off
         is partly made up for.
         """
-        _, _, share = _place(time, self.time)
+        _, _, share = interval_of(time, self.time)
         weight = share * share * (3.0 - 2.0 * share)
         return np.asarray(1.0 - 2.0 * rules.ROUNDING_SHARED * weight * (1.0 - weight))
 
@@ -116,9 +121,8 @@ class Counters:
         Legs that ended where a coarse counter steps would all end just behind a count, and the
         quantisation would be no noise but an offset.
         """
-        sides = (_without_steps(self.time, side) for side in (self.left, self.right))
-        counts = wiring_of(robot.effects).wheels(*map(np.diff, sides))
-        left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
+        even = self.between_counts()
+        left, right = _travel(robot, np.diff([even.left, even.right]))
         path = np.abs(0.5 * (left + right)) / leg
         turned = np.abs(right - left) / robot.track / turn
         return summed(path + turned)
@@ -227,67 +231,10 @@ def _with(values: Floats, new: Floats, here: NDArray[np.intp]) -> Floats:
     return whole
 
 
-def between_messages(time: Floats, known: Floats, *columns: Floats) -> Floats:
-    """Interpolate columns known at the instants `known` (k,) at times (n,); shape (n, columns).
-
-    Between messages the counts follow a monotone cubic. Linear interpolation would cut the corners
-    of every start and stop, by a millimetre for a robot that brakes at 1 m/s² and is read at 10 Hz;
-    a smoother curve would overshoot the counts. Before the first message and after the last the
-    robot stands. Slopes at the messages are those of Fritsch and Butland (SIAM J. Sci. Stat.
-    Comput. 5, 1984), computed only where needed.
-    """
-    before, width, share = _place(time, known)
-    rest = 1.0 - share
-    found = []
-    for values in columns:
-        start, end = _slope(known, values, before), _slope(known, values, before + 1)
-        first, last = values[before], values[before + 1]
-        found.append(
-            first * rest * rest * (1.0 + 2.0 * share)
-            + last * share * share * (3.0 - 2.0 * share)
-            + width * share * rest * (start * rest - end * share)
-        )
-    return np.stack(found, axis=-1)
-
-
-def _place(time: Floats, known: Floats) -> tuple[NDArray[np.intp], Floats, Floats]:
-    """Interval of each time (n,): index and width, and what share of it has gone by."""
-    within = np.clip(time, known[0], known[-1])
-    before = np.clip(np.searchsorted(known, within, side="right") - 1, 0, known.size - 2)
-    width = known[before + 1] - known[before]
-    return before, width, (within - known[before]) / width
-
-
-def _slope(time: Floats, values: Floats, at: NDArray[np.intp]) -> Floats:
-    """Slopes of the monotone cubic at some of its knots."""
-    last = time.size - 1
-
-    def step(index: NDArray[np.intp]) -> tuple[Floats, Floats]:
-        """Width and slope of the intervals that begin at some knots."""
-        here = np.clip(index, 0, last - 1)
-        width = time[here + 1] - time[here]
-        return width, (values[here + 1] - values[here]) / width
-
-    if last == 1:
-        return step(at)[1]
-    (behind, slope_behind), (ahead, slope_ahead) = step(at - 1), step(at)
-    one, other = 2.0 * ahead + behind, ahead + 2.0 * behind
-    alike = slope_behind * slope_ahead > 0.0
-    slope_behind, slope_ahead = (np.where(alike, part, 1.0) for part in (slope_behind, slope_ahead))
-    slope = np.where(alike, (one + other) / (one / slope_behind + other / slope_ahead), 0.0)
-    begins, ends = at == 0, at == last
-    for edge, near, next_one in ((begins, 0, 1), (ends, last - 1, last - 2)):
-        if edge.any():
-            slope[edge] = _at_edge(*step(np.array([near])), *step(np.array([next_one])))
-    return slope
-
-
-def _at_edge(near: Floats, slope: Floats, other: Floats, other_slope: Floats) -> Floats:
-    """Slope at the first or last knot: that of a parabola, limited to stay monotone."""
-    found = ((2.0 * near + other) * slope - near * other_slope) / (near + other)
-    found = np.where(np.sign(found) != np.sign(slope), 0.0, found)
-    steep = (np.sign(slope) != np.sign(other_slope)) & (np.abs(found) > 3.0 * np.abs(slope))
-    return np.where(steep, 3.0 * slope, found)
+def _travel(robot: Robot, counts: Floats) -> Floats:
+    """Travel of both wheels [m] by the steps of their counters, (2, n)."""
+    left, right = wiring_of(robot.effects).wheels(*counts)
+    return np.stack([left * robot.left_tick, right * robot.right_tick])
 
 
 def _steps_seen(counts: Floats, few: float) -> bool:

@@ -64,12 +64,13 @@ def _turning_at_rest(reference: Reference, rests: Sequence[TimeSpan]) -> AtRest 
     seen = reference.has_yaw
     time, turned = reference.time[seen], wrap_all(np.diff(reference.yaw[seen]))
     duration = np.diff(time)
-    rest = np.zeros(duration.size, dtype=np.bool_)
-    for span in rests:
-        inside = (time >= span.begin + rules.BIAS_EDGE) & (time <= span.end - rules.BIAS_EDGE)
-        within = inside[:-1] & inside[1:]
-        if duration[within].sum() >= rules.BIAS_REST:  # in a pause it may still come to rest
-            rest |= within
+    edge = rules.BIAS_EDGE
+    ends = np.array([(-np.inf, -np.inf), *((rest.begin + edge, rest.end - edge) for rest in rests)])
+    which = np.searchsorted(ends[:, 0], time, side="right") - 1
+    inside = time <= ends[which, 1]
+    within, which = inside[:-1] & inside[1:] & (which[:-1] == which[1:]), which[:-1]
+    lasted = np.bincount(which[within], duration[within], len(ends))
+    rest = within & (lasted >= rules.BIAS_REST)[which]  # in a pause it may still come to rest
     seconds = float(duration[rest].sum())
     if not rest.any():
         return None

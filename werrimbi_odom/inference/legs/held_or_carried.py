@@ -40,22 +40,14 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     turns = windows_of(counters, reference.turns(), robot, ways=False)
     by_turns = None if turns is None else agreement_of_turns(turns, robot.track)
     if by_turns is not None:
-        span = by_turns.windows.steps * by_turns.windows.step
-        seen.append(
-            judged_motion(
-                by_turns, rules.NO_DRIVING_TURNS * span, rules.NO_DRIVING_TURN, turns=True
-            )
-        )
+        slowest = rules.NO_DRIVING_TURNS * by_turns.windows.steps * by_turns.windows.step
+        seen.append(judged_motion(by_turns, slowest, rules.NO_DRIVING_TURN, turns=True))
     ways = windows_of(counters, reference, robot, ways=True)
     by_ways = None if ways is None else agreement_of_displacements(ways, by_turns, robot.track)
     if by_ways is not None:
         rolling = by_ways.windows.rolled > by_ways.windows.still
-        typical = float(np.median(by_ways.gross[rolling]))
-        seen.append(
-            judged_motion(
-                by_ways, rules.NO_DRIVING_GOES * typical, rules.NO_DRIVING_WAY, turns=False
-            )
-        )
+        slowest = rules.NO_DRIVING_GOES * float(np.median(by_ways.gross[rolling]))
+        seen.append(judged_motion(by_ways, slowest, rules.NO_DRIVING_WAY, turns=False))
     doubted = [_stretches(each) for each in seen]
     found = sorted(_reaching(stretch, seen) for each in doubted for stretch in each)
     if by_turns is not None:
@@ -130,17 +122,15 @@ def _stretches(seen: MeasuredMotion) -> list[tuple[float, float]]:
         doubted = float(off[inside].sum()) / windows.steps
         could = float(seen.agreement.gross[inside].sum()) / windows.steps
         moved_more = more[inside].mean() > 0.5
-        # A lost track or failed match jumps from one pose to the next, for one window and no
-        # longer.
+        # A lost track or failed match jumps from one pose to the next, for one window only.
         leaps = moved_more and (
             last + 1 - first < 2 * windows.steps
             or float(off[inside].max()) > rules.NO_DRIVING_AT_ONCE * doubted
         )
         short = rows.size < max(rules.NO_DRIVING_FEWEST, windows.steps + rules.NO_DRIVING_MORE)
         if windows.without_leaps:  # then a short displacement or stop is real
-            surely_so = (
-                doubted >= (rules.NO_DRIVING_QUICK if moved_more else rules.NO_DRIVING_FIRM) * could
-            )
+            share = rules.NO_DRIVING_QUICK if moved_more else rules.NO_DRIVING_FIRM
+            surely_so = doubted >= share * could
             leaps, short = leaps and not surely_so, short and not surely_so
         if leaps or short or doubted < seen.enough:
             continue
@@ -194,13 +184,8 @@ def _joined(
     if not found:
         return []
     half = max(0.5 * each.agreement.windows.steps * each.agreement.windows.step for each in seen)
-    first, last = (
-        float(pick(bound))
-        for pick, bound in (
-            (min, [each.time[0] for each in seen]),
-            (max, [each.time[-1] for each in seen]),
-        )
-    )
+    first = min(float(each.time[0]) for each in seen)
+    last = max(float(each.time[-1]) for each in seen)
     joined = [(first - half, first - half)]
     for begin, end in [*found, (last + half, last + half)]:
         before = joined[-1][1]
@@ -232,9 +217,7 @@ def _by_kind(begin: float, end: float, seen: Sequence[MeasuredMotion]) -> list[N
     moved = (measured > expected).astype(np.float64)
     window = 2 * round(0.5 * rules.NO_DRIVING_SPLIT / _GRID) + 1
     moved = median_filter(moved, window, mode="nearest")
-    if (
-        end - begin < rules.NO_DRIVING_SPLIT
-    ):  # too short to split: one kind, by the weighted majority
+    if end - begin < rules.NO_DRIVING_SPLIT:  # one kind, by the weighted majority
         weight = shares.max(axis=0)
         moved[:] = float(np.average(measured > expected, weights=weight) > 0.5)
     # Short parts take the kind of the longest: a hand comes or goes a moment sooner or later.
@@ -277,10 +260,8 @@ def _follows(part: NoDriving, turns: Agreement) -> bool:
     inside = (time >= part.begin + half) & (time <= part.end - half)
     expected, measured = turns.expected[inside], turns.windows.measured[inside]
     turned = float(np.abs(expected).sum()) / turns.windows.steps
-    left = float(np.sum((measured - expected) ** 2))
-    return turned > rules.NO_DRIVING_TURN and left < rules.NO_DRIVING_FOLLOWS * float(
-        expected @ expected
-    )
+    left, whole = float(np.sum((measured - expected) ** 2)), float(expected @ expected)
+    return turned > rules.NO_DRIVING_TURN and left < rules.NO_DRIVING_FOLLOWS * whole
 
 
 def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) -> list[NoDriving]:
@@ -308,13 +289,9 @@ def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[N
 
     The heading after the robot was held or carried is unknown, and only one drive can be used.
     """
-    drives = list(
-        zip(
-            [float(counters.time[0]), *(part.end for part in parts)],
-            [*(part.begin for part in parts), float(counters.time[-1])],
-            strict=True,
-        )
-    )
+    begins = [float(counters.time[0]), *(part.end for part in parts)]
+    ends = [*(part.begin for part in parts), float(counters.time[-1])]
+    drives = list(zip(begins, ends, strict=True))
     longest = max(range(len(drives)), key=lambda each: drives[each][1] - drives[each][0])
     found = list(parts)
     for number, (begin, end) in enumerate(drives):

@@ -42,9 +42,9 @@ class AlignedRun:
     """Poses that are wrong for themselves alone, at which no leg begins or ends; shape (r,)."""
     left_out: tuple[LeftOut, ...]
     sigma_xy: float | None
-    """Stated standard deviation of the reference's position [m]."""
+    """Stated standard deviation of the usable poses' position [m]."""
     sigma_yaw: float | None
-    """Stated standard deviation of the reference's heading [rad]."""
+    """Stated standard deviation of their heading [rad]."""
     happened: tuple[tuple[float, float], ...] = ()
     """See `Run.happened`; free of the delay, as `measured`."""
     at_rest: tuple[float, float] | None = None
@@ -150,7 +150,7 @@ def _moves(counters: Counters, begin: float) -> bool:
 
 def divided(record: AlignedRun, rows: NDArray[np.intp]) -> MatchedRun:
     """Cut a record at the given reference poses."""
-    measured = poses_at(record.measured, rows)
+    measured = _poses_at(record.measured, rows)
     time, left, right, ends, channels = nodes_at(record.counters, measured.time)
     gap = _gaps_between(record, rows)
     return MatchedRun(record, rows, measured, gap, record.delay, time, left, right, ends, channels)
@@ -161,7 +161,7 @@ def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
     return replace(
         run,
         rows=rows,
-        measured=poses_at(run.record.measured, rows),
+        measured=_poses_at(run.record.measured, rows),
         gap=_gaps_between(run.record, rows),
         ends=run.ends[np.searchsorted(run.rows, rows)],
     )
@@ -193,11 +193,8 @@ def _gaps_between(record: AlignedRun, rows: NDArray[np.intp]) -> NDArray[np.bool
     return np.asarray(np.diff(before[rows]) > 0)
 
 
-def poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
-    """Some poses of a reference, without the stated noise of its absolute poses."""
-    seen = reference.chosen(rows) if rows.size < reference.time.size else reference
-    # Scans state it per match; a localiser states its absolute error.
-    return seen if seen.own_axes else replace(seen, sigma_xy=None, sigma_yaw=None)
+def _poses_at(reference: Reference, rows: NDArray[np.intp]) -> Reference:
+    return reference.chosen(rows) if rows.size < reference.time.size else reference
 
 
 def typical_sigma(sigma: Floats | None) -> float | None:

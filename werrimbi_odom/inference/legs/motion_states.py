@@ -16,7 +16,6 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.inference.legs.windows import standing_below
-from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -67,10 +66,9 @@ def driven(
     """
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(instants(first, last, _GRID, counters.time, _REACH), last)
-    steps = np.diff(counters.at(grid), axis=0)
-    steps[np.diff(grid) > 2 * _GRID] = 0.0  # what was gone in a silence is not gone at once
-    counted = wiring_of(robot.effects).wheels(*steps.T)
-    left, right = counted[0] * robot.left_tick, counted[1] * robot.right_tick
+    left, right = counters.travel(robot, grid)
+    silent = np.diff(grid) > 2 * _GRID
+    left[silent], right[silent] = 0.0, 0.0  # what was gone in a silence is not gone at once
     way, turn = 0.5 * (left + right), (right - left) / robot.track
     rolled = 0.5 * (np.abs(left) + np.abs(right))
     moving = rolled > standing_below(rolled)

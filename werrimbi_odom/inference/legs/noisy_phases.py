@@ -18,7 +18,6 @@ from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.measured_motion import runs_of
 from werrimbi_odom.inference.legs.windows import standing_below
-from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -29,11 +28,12 @@ def noisy_phases(counters: Counters, reference: Reference, robot: Robot) -> list
     """Find the phases by third differences of the places, in order.
 
     They are judged while the wheels roll, by what a robot does there: a hand that carries it is no
-    noise. What stands between two noisy poses is of the same phase.
+    noise. What stands between two noisy poses is of the same phase. `reference`: with strictly
+    ascending stamps.
     """
     known = reference.has_position
     time = reference.time[known]
-    if time.size < rules.NO_DRIVING_POSES or (np.diff(time) <= 0.0).any():
+    if time.size < rules.NO_DRIVING_POSES:
         return []
     moved, rolled = _by_wheels(counters, time, robot)
     rolls = rolled > standing_below(rolled)
@@ -77,8 +77,7 @@ def _third(steps: _Complexes) -> Floats:
 
 def _by_wheels(counters: Counters, time: Floats, robot: Robot) -> tuple[_Complexes, Floats]:
     """Steps of the robot between the poses, by its wheels, and how far these rolled [m]."""
-    counts = wiring_of(robot.effects).wheels(*np.diff(counters.at(time), axis=0).T)
-    left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
+    left, right = counters.travel(robot, time)
     turn = (right - left) / robot.track
     yaw = np.cumsum(turn) - 0.5 * turn
     return 0.5 * (left + right) * np.exp(1j * yaw), 0.5 * (np.abs(left) + np.abs(right))

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.legs.blanked_poses import without_useless_poses
-from werrimbi_odom.inference.legs.count_interpolation import counters_of
+from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import (
     in_packets_of,
     stamped_together,
@@ -21,8 +23,11 @@ from werrimbi_odom.inference.legs.even_stamps import (
 )
 from werrimbi_odom.inference.legs.gyro_bias import without_bias
 from werrimbi_odom.inference.legs.held_or_carried import no_driving
-from werrimbi_odom.inference.legs.modelled_clock_offset import clock_offset
 from werrimbi_odom.inference.legs.motion_states import driven
+from werrimbi_odom.inference.legs.noisy_phases import noisy_phases
+from werrimbi_odom.inference.legs.reference_lapses import lapses
+from werrimbi_odom.inference.legs.windows import later_than_all_before
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
@@ -44,7 +49,7 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
     except InputError:
         return run  # cutting into legs raises the error
     delay = clock_offset(robot)
-    seen, useless = without_useless_poses(seen, counters, robot, delay)
+    seen, useless = _without_useless_poses(seen, counters, robot, delay)
     in_time = seen.earlier(delay)
     found = no_driving(counters, in_time, robot)
     at_rest = None
@@ -59,3 +64,34 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         at_rest=at_rest,
         taken_out=(*run.taken_out, *((part.begin + delay, part.end + delay) for part in useless)),
     )
+
+
+def clock_offset(robot: Robot) -> float:
+    """Delay of the reference by the robot model if its clock is apart [s]; zero for less.
+
+    Legs of a reference that is only late, by its transport, are cut by its stamps; fits move them.
+    """
+    delay = view_of(robot.effects).delay
+    return delay if abs(delay) >= rules.DELAY_SHORTEST else 0.0
+
+
+def _without_useless_poses(
+    seen: Reference, counters: Counters, robot: Robot, delay: float
+) -> tuple[Reference, tuple[NoDriving, ...]]:
+    """Blank the poses of lapses and of phases of much more noise, and list these stretches.
+
+    They are in the time of the counters. `delay`: of the reference behind the wheels, by the robot
+    file [s]. Another delay, found later, moves no pose out of a stretch or into one.
+    """
+    if seen.own_axes:
+        return seen, ()
+    in_time = seen.earlier(delay)
+    rising = in_time.chosen(later_than_all_before(in_time.time))
+    found = sorted([*lapses(counters, rising, robot), *noisy_phases(counters, rising, robot)])
+    useless = np.zeros(seen.time.shape, dtype=np.bool_)
+    for part in found:
+        useless |= (in_time.time > part.begin) & (in_time.time < part.end)
+    if not useless.any():
+        return seen, ()
+    x, y, yaw = (np.where(useless, np.nan, each) for each in (seen.x, seen.y, seen.yaw))
+    return replace(seen, x=x, y=y, yaw=yaw), tuple(found)

@@ -95,6 +95,11 @@ def standing_below(rolled: Floats) -> float:
     return rules.STANDS * float(np.median(ordered[ordered >= rules.TREMBLES * half_of_all]))
 
 
+def later_than_all_before(time: Floats) -> NDArray[np.bool_]:
+    """Rows whose stamps go on, (n,): no message that came twice, and none of a clock set back."""
+    return np.append(True, time[1:] > np.maximum.accumulate(time)[:-1])[: time.size]
+
+
 def windows_of(
     counters: Counters, reference: Reference, robot: Robot, *, ways: bool
 ) -> Windows | None:
@@ -103,7 +108,7 @@ def windows_of(
     time = reference.time[known]
     if time.size < rules.NO_DRIVING_POSES:
         return None
-    new = np.concatenate([[True], time[1:] > np.maximum.accumulate(time)[:-1]])
+    new = later_than_all_before(time)
     time = time[new]
     first, last = max(time[0], counters.time[0]), min(time[-1], counters.time[-1])
     usual = [float(np.median(np.diff(each))) for each in (time, counters.time)]
@@ -132,10 +137,10 @@ def windows_of(
     measured = np.hypot(over, _over(np.interp(grid, time, gone.imag), steps)) if ways else over
     begin, end = grid[:-steps], grid[steps:]
     for stamps, each in zip((time, counters.time), usual, strict=True):
-        for gap in np.flatnonzero(
-            np.diff(stamps) > max(rules.NO_DRIVING_SILENCE * each, 2.0 * step)
-        ).tolist():
-            measured[(begin < stamps[gap + 1]) & (end > stamps[gap])] = np.nan
+        gaps = np.flatnonzero(np.diff(stamps) > max(rules.NO_DRIVING_SILENCE * each, 2.0 * step))
+        firsts = np.searchsorted(end, stamps[gaps], side="right").tolist()
+        for first, last in zip(firsts, np.searchsorted(begin, stamps[gaps + 1]), strict=True):
+            measured[first:last] = np.nan
     middle, gone_by = 0.5 * (begin + end), _over(rolled, steps)
     stands = np.interp(time, middle, gone_by) <= standing_below(gone_by)
     return Windows(

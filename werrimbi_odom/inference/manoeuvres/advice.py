@@ -87,6 +87,14 @@ class AdvisedDiagnosis:
     open_at: float | None = None
     """Length of legs that leave this verdict *ambiguous*, where shorter ones were needed [m]."""
 
+    @property
+    def drives_differ(self) -> bool:
+        """Whether changes between the drives may be all that no effect explains.
+
+        What the mean of two robots goes with is no law of either, and no reason to drive.
+        """
+        return self.diagnosis.verdict == "unknown" and bool(self.changes)
+
 
 def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosis:
     """Diagnose one robot, with the next manoeuvre, the detection limits and the changes.
@@ -105,17 +113,9 @@ def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosi
     show(0.97, "the next step")
     effects = given.collection.effects
     changes = changes_between(diagnosis, effects)
-    # What the mean of two robots goes with is no law of either, and no reason to drive.
-    waits = diagnosis.verdict == "unknown" and bool(changes)
-    return AdvisedDiagnosis(
-        diagnosis,
-        None if waits else next_manoeuvre(diagnosis),
-        detection_limits(diagnosis, effects),
-        leg,
-        bool(given.holdout),
-        changes,
-        open_at,
-    )
+    sights = detection_limits(diagnosis, effects)
+    told = AdvisedDiagnosis(diagnosis, None, sights, leg, bool(given.holdout), changes, open_at)
+    return told if told.drives_differ else replace(told, manoeuvre=next_manoeuvre(diagnosis))
 
 
 def with_leg(given: Recordings, leg: float) -> Recordings:

@@ -130,7 +130,7 @@ def _looked_at(
             angles = item.effect.parameters[item.place].tries
             there = [
                 drives.marks(replace(item, shape={**item.shape, item.place: angle}))
-                for angle in angles[:: len(angles) // 4]
+                for angle in angles[:: max(len(angles) // 4, 1)]
             ]
             white[item.name] = drives.whitened(np.concatenate(there, axis=-1))
     return replace(look, white=white)

@@ -10,6 +10,10 @@ LEAST_SQUARES, ADVISED_SQUARES = 2, 5
 """Squares in each sense, at least and recommended: one alone has no scatter; the paper drives
 five."""
 
+MORE_THAN_SCATTER = 3.0
+"""Offset of the squares' ends in what their scatter alone leaves of it, above which words do not
+put it down to scatter. Chosen: two squares a sense know their scatter to a factor of two."""
+
 LARGEST_OFFSET = 2.0
 """Offset of a lap [sides] above which the square was not meant to close: corners of 56 degrees in
 place of 90 make it (`LARGEST_MISTAKE` makes 1.3)."""

@@ -12,7 +12,7 @@ anywhere between 0.29 and 2.3 (`HONEST_CHANCE`)."""
 
 MANY_LEGS = 30
 """Legs from which on the wheel noise is reported at their length: its standard deviation is then
-known to 8 % (1 / sqrt(2 * 90))."""
+known to 7 % (1 / sqrt(2 * 90))."""
 
 LEG_LENGTHS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Lengths of legs that are judged, in units of the requested one: doubled as far as the drives
@@ -110,6 +110,12 @@ Some ten numbers are tested in a comparison, and the node's window slides over t
 
 ALIKE = 1.3
 """Factor between the intervals of the noise at short and at long legs, above which they differ."""
+
+WHEELS_SHARE, WHEELS_GROWTH = 0.1, 0.5
+"""Share of the wheels in the promised variance of legs, up to which the reference makes nearly all
+of it; then what a larger noise of the wheels adds to NEES grows with at least the length of a leg,
+and with the power `WHEELS_GROWTH` or less it is none (halfway to what the reference adds: the same
+at every length)."""
 
 NOISE_FACTOR_TOLD = 100.0
 """Ratio of the ends of the interval of a variance's factor, up to which it is reported: the

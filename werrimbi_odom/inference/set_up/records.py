@@ -22,9 +22,10 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.comparison.residuals import Measure
 from werrimbi_odom.inference.legs.aligned_run import usable_rows
-from werrimbi_odom.inference.legs.count_interpolation import between_messages, summed
+from werrimbi_odom.inference.legs.count_interpolation import summed
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
+from werrimbi_odom.inference.legs.monotone_cubic import between_messages
 from werrimbi_odom.inference.set_up.corrected_robot import mount_of
 from werrimbi_odom.model.driven_motion import features
 from werrimbi_odom.model.effect import after_stage, view_of, wiring_of

@@ -169,12 +169,8 @@ def _remarks(added: Added) -> list[str]:
     if added.set_aside:
         judged = listed(list(dict.fromkeys(added.set_aside)))
         texts.append(
-            f"Judged on parts put aside of {judged}; the values that are written "
-            + (
-                "were then fitted on all of it."
-                if added.written_from_all
-                else "are fitted on the rest."
-            )
+            f"Judged on parts put aside of {judged}; the values that are written were then fitted "
+            "on all of it."
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")

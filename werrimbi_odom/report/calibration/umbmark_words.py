@@ -20,7 +20,7 @@ from werrimbi_odom.inference.distributions import NORMAL_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.number_format import picked, scaled_with_std
+from werrimbi_odom.report.number_format import picked, scaled_with_std, two_digits
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
@@ -46,16 +46,25 @@ def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
     base, ratio = result.base, result.ratio
     base_off, radii_off = _significant(base), _significant(ratio)
     size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
-    if not (base_off or radii_off) and result.disagreement_p < rules.SURE_WHEN_ASKED:
+    open_ = not (base_off or radii_off)
+    if open_ and (result.disagreement_p < rules.SURE_WHEN_ASKED or _across(squares, result)):
+        few = "" if _enough(squares) else " Or so few squares scatter more than they show."
         return paragraphs(
             [
                 f"Base and radii do not explain where these squares ended: {size}, and x and y "
-                "disagree. Are cw and ccw exchanged, or is y positive to the right?"
+                f"disagree. Are cw and ccw exchanged, or is y positive to the right?{few}"
             ]
         )
-    if not (base_off or radii_off):
-        right = "Base and radii were right, as far as these squares can tell"
-        return paragraphs([f"{right}: {size}, no more than the scatter of the runs explains."])
+    if open_:
+        tell = [two_digits(100.0 * NORMAL_95 * factor.std) for factor in (base, ratio)]
+        return paragraphs(
+            [
+                f"These squares determine no correction: {size}, no more than the scatter of the "
+                f"runs explains. They tell the base to {tell[0]} % and the ratio of the radii to "
+                f"{tell[1]} % (95 %), and what is written differs by less: keep the robot file, or "
+                "drive more squares."
+            ]
+        )
     what = "Base and radii are" if base_off and radii_off else "The base is"
     lines = [f"{what if base_off else 'The radii are'} off: {size}."]
     if base_off:
@@ -71,6 +80,20 @@ def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
             f"{_share(ratio)}: what should be straight bends to the {bend}."
         )
     return paragraphs(lines)
+
+
+def _enough(squares: Squares) -> bool:
+    return min(len(squares.cw), len(squares.ccw)) >= rules.ADVISED_SQUARES
+
+
+def _across(squares: Squares, result: Umbmark) -> bool:
+    """Whether most of the offsets is none of base and radii, and more than the scatter leaves.
+
+    Few squares prove that at no level: their test has hardly a degree of freedom.
+    """
+    explained = math.hypot(result.alpha.value, result.beta.value)
+    most = 0.5 * math.hypot(*result.disagreement) > explained
+    return most and result.e_max > rules.MORE_THAN_SCATTER * e_max_of_scatter(squares)
 
 
 def _centre(sense: str, offsets: Floats) -> list[str]:
@@ -127,7 +150,7 @@ def _doubts(squares: Squares, result: Umbmark) -> list[str]:
             f"about beta; chance {result.disagreement_p:.1g}). Something besides base and radii "
             "moved the robot: a slip, play in a gear, a start askew."
         )
-    if min(len(squares.cw), len(squares.ccw)) < rules.ADVISED_SQUARES:
+    if not _enough(squares):
         lines.append(
             f"{rules.ADVISED_SQUARES} squares in each sense are usual; with fewer the ± above "
             "grows quickly."

@@ -110,7 +110,8 @@ def covariance_words(verdict: Verdict, nees: float) -> list[str]:
         return [f"- {text}: that is no noise of the wheels, something systematic is missing."]
     if small:
         return [
-            f"- {text}: something comes and goes along the way, which no noise of the wheels does."
+            f"- {text}: something comes and goes along the way, which no noise of the wheels does, "
+            "or the reference's own noise is larger or lasts."
         ]
     return [f"- {text}."]
 

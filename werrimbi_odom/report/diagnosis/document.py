@@ -47,7 +47,7 @@ def document_of(advised: AdvisedDiagnosis, steps: NextSteps | None = None) -> Do
         "ambiguous": f"What is missing: {' or '.join(diagnosis.rivals)}",
         "unknown": "Something is missing that the library does not hold",
     }[diagnosis.verdict]
-    if diagnosis.verdict == "unknown" and advised.changes:
+    if advised.drives_differ:
         title = "Not the same in all of these drives"
     if diagnosis.set_up.wrong:
         mistakes = ", ".join(item.effect for item in diagnosis.set_up.wrong)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -32,6 +32,18 @@ def best_cells(cells: Sequence[Dependence]) -> dict[tuple[str, str], Dependence]
         if key not in found or _worth(cell) > _worth(found[key]):
             found[key] = cell
     return found
+
+
+def best_by_name(cells: Iterable[Dependence]) -> dict[tuple[str, str], Dependence]:
+    """The same by name and channel; constant errors have a name for each amount."""
+    rows: dict[str, list[Dependence]] = {}
+    for cell in cells:
+        rows.setdefault(cell.name, []).append(cell)
+    return {
+        (name, cell.channel): cell
+        for name, alike in rows.items()
+        for cell in best_cells(alike).values()
+    }
 
 
 def _worth(cell: Dependence) -> float:

@@ -50,8 +50,7 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             f"--report draws both paths.{mend}",
         ]
     lines = phrases.set_up_lines(diagnosis)
-    if advised.changes:
-        # What the mean of two robots goes with is no law of either.
+    if advised.drives_differ:
         return lines
     cells = significant(diagnosis)
     lines += costs.by_sizes_alone(advised)

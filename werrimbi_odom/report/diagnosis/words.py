@@ -64,7 +64,7 @@ def _changes(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     changes = changes_words(advised.changes, advised.diagnosis.robot)
     if not changes:
         return []
-    unknown = advised.diagnosis.verdict == "unknown"
+    unknown = advised.drives_differ
     floor = [] if unknown else reference_remarks.floor_not_asked(advised.diagnosis)
     what, one = "The robot", "one robot, the mean of both"
     command: list[str] = []

@@ -11,8 +11,9 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.ranking import Ranked
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
+from werrimbi_odom.report.diagnosis.evidence_figures import best_by_name
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import words_of
@@ -223,10 +224,7 @@ def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
 def _map(tab: Tab, diagnosis: Diagnosis) -> None:
     """Table of error channels and variables, with a button in each significant cell."""
     text("h3", "Evidence: which error goes with what", tabindex="-1", data_key="map")
-    best: dict[tuple[str, str], Dependence] = {}
-    for cell in diagnosis.depends_on:
-        if cell.p_value < rules.SURE:
-            best.setdefault((cell.name, cell.channel), cell)
+    best = best_by_name(beyond_chance(diagnosis.depends_on))
     labels = {name: short_words(cell) for (name, _), cell in best.items()}
     names = list(labels)[:MOST_ROWS]
     if not names:
