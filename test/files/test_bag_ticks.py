@@ -144,6 +144,25 @@ def test_a_pairing_that_began_one_message_off_mends_itself(
     assert apart[1:].tolist() == [0] * 99, "of the first alone the partner was lost"
 
 
+def test_the_window_that_is_told_takes_counts_that_jitter(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Half were farther apart than 1.2 times their median; one partner of these is missing."""
+    entries = []
+    for n in range(100):
+        apart = 10 + 17 * n % 31
+        if n != 50:
+            entries.append(("/left_ticks", 200 * n * MS, ros.count(n)))
+        entries.append(("/right_ticks", (200 * n + apart) * MS, ros.count(n)))
+    bag = ros.write(tmp_path / "bag", entries)
+    with pytest.raises(InputError, match=r"are 0\.025 s apart as a rule") as caught:
+        read_run(bag, robot("input_type: int32_pair", "pairing_window: 0.005"))
+    told = re.search("pairing_window: [0-9.]+", str(caught.value))
+    assert told
+    run = read_run(bag, robot("input_type: int32_pair", told.group()))
+    assert run.ticks.rows == 99
+
+
 def test_an_int32_wraps_at_32_bits_whatever_the_file_says(
     tmp_path: Path, ros: Any, robot: Any
 ) -> None:

@@ -7,8 +7,10 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 import time
 import tracemalloc
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +18,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from test.inference.driven import run_of
+from test.model.drives import ROBOT
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import csv_table
 from werrimbi_odom.files.content_hash import mark_of
+from werrimbi_odom.files.held_counts import without_held_counts
 from werrimbi_odom.files.read_run import bag_at
-from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.files.run_folder import read_run_folder, write_run_folder
+from werrimbi_odom.inference.legs.count_interpolation import counters_of
 
 TICKS = "t_s,left_ticks,right_ticks\n"
 REFERENCE = "t_s,x_m,y_m,yaw_rad\n"
@@ -92,8 +98,22 @@ def test_other_columns_are_channels(tmp_path: Path) -> None:
 def test_readings_that_failed_are_kept_for_the_model_to_count(tmp_path: Path) -> None:
     ticks = read_run_folder(folder(tmp_path, TICKS + "0,nan,2\n1,3.5,inf\n0.5,4,6\n")).ticks
     np.testing.assert_array_equal(ticks.left, [np.nan, 3.5, 4.0])
-    np.testing.assert_array_equal(ticks.right, [2.0, np.inf, 6.0])
+    np.testing.assert_array_equal(ticks.right, [2.0, np.nan, 6.0])
     assert ticks.time.tolist() == [0.0, 1.0, 0.5], "order is the model's business too"
+
+
+def test_infinite_counts_print_no_warnings(tmp_path: Path) -> None:
+    """Two in a row have no difference, which numpy told the user where he looked for his drive."""
+    run = run_of(ROBOT, 1, 60)
+    made = write_run_folder(tmp_path / "drive", run.ticks, run.reference)
+    lines = (made / "ticks.csv").read_text().splitlines()
+    for row in (300, 500, 501):
+        lines[row] = re.sub(r",[^,]*$", ",inf", lines[row])
+    (made / "ticks.csv").write_text("\n".join(lines) + "\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        counters = counters_of(without_held_counts(read_run_folder(made)), ROBOT, None)
+    assert counters.time.size == len(lines) - 4
 
 
 def test_counters_of_64_bits_without_a_sign_are_exact(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.files.bag import BagMessage, opened_bag
-from werrimbi_odom.files.clocks import on_one_clock
+from werrimbi_odom.files.clocks import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.run import Collected, Reference, Ticks
 from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
@@ -96,6 +96,32 @@ def test_what_only_comes_unevenly_is_kept(time: np.ndarray) -> None:
     keep, told = newest_of_bursts(time)
     assert keep.mean() > 0.95
     assert not (keep.all() and told)
+
+
+def test_transforms_beside_scans_tell_nothing_of_the_scans_clock() -> None:
+    """Where /tf said where the lidar sits, one clock for lidar and wheels was never believed."""
+    random = np.random.default_rng(1)
+    taker = SimpleNamespace(take=lambda message: None)
+    wheels, scans, frames = (Lateness(taker) for _ in range(3))
+
+    def take(by: Lateness, topic: str, at: float, stamp: float) -> None:
+        late = random.exponential(0.01)
+        header = SimpleNamespace(
+            stamp=SimpleNamespace(sec=int(stamp), nanosec=round(1e9 * (stamp % 1.0)))
+        )
+        content = SimpleNamespace(header=header)
+        if topic == "/tf":
+            content = SimpleNamespace(transforms=[content])
+        by.take(BagMessage(topic, round(1e9 * (at + late)), content))
+
+    for at in np.arange(1.0, 40.0, 0.1):
+        take(wheels, "/joint_states", at, at)
+        for by in (scans, frames):
+            take(by, "/tf", at, at + 0.3)  # some date their transforms forward
+        take(scans, "/scan", at, at)
+    assert of_one_rate(wheels, scans)
+    assert scans.usual == pytest.approx(0.007, abs=0.003)
+    assert not of_one_rate(wheels, frames)
 
 
 @pytest.mark.parametrize(

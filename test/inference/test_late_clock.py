@@ -231,6 +231,29 @@ def test_a_clock_that_leaps_forwards_hides_no_lag(after: float, leap: float) -> 
     assert gain > 30.0
 
 
+@pytest.mark.parametrize("noise", [0.0, 5e-3])
+def test_a_long_rest_hides_no_lag(noise: float) -> None:
+    """Where it stood for 25 minutes after one of driving, every turn was taken for an outlier."""
+    run, random = run_of(ROBOT, 1, 60), np.random.default_rng(0)
+    ticks, seen = run.ticks, run.reference
+    assert seen is not None
+    rest = 0.2 * np.arange(1.0, 7500.0)
+    x, y, yaw = (
+        np.append(each, each[-1] + random.normal(0.0, noise, rest.size))
+        for each in (seen.x, seen.y, seen.yaw)
+    )
+    seen = replace(seen, time=np.append(seen.time, seen.time[-1] + rest), x=x, y=y, yaw=yaw)
+    left, right = (
+        np.append(side, np.full(rest.size, side[-1])) for side in (ticks.left, ticks.right)
+    )
+    ticks = replace(
+        ticks, time=np.append(ticks.time, ticks.time[-1] + rest), left=left, right=right
+    )
+    lag, gain = _lag_in(later(replace(run, ticks=ticks, reference=seen), 2.0))
+    assert lag == pytest.approx(2.0, abs=0.02)
+    assert gain > 30.0
+
+
 def _lag_in(run: Run) -> tuple[float, float]:
     record = record_of(run, ROBOT, None)
     assert record is not None

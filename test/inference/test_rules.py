@@ -113,7 +113,7 @@ ELSEWHERE = {
         "CLEARLY": "what is too small to be divided by",
     },
     "legs/held_or_carried.py": {"_GRID": "of times"},
-    "legs/motion_states.py": {"_GRID": "of times"},
+    "legs/motion_states.py": {"_GRID": "of times", "_REACH": "of times"},
     "legs/windows.py": {
         "_GRID": "of times",
         "_WINDOWS": "size of a sample",

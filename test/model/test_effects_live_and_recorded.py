@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -255,6 +256,19 @@ def test_an_effect_sees_its_channel_live_and_recorded(laden: Robot) -> None:
     np.testing.assert_allclose(
         step, 0.96 * np.hypot(np.diff(plain.x)[-50:], np.diff(plain.y)[-50:]), rtol=1e-4
     )
+
+
+def test_a_message_without_its_channel_loses_no_travel(laden: Robot) -> None:
+    """Its counts were taken and its travel was not, so one who went on was that much short."""
+    odometer = Odometer(laden)
+    odometer.update(0.0, 0.0, 0.0)
+    for channels in ({}, {"payload_kg": math.nan}):
+        with pytest.raises(InputError, match="needs the measured channel"):
+            odometer.update(0.1, 100.0, 100.0, channels)
+    estimate = odometer.update(0.2, 200.0, 200.0, {"payload_kg": 0.0})
+    assert estimate is not None
+    assert estimate.pose.x == pytest.approx(200.0 * laden.left_tick)
+    assert odometer.tally.accepted == 2
 
 
 def test_a_gap_in_a_channel_is_interpolated(laden: Robot) -> None:

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -21,6 +23,7 @@ from rclpy.qos import QoSProfile
 from test.ros.messages import stamp_at, values_of
 from test.ros.test_compare_node import DEEP, pose_stamped, robot_file
 from test.ros.test_compare_node import compare as compare  # a fixture
+from werrimbi_odom.ros.compare_node import CompareNode
 
 NUMBER = st.floats() | st.sampled_from(
     [0.0, 1.0, 1e308, 1.6e308, -1e308, 5e-324, math.nan, math.inf, -1.0]
@@ -185,3 +188,21 @@ def test_no_message_ends_it_and_each_is_in_one_count(talk: Any) -> None:
         parts = error.vector.x, error.vector.y, error.vector.z
         assert all(map(math.isfinite, parts)), error
     comparing.stop()
+
+
+def test_a_reference_that_was_always_refused_is_told_as_such() -> None:
+    """One in some seconds, so that none was refused since the last look: "+nan s" was printed."""
+    counts = Counter({"reference refused: not finite": 3, "odometry taken": 200})
+    node: Any = SimpleNamespace(
+        _now=lambda: 100.0,
+        _window=SimpleNamespace(count=0),
+        _counts=counts,
+        _counts_before=Counter(counts),
+        _heard={"odom": 99.9, "reference": 99.0},
+        _compared_at=0.0,
+        _latest=math.nan,
+        _track=SimpleNamespace(newest=50.0),
+    )
+    level, words = CompareNode._verdict_on_messages(node)
+    assert words == "nothing to compare: reference refused: not finite (3)"
+    assert level == DiagnosticStatus.ERROR

@@ -48,6 +48,15 @@ def test_the_command_can_be_pasted_and_names_what_the_bag_holds(node: Any, tmp_p
     assert words == ["werrimbi", "diagnose", "--robot", file, *ticks, str(bag)]
 
 
+def test_a_start_that_is_refused_takes_no_name_from_the_next(node: Any, tmp_path: Path) -> None:
+    """The next within a second did not start, since there was a bag of its name already."""
+    records = Records(node, {"record": str(tmp_path), "robot_file": "", "record_topics": TOPICS})
+    for _ in range(3):
+        records.begin("square")
+        records.close()
+    assert len(list(tmp_path.iterdir())) == 3
+
+
 def test_without_a_recording_it_has_the_names_to_record_under(node: Any) -> None:
     records = Records(node, {"record": "", "robot_file": "", "record_topics": TOPICS})
     assert records.next_command() == (

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -32,6 +33,7 @@ from test.ros.test_compare_node import (
     robot_file,
 )
 from test.ros.test_compare_node import compare as compare  # a fixture
+from werrimbi_odom.ros.live_diagnosis import Watching
 
 SERVICE = "compare_node/write_robot_file"
 
@@ -108,3 +110,19 @@ def test_the_file_in_use_is_never_the_new_one(tmp_path: Path) -> None:
     )
     assert run.returncode == 2
     assert "is the robot file in use; name another" in run.stderr
+
+
+def test_files_that_are_deleted_while_it_looks_end_no_node(tmp_path: Path) -> None:
+    """As by what tidies up /tmp on a computer that is never switched off."""
+    told: list[str] = []
+    watching: Any = SimpleNamespace(
+        _found={},
+        _folder=tmp_path / "deleted",
+        _looks=0,
+        _used=0.0,
+        _words=SimpleNamespace(publish=lambda message: told.append(message.data)),
+        _verdict=lambda: (DiagnosticStatus.OK, ""),
+        close=lambda: None,
+    )
+    Watching._end(watching)
+    assert told == ["the diagnosis failed: its files were deleted"]

@@ -63,6 +63,15 @@ def test_a_move_keeps_to_its_pace_and_reaches_it(step: tuple[float, float]) -> N
     assert max(used) == pytest.approx(1.0)
 
 
+def test_a_step_of_no_length_and_no_turn_is_a_rest() -> None:
+    """Its times were no numbers, and so were those of all moves after it."""
+    still, on = (0.0, 0.0), (1.0, 0.0)
+    rest = sim.MoveLimits().pause
+    times = [sim.moves("some", steps).knots[-1][0] for steps in ([on, on], [on, still, on])]
+    assert times[1] == pytest.approx(times[0] + rest)
+    assert commanded_path(sim.spin(0.0))[-1].tolist() == [0.0, 0.0, 0.0]
+
+
 def test_spin_turns_on_the_spot() -> None:
     path = commanded_path(sim.spin(-2.0))
     assert np.abs(path[:, :2]).max() == 0.0

@@ -40,22 +40,32 @@ _SURE = 2.0
 
 
 class Lateness:
-    """Passes messages to a collector, and notes how long after its stamp each was received."""
+    """Passes messages to a collector, and notes how long after its stamp each was received.
+
+    Of transforms that come beside other messages (where the lidar of the scans sits) nothing is
+    noted: several nodes send them, each by its clock.
+    """
 
     def __init__(self, taker: Any) -> None:
         self._taker = taker
         self._late = array("d")
         self._received = array("d")
         self._many = False
+        self._others = False
 
     def take(self, message: BagMessage) -> None:
         """Add a message."""
         self._taker.take(message)
-        if not is_static(message.topic):
-            received = message.received / 1e9
-            self._received.append(received)
-            self._late.append(received - (header_stamp(message.content) or received))
-            self._many |= hasattr(message.content, "transforms")
+        transforms = hasattr(message.content, "transforms")
+        if is_static(message.topic) or (transforms and self._others):
+            return
+        if not transforms and not self._others:
+            self._others = True
+            self._late, self._received = array("d"), array("d")
+        received = message.received / 1e9
+        self._received.append(received)
+        self._late.append(received - (header_stamp(message.content) or received))
+        self._many = transforms
 
     @property
     def usual(self) -> float:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.files.instants import instants
 from werrimbi_odom.files.run import Reference, Ticks
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -114,7 +115,7 @@ def _windows(ticks: Ticks, reference: Reference) -> _Windows | None:
     wide = max(wide, float(np.median(np.diff(seen))))
     if end - begin < FEWEST * wide:
         return None
-    edges = begin + wide * np.arange(int((end - begin) / wide) + 1)
+    edges = instants(begin, end, wide, time, 2.0 * wide)
     rows = np.searchsorted(time, edges)
     whole = np.diff(rows) > 0
     counts = np.stack([counts.mean(axis=0), counts[1] - counts[0]])

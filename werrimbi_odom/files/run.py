@@ -261,8 +261,8 @@ class Collected(NamedTuple):
 
 
 def counts_of(values: Floats) -> Counts:
-    """Convert counts to int64 if all are integers that a float64 represents exactly."""
+    """Counts as int64 if all are integers that a float64 represents exactly, else NaN for inf."""
     exact = np.abs(values) < EXACT
     if exact.all() and (values == np.rint(values)).all():
         return values.astype(np.int64)
-    return values
+    return np.where(np.isfinite(values), values, np.nan)

@@ -87,14 +87,20 @@ class Driving:
         self.last = DrivenStep(raw, drive)
         return after_effects(self.robot, raw, drive)
 
+    def check(self, channels: Channels | None = None) -> None:
+        """Check that the next step has all that effects read; InputError before anything changes.
+
+        Channels without a value keep the last.
+        """
+        if self._memory is not None:
+            check_channels(self.robot, self._channels | _measured(channels or {}))
+
     def _spans(self, channels: Channels | None) -> Mapping[str, Span[float]] | None:
         """From the last message's values to this one's; channels without a value keep the last."""
         if not channels and not self._channels:
-            check_channels(self.robot, {})
             return None
         before = dict(self._channels)
         self._channels.update(_measured(channels or {}))
-        check_channels(self.robot, self._channels)
         return {name: Span(before.get(name, now), now) for name, now in self._channels.items()}
 
 

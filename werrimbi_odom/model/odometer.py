@@ -165,7 +165,15 @@ class Odometer:
         Estimate or None
             None for the first message (no interval yet) and for one that was rejected; `tally`
             counts the reason.
+
+        Raises
+        ------
+        InputError
+            If an effect reads a channel that was never measured. The message is as if it never
+            came: the next one contains its travel.
         """
+        if self._time is not None:
+            self._driving.check(channels)
         left, right = self._wiring.wheels(left, right)
         step = self._encoder.step(time, left, right)
         if step is None:

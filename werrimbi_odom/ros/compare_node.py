@@ -241,10 +241,12 @@ class CompareNode(Node):  # type: ignore[misc]
             topics = " and ".join(self.resolve_topic_name(name) for name in silent)
             return DiagnosticStatus.STALE, f"nothing to compare: {topics} silent{before}"
         if min(self._heard.values()) - self._compared_at > SILENT:  # disjoint stamps
+            apart = self._latest - self._track.newest
+            if not math.isfinite(apart):  # of one of both no message was ever taken
+                new = self._counts
             refused = ", ".join(f"{key} ({n})" for key, n in new.items() if " refused: " in key)
             if refused:
                 return DiagnosticStatus.ERROR, f"nothing to compare: {refused}{before}"
-            apart = self._latest - self._track.newest
             return DiagnosticStatus.WARN, (
                 "no stamp of the reference falls between two of the odometry; its last is "
                 f"{apart:+.1f} s from the odometry's: are both on one clock (use_sim_time)?{before}"

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import shlex
 import time
@@ -113,7 +114,9 @@ class Records:
         """Start recording a drive, if requested; InputError if the bag cannot be written."""
         self.close()
         if self._folder:
-            bag = Path(self._folder) / f"{name}_{time.strftime('%Y%m%d_%H%M%S')}"
+            first = Path(self._folder) / f"{name}_{time.strftime('%Y%m%d_%H%M%S')}"
+            bags = (first.with_name(f"{first.name}_{number}") for number in itertools.count(2))
+            bag = next(bag for bag in itertools.chain([first], bags) if not bag.exists())
             self._bag = Bagging(self._node, bag, self._topics)
 
     def ending(self) -> None:

@@ -9,6 +9,7 @@ would.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shutil
@@ -161,8 +162,10 @@ class Watching(NoWatching):
             self._found = json.loads((self._folder / "found.json").read_text(encoding="utf-8"))
             self._better = better.read_text(encoding="utf-8") if better.exists() else ""
         except (OSError, ValueError):
-            said = (self._folder / "said").read_text(encoding="utf-8", errors="replace")
-            last = (said.strip().splitlines() or ["it was ended"])[-1]
+            said, last = self._folder / "said", "its files were deleted"
+            with contextlib.suppress(OSError):  # as by what tidies up /tmp
+                lines = said.read_text(encoding="utf-8", errors="replace").strip().splitlines()
+                last = lines[-1] if lines else "it was ended"
             self._found, self._better = {"error": f"the diagnosis failed: {last}"}, ""
         self._looks += 1
         self._used += float(self._found.get("cpu_s", 0.0))

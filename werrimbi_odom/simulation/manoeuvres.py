@@ -80,7 +80,7 @@ def moves(
 ) -> Manoeuvre:
     """A manoeuvre of moves from rest to rest, each a line, an arc or a turn on the spot.
 
-    Steps are (length, turn), signed [m, rad]; both together make an arc.
+    Steps are (length, turn), signed [m, rad]; both together make an arc, (0, 0) a rest.
     """
     pace = pace or MoveLimits()
     knots: list[Knot] = [(0.0, 0.0, 0.0)]
@@ -95,6 +95,8 @@ def moves(
 
 def _trapezium(length: float, turn: float, pace: MoveLimits) -> list[tuple[float, float]]:
     """Trapezoidal speed profile: corners (time, rate) of a move's progress from 0 to 1."""
+    if not (length or turn):
+        return []
     rate = min(_ratio(pace.speed, length), _ratio(pace.yaw_rate, turn))
     ramp = min(_ratio(pace.acceleration, length), _ratio(pace.yaw_acceleration, turn))
     rate = min(rate, ramp**0.5)  # a short move does not reach full speed

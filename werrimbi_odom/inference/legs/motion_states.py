@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.instants import instants
 from werrimbi_odom.files.run import NoDriving, by_hand
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
@@ -19,6 +20,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # [s]
+_REACH = 60.0  # as far as the grid reaches into silences [s]
 SLID = (
     "the wheels turned and the scans stood still: the robot was held or against a wall, or the "
     "scans slid along a bare one"
@@ -63,8 +65,10 @@ def driven(
     What is driven in stretches that the reference did not see, `unseen`, is not counted.
     """
     first, last = float(counters.time[0]), float(counters.time[-1])
-    grid = np.append(np.arange(first, last, _GRID), last)
+    grid = np.append(instants(first, last, _GRID, counters.time, _REACH), last)
     left, right = counters.travel(robot, grid)
+    silent = np.diff(grid) > 2 * _GRID
+    left[silent], right[silent] = 0.0, 0.0  # what was gone in a silence is not gone at once
     way, turn = 0.5 * (left + right), (right - left) / robot.track
     rolled = 0.5 * (np.abs(left) + np.abs(right))
     moving = rolled > standing_below(rolled)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, median_filter
 
+from werrimbi_odom.files.instants import instants
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
@@ -115,10 +116,13 @@ def windows_of(
     steps = max(2, round(rules.NO_DRIVING_WINDOW / step))
     if 0.5 * step > rules.NO_DRIVING_WINDOW or last - first < rules.NO_DRIVING_SPANS * steps * step:
         return None
-    grid = np.arange(first, last, step)
+    silence = max(rules.NO_DRIVING_SILENCE * usual[1], 2.0 * step)
+    reach = rules.AGREE_LATEST + steps * step + silence
+    grid = instants(first, last, step, counters.time, reach)
     left = np.interp(grid, counters.time, counters.left) * robot.left_tick
     right = np.interp(grid, counters.time, counters.right) * robot.right_tick
     way = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
+    way[np.diff(grid) > 2 * step] = 0.0  # all that was gone in a silence is no way of a window
     rolled = np.concatenate([[0.0], np.cumsum(way)])
     by_wheels = rolled if ways else (right - left) / robot.track
     if ways:

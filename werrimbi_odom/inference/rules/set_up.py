@@ -153,8 +153,8 @@ DELAY_UNEXPLAINED = 1e-3
 without noise does not give infinite evidence for the nearest lag."""
 
 DELAY_TAMED = 3.0
-"""Limit of a step in multiples of the ninth decile (winsorising): a failed match may be a
-hundred."""
+"""Limit of a step in multiples of the ninth decile near driving (winsorising): a failed match may
+be a hundred."""
 
 # ----------------------------------------------------------------------------- positions alone
 

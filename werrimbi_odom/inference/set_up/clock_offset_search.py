@@ -11,15 +11,17 @@ would be that of the jitter and not of the motion.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
+from werrimbi_odom.files.instants import instants
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.gaps import touched
+from werrimbi_odom.inference.legs.windows import standing_below
 from werrimbi_odom.inference.set_up.records import SetUpRecord
 from werrimbi_odom.model.pose import Floats, wrap_all
 
@@ -43,12 +45,15 @@ def lag_of(records: Sequence[SetUpRecord]) -> tuple[float, float]:
     for record in records:
         if record.seen.size < rules.FEWEST_CUTS:
             continue
-        grid = _grid(record, most)
+        reach = (most + _STEPS) * _PERIOD + _silence(record.seen)
+        grid = instants(record.time[0], record.time[-1], _PERIOD, record.seen, reach)
         if grid.size < rules.DELAY_SPANS * most:
             continue
         wheels = _wheels(record, grid)
         unseen = [*record.not_driven, *record.taken_out, *_silences(record.seen)]
-        for total, measured in ((sums[0], _turns(record, grid)), (sums[1], _squares(record, grid))):
+        near = _near_driving(wheels(0), most)
+        both = _turns(record, grid, near), _squares(record, grid, near)
+        for total, measured in zip(sums, both, strict=True):
             if measured is not None:
                 measured[_in_any(touched(grid, unseen))] = np.nan
                 total.add(wheels, measured, _interval(record))
@@ -129,24 +134,6 @@ class _Sums:
         return np.asarray(np.clip(1.0 - explained, rules.DELAY_UNEXPLAINED, 1.0))
 
 
-def _grid(record: SetUpRecord, most: int) -> Floats:
-    """Instants a period apart, as far as a lag of `most` periods reaches into silences [s].
-
-    In a silence a clock may leap by years: from zero to the time of day, once that is known.
-    """
-    begin, reach = record.time[0], most + _STEPS
-    silences = _silences(record.seen)
-    until = [*(silence[0] for silence in silences), record.seen[-1]]
-    since = [record.seen[0], *(silence[1] for silence in silences)]
-    last = math.ceil((record.time[-1] - begin) / _PERIOD)
-    parts, done = [], 0
-    for first, end in zip(since, until, strict=True):
-        low = max(int((first - begin) / _PERIOD) - reach, done)
-        done = max(min(int((end - begin) / _PERIOD) + reach + 1, last), done)
-        parts.append(np.arange(low, done))
-    return np.asarray(begin + _PERIOD * np.concatenate(parts))
-
-
 def _interval(record: SetUpRecord) -> float:
     """Usual time between two poses [s]."""
     return float(np.median(np.diff(record.seen)))
@@ -183,27 +170,37 @@ def _shifted(values: Floats, lag: int) -> Floats:
 
 def _silences(seen: Floats) -> list[tuple[float, float]]:
     """Stretches in which the reference is silent and its motion unknown."""
-    duration = np.diff(seen)
-    usual = max(rules.DELAY_WINDOW, rules.GAP_INTERVALS * float(np.median(duration)))
-    return [(seen[row], seen[row + 1]) for row in np.flatnonzero(duration > usual)]
+    return [(seen[row], seen[row + 1]) for row in np.flatnonzero(np.diff(seen) > _silence(seen))]
 
 
-def _turns(record: SetUpRecord, grid: Floats) -> Floats | None:
+def _silence(seen: Floats) -> float:
+    """Time without a pose above which the reference is silent [s]."""
+    return max(rules.DELAY_WINDOW, rules.GAP_INTERVALS * float(np.median(np.diff(seen))))
+
+
+def _near_driving(wheels: tuple[Floats, Floats], most: int) -> NDArray[np.bool_]:
+    """Windows from which one with rolling wheels is no farther than the longest lag, (n,)."""
+    rolled = np.nan_to_num(np.abs(wheels[0]) + np.abs(wheels[1]))
+    return np.asarray(maximum_filter1d(rolled > standing_below(rolled), 2 * most + 1))
+
+
+def _turns(record: SetUpRecord, grid: Floats, near: NDArray[np.bool_]) -> Floats | None:
     known = np.isfinite(record.yaw)
     if known.sum() < rules.FEWEST_CUTS:
         return None
     yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
-    return _winsorised(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
+    turns = _over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan))
+    return _winsorised(turns, near)
 
 
-def _squares(record: SetUpRecord, grid: Floats) -> Floats | None:
+def _squares(record: SetUpRecord, grid: Floats, near: NDArray[np.bool_]) -> Floats | None:
     known = np.isfinite(record.place)
     if known.sum() < rules.FEWEST_CUTS:
         return None
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
     )
-    return _winsorised(np.abs(_over(place))) ** 2
+    return _winsorised(np.abs(_over(place)), near) ** 2
 
 
 def _over(values: NDArray[_Numbers]) -> NDArray[_Numbers]:
@@ -217,9 +214,12 @@ def _in_any(steps: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(held > 0.5)
 
 
-def _winsorised(values: Floats) -> Floats:
-    """Winsorise outliers (failed matches)."""
-    size = np.abs(values[np.isfinite(values)])
+def _winsorised(values: Floats, near: NDArray[np.bool_]) -> Floats:
+    """Winsorise outliers (failed matches), by what is usual near driving.
+
+    After a minute of driving and an hour at rest every turn would be an outlier.
+    """
+    size = np.abs(values[np.isfinite(values) & near])
     if size.size == 0:
         return values
     limit = rules.DELAY_TAMED * float(np.quantile(size, 0.9))
