@@ -79,7 +79,8 @@ def _step_of(yaw: Floats) -> float:
     if not changes.size:
         return 0.0
     step = float(changes.min())
-    return step if np.count_nonzero(changes < 1.01 * step) >= rules.JUMP_STEPS else 0.0
+    alike = np.count_nonzero(changes < rules.JUMP_STEPS_ALIKE * step)
+    return step if alike >= rules.JUMP_STEPS else 0.0
 
 
 def _windows(

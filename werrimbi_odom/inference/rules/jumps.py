@@ -65,9 +65,10 @@ JUMP_SMALL = 0.2
 """Share of a run's largest jump up to which a jump spoils no leg: beside a lost position it is
 noise, and what lasts is found by itself once the model is right (an event)."""
 
-JUMP_STEPS = 3
-"""How often the smallest change of a heading must occur (within 1 %) to be the step in which it is
-given (a compass of whole degrees). Chosen: a jump is one change, a spike two."""
+JUMP_STEPS, JUMP_STEPS_ALIKE = 3, 1.01
+"""How often the smallest change of a heading must occur to be the step in which it is given (a
+compass of whole degrees), and the factor within which it does. Chosen: a jump is one change, a
+spike two."""
 
 JUMP_OF_A_LEG = 40.0
 """Squared deviation of a leg, relative to the median of its run, above which the reference jumped:
