@@ -6,6 +6,6 @@
 counters. `odometry_messages` and `markers` convert an estimate to messages, `diagnostics` to words;
 `input_health` counts for /diagnostics. `odom_parameters` reads the robot file, and
 `live_odometer` tests its values. `topics` publishes, subscribes and finds other nodes, `planar`
-checks incoming poses, `slip` and `phase_learning` use a gyro. What begins with "compare_", "drive_" or
-"simulated_" is of the other nodes.
+checks incoming poses, `slip` and `phase_learning` use a gyro. What begins with "compare_",
+"drive_" or "simulated_" is of the other nodes.
 """
