@@ -87,13 +87,13 @@ def _bends(reference: Reference) -> Floats | None:
     ):
         if not np.isfinite(values).all():
             continue
-        digit = _digit(values)
+        digit = last_digit(values)
         found.append(((1.0 - share) * steps[:-1] - share * steps[1:]) / digit)
         moved |= np.maximum(np.abs(steps[:-1]), np.abs(steps[1:])) > digit
     return np.where(moved, np.stack(found), np.nan) if found else None
 
 
-def _digit(values: Floats) -> float:
+def last_digit(values: Floats) -> float:
     """Unit of the last decimal place in which some values are written."""
     places = next(
         (
