@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,8 @@ TIME = np.arange(0.0, 60.0, 0.1)
 FORTH = np.where(TIME % 20.0 < 12.0, 0.3, np.where(TIME % 20.0 < 16.0, -0.2, 0.0))
 YAW = np.cumsum(0.1 * np.where(FORTH != 0.0, 0.4 * np.sin(0.3 * TIME), 0.0))
 PLACE = np.cumsum(0.1 * FORTH * np.exp(1j * YAW))
-COURSES = {
-    "np.gradient": np.gradient,
+COURSES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "np.gradient": lambda z: np.asarray(np.gradient(z)),
     "from the row before": lambda z: np.diff(z, prepend=z[0]),
     "to the row after": lambda z: np.diff(z, append=z[-1]),
 }
@@ -32,7 +33,8 @@ def read(path: Path, place: np.ndarray, yaw: np.ndarray, digits: int) -> tuple[b
 
 
 def seen(noise: float) -> np.ndarray:
-    return PLACE + np.random.default_rng(0).normal(0.0, noise, (2, TIME.size)).T @ (1.0, 1j)
+    x, y = np.random.default_rng(0).normal(0.0, noise, (2, TIME.size))
+    return np.asarray(PLACE + x + 1j * y)
 
 
 @pytest.mark.parametrize("course", COURSES)

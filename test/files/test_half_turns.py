@@ -23,7 +23,8 @@ BEHIND = (TIME > 5.0) & (TIME < 30.0) | (TIME > 40.0)
 def a_run(yaw: np.ndarray, place: np.ndarray = PLACE, sense: float = 1.0) -> Run:
     noise = np.random.default_rng(0).normal(0.0, 3e-3, (3, TIME.size))
     way, turn = np.cumsum(0.05 * FORTH), 0.15 * YAW
-    ticks = Ticks(TIME, *(np.rint(sense * 6366.0 * (way + side * turn)) for side in (-1.0, 1.0)))
+    left, right = (np.rint(sense * 6366.0 * (way + side * turn)) for side in (-1.0, 1.0))
+    ticks = Ticks(TIME, left, right)
     seen = Reference(TIME, place.real + noise[0], place.imag + noise[1], wrap_all(yaw + noise[2]))
     return Run("marker", Path("marker"), ticks, seen)
 

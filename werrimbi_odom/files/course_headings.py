@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.files.interpolated_poses import last_digit
 from werrimbi_odom.files.run import Reference
@@ -50,7 +51,9 @@ def without_course(reference: Reference) -> tuple[Reference, str]:
     )
 
 
-def _are_directions(heading: Floats, steps: np.ndarray, digit: float, rounding: float) -> bool:
+def _are_directions(
+    heading: Floats, steps: NDArray[np.complex128], digit: float, rounding: float
+) -> bool:
     """Whether headings are the directions of steps (n,) to the last digit, or their opposites."""
     size = np.abs(steps)
     long = size > LONG * digit

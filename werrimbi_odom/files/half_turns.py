@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -65,7 +66,7 @@ def without_half_turns(run: Run, bits: int) -> Run:
     return replace(run, reference=replace(reference, yaw=headings), damage=(*run.damage, words))
 
 
-def _turned_round(seen: Reference) -> np.ndarray:
+def _turned_round(seen: Reference) -> NDArray[np.bool_]:
     """Which headings look the other way than the first, (m,)."""
     turns = wrap_all(np.diff(seen.yaw))
     size = 2 * REACH + 1
@@ -75,7 +76,7 @@ def _turned_round(seen: Reference) -> np.ndarray:
     way = np.hypot(np.diff(seen.x), np.diff(seen.y))
     known = np.nan_to_num(way)
     leaps = known > np.maximum(STAYS, AT_ONCE * median_filter(known, size, mode="nearest"))
-    return np.concatenate([[0], np.cumsum(at_once & ~leaps)]) % 2 == 1
+    return np.asarray(np.concatenate([[0], np.cumsum(at_once & ~leaps)]) % 2 == 1)
 
 
 def _ahead(ticks: Ticks, seen: Reference, yaw: Floats) -> float:

@@ -32,19 +32,20 @@ def moved_in_silence(counters: Counters, reference: Reference, robot: Robot) -> 
     ways = np.diff(places.x) + 1j * np.diff(places.y)
     turns = wrap_all(np.diff(headings.yaw)).astype(np.complex128)
     found: dict[tuple[float, float], list[str]] = {}
-    for time, steps, least, per_way, words in (
-        (places.time, ways, rules.NO_DRIVING_WAY, 1.0, lambda step: f"{step:.2f} m"),
+    for time, steps, least, per_way, words, unit in (
+        (places.time, ways, rules.NO_DRIVING_WAY, 1.0, "{:.2f} m", 1.0),
         (
             headings.time,
             turns,
             rules.NO_DRIVING_TURN,
             2.0 / robot.track,
-            lambda step: f"{math.degrees(step):.0f}°",
+            "{:.0f}°",
+            math.radians(1.0),
         ),
     ):
         for at in _elsewhere(time, steps, counters, robot, least, per_way):
             ends = float(time[at]), float(time[at + 1])
-            found.setdefault(ends, []).append(words(abs(steps[at])))
+            found.setdefault(ends, []).append(words.format(abs(steps[at]) / unit))
     return [
         NoDriving(*ends, "carried", f"{_WORDS} {' and '.join(found[ends])}")
         for ends in sorted(found)
