@@ -32,6 +32,7 @@ from werrimbi_odom.files.run_folder import (
     read_reference,
     read_run_folder,
 )
+from werrimbi_odom.files.stated_noise import without_wrong_noise
 from werrimbi_odom.files.unfinished_bag import ending
 
 _TEXT = (".csv", ".txt", ".dat", ".log", ".tsv", ".clf")
@@ -83,7 +84,7 @@ def read_run(
     run = without_held_counts(run)
     bits = robot_file.robot.encoder_bits
     if reference is None:
-        return without_half_turns(run, bits)
+        return without_wrong_noise(without_half_turns(run, bits))
     found: FoundReference = _of_kind(
         Path(reference),
         _reference_folder,
@@ -100,7 +101,7 @@ def read_run(
         no_reference="",
         taken_out=found.taken_out,
     )
-    return without_half_turns(run, bits)
+    return without_wrong_noise(without_half_turns(run, bits))
 
 
 def bag_at(path: Path, table: str = TICKS) -> Path | None:
