@@ -12,6 +12,7 @@ from typing import Any
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import SUFFIXES, named_files
 from werrimbi_odom.files.echoed_topics import echoed_files
+from werrimbi_odom.files.half_turns import without_half_turns
 from werrimbi_odom.files.held_counts import without_held_counts
 from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile
@@ -31,6 +32,7 @@ from werrimbi_odom.files.run_folder import (
     read_reference,
     read_run_folder,
 )
+from werrimbi_odom.files.stated_noise import without_wrong_noise
 from werrimbi_odom.files.unfinished_bag import ending
 
 _TEXT = (".csv", ".txt", ".dat", ".log", ".tsv", ".clf")
@@ -80,8 +82,9 @@ def read_run(
         TICKS,
     )
     run = without_held_counts(run)
+    bits = robot_file.robot.encoder_bits
     if reference is None:
-        return run
+        return without_wrong_noise(without_half_turns(run, bits))
     found: FoundReference = _of_kind(
         Path(reference),
         _reference_folder,
@@ -89,7 +92,7 @@ def read_run(
         REFERENCE,
     )
     notes = (*run.notes, f"reference from {reference}", *found.notes)
-    return replace(
+    run = replace(
         run,
         reference=found.reference,
         notes=notes,
@@ -98,6 +101,7 @@ def read_run(
         no_reference="",
         taken_out=found.taken_out,
     )
+    return without_wrong_noise(without_half_turns(run, bits))
 
 
 def bag_at(path: Path, table: str = TICKS) -> Path | None:

@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.course_headings import without_course
 from werrimbi_odom.files.csv_table import CsvTable, read_table
+from werrimbi_odom.files.interpolated_poses import without_interpolated
 from werrimbi_odom.files.own_headings import words_about_own_headings
 from werrimbi_odom.files.row_order import in_order
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
@@ -185,15 +187,19 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         for name in SIGMA_COLUMNS
     ]
     reference, was_sorted = in_order(Reference(_times(table), x, y, yaw, *sigmas))
+    reference, course = without_course(reference)
     reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
+    whole = _whole_seconds(table, reference.time)
+    reference, resampled = without_interpolated(reference)
     keep, late = _on_time(reference)
     remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
     if was_sorted:
         remarks += (f"{path.name}: its rows are not in the order of time; they are sorted by t_s",)
     remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
-    remarks += _whole_seconds(table, reference.time)
+    remarks += tuple(f"{path.name}: {each}" for each in (course, resampled) if each)
+    remarks += whole
     reference, alike = one_kind_of_row(reference if keep.all() else reference.chosen(keep))
     remarks += (f"{path.name}: {alike}",) if alike else ()
     return reference, remarks

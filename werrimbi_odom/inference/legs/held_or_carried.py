@@ -23,6 +23,7 @@ from werrimbi_odom.inference.legs.displacement_agreement import agreement_of_dis
 from werrimbi_odom.inference.legs.gaps import as_stuck
 from werrimbi_odom.inference.legs.measured_motion import MeasuredMotion, judged_motion, runs_of
 from werrimbi_odom.inference.legs.motion_states import LOST, SLID
+from werrimbi_odom.inference.legs.moved_in_silence import moved_in_silence
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -67,19 +68,22 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     parts = _with_rests(parts, counters, robot)
     parts = [part if part.words == CARRIED else as_stuck(part, reference) for part in parts]
     if turns is not None and by_turns is None:  # to and fro on a line, carried in between
-        by_hand = _turned_by_hand(turns, robot.track)
-        alone = (
-            one
-            for one in by_hand
-            if all(one.end < each.begin or one.begin > each.end for each in parts)
-        )
-        parts = sorted([*parts, *alone])
+        parts = _with_others(parts, _turned_by_hand(turns, robot.track))
+    parts = _with_others(parts, moved_in_silence(counters, reference, robot))
     if parts and not reference.has_yaw.any():
         parts = _with_what_follows(parts, counters)
     first, last = float(counters.time[0]), float(counters.time[-1])
     return tuple(
         part._replace(begin=max(part.begin, first), end=min(part.end, last)) for part in parts
     )
+
+
+def _with_others(parts: Sequence[NoDriving], others: Sequence[NoDriving]) -> list[NoDriving]:
+    """Add those of the others that are beside the parts, in order."""
+    alone = (
+        one for one in others if all(one.end < each.begin or one.begin > each.end for each in parts)
+    )
+    return sorted([*parts, *alone])
 
 
 def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:

@@ -185,6 +185,11 @@ NO_DRIVING_JOINED, NO_DRIVING_SILENT = 1.0, 3.0
 """Time [s] between two stretches, or to an end of the drive, that is left out with them: always,
 and if no window in between agrees with the wheels. To hold a robot takes time."""
 
+SILENT_TO_MOVE = 2.0
+"""Shortest silence of the reference [s], also ten of its intervals (`GAP_INTERVALS`), in which a
+robot whose wheels stand may be put elsewhere. Chosen: to lift it and set it down takes as long;
+less is a jump of the reference."""
+
 NO_DRIVING_SPLIT = 1.5
 """Shortest part of a stretch [s] that is reported by itself, as held or as carried."""
 
