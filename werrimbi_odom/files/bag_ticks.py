@@ -218,7 +218,7 @@ class Pairs(_TwoCounts):
         bits = _width(robot_file, PAIRS[source.kind])
         super().__init__(f"{path}: {source.name}", bits)
         self._left = source.name.split(",")[0]
-        self._wraps = int(robot_file.values["encoder_bits"]) or bits  # type: ignore[call-overload]
+        self._wraps = int(robot_file.values["encoder_bits"]) or bits  # type: ignore[arg-type]
         self._window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._read_at, self._side, self._count = array("d"), array("b"), array("q")
         self._no_numbers = 0

@@ -73,7 +73,7 @@ def _upwards(where: NDArray[np.float64], turned: Rotation) -> NDArray[np.float64
     """Normal of the plane in which the robot moved, if it is tilted, and known; else None."""
     away = where - where.mean(axis=0)
     _, sizes, axes = np.linalg.svd(away, full_matrices=False)
-    normal = axes[2]
+    normal: NDArray[np.float64] = axes[2]
     tilt = math.acos(min(abs(float(normal[2])), 1.0))
     height = float(np.linalg.norm(away[:, 2]))
     if tilt < TILTED or sizes[2] > min(FLAT * height, SPREAD * sizes[1]):
