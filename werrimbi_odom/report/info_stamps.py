@@ -20,11 +20,12 @@ def stamps_words(held: Held) -> Iterator[str]:
     for name, stamps in held.stamps.items():
         chosen = [held.wheels and held.wheels.name, *held.topics]
         if any(each and name in (*each.split(","), each.partition(":")[0]) for each in chosen):
-            yield _clock(name, stamps)
+            yield clock_words(name, stamps)
     yield from _apart(held)
 
 
-def _clock(name: str, stamps: Stamps) -> str:
+def clock_words(name: str, stamps: Stamps) -> str:
+    """Which clock a topic is believed by, and why."""
     if stamps.jitter is None:
         words = (
             f"{name} has no stamps: the times of receipt are used, whose intervals vary by "
