@@ -20,7 +20,7 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.run import Collected, Reference, Ticks
 from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
 from werrimbi_odom.files.unstamped import NEVER_STAMPS, with_stamps
-from werrimbi_odom.report.info_words import _clock
+from werrimbi_odom.report.info_stamps import clock_words
 
 MS = 10**6
 WHEELS = ["left_wheel_joint", "right_wheel_joint"]
@@ -42,7 +42,7 @@ def test_the_rate_of_messages_in_bursts_is_how_many_come_a_second(tmp_path: Path
 def test_stamps_of_a_simulation_are_of_another_clock() -> None:
     """Received in 2025, stamped from zero, by a clock that goes a little slower."""
     stamped = np.arange(0.0, 60.0, 0.05)
-    words = _clock("/joint_states", _judged(stamped, 1.7e9 + 1.02 * stamped))
+    words = clock_words("/joint_states", _judged(stamped, 1.7e9 + 1.02 * stamped))
     assert "another clock" in words
     assert "e+09" not in words
     assert "late" not in words
@@ -56,14 +56,14 @@ def test_the_evener_clock_is_to_be_believed_if_either_is(uneven: float, told: st
     random = np.random.default_rng(1)
     received = 0.2 * np.arange(500.0) + random.normal(0.0, 0.02, 500)
     stamped = 0.2 * np.arange(500.0) + uneven * (received - 0.2 * np.arange(500.0))
-    assert told in _clock("/odom", _judged(stamped, received))
+    assert told in clock_words("/odom", _judged(stamped, received))
 
 
 def test_milliseconds_of_a_simulation_are_even_enough() -> None:
     """A Gazebo's joints at 10 Hz: stamped 99 to 101 ms apart, received 100 ms apart."""
     received = 0.1 * np.arange(300.0)
     stamped = np.round(received + np.random.default_rng(1).choice([0.0, 1e-3], 300), 3)
-    assert "believe the headers" in _clock("/joint_states", _judged(stamped, received))
+    assert "believe the headers" in clock_words("/joint_states", _judged(stamped, received))
 
 
 def test_what_waited_behind_a_pause_is_stamped_late() -> None:
@@ -184,7 +184,7 @@ def test_one_message_without_a_stamp_is_left_out(
     assert run.ticks.time.max() == run.reference.time.max()
     assert any(words.startswith(f"{topic}: 1 of its messages has no stamp") for words in run.damage)
     with opened_bag(path) as bag:
-        assert "no stamps" not in _clock(topic, stamps_of(bag, [topic])[topic])
+        assert "no stamps" not in clock_words(topic, stamps_of(bag, [topic])[topic])
 
 
 def test_a_sender_that_never_stamps_is_told_by_receipt(

@@ -5,17 +5,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, opened_bag
-from werrimbi_odom.files.bag_contents import contents_of
+from werrimbi_odom.files.bag_contents import Contents, contents_of
 from werrimbi_odom.files.bag_reference import LOCALISED
 from werrimbi_odom.files.bag_ticks import KINDS
 from werrimbi_odom.files.bag_wheels import Wheels
 from werrimbi_odom.files.first_robot import FirstRobot, with_driver
 from werrimbi_odom.files.measured_topic import Measured, preference
 from werrimbi_odom.files.read_run import bag_at
+from werrimbi_odom.files.reference_choice import choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.stamps import stamps_of
@@ -58,7 +61,9 @@ def chosen_topics(
         if wheels is not None:  # odometry that is asked for as the wheels measures nothing more
             others = {*others, wheels.name}
         ours = [each for each in contents.references if each.name not in others]
-        reference = _best(ours, reference_topic)
+        reference = _best(ours, reference_topic) or _asked_for(contents, wheels, reference_topic)
+        if reference is not None and reference not in contents.references:
+            contents = replace(contents, references=(reference, *contents.references))
         beside = None if reference_topic else _gyro(ours, reference)
         listed = [wheels, *contents.references]
         topics = {name for each in listed if each for name in _topics(each)}
@@ -102,6 +107,18 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
     usable = [each for each in references if each.independent and each.messages >= rules.FEW_POSES]
     usable = usable or [each for each in references if each.independent]
     return min(usable, key=preference, default=None)
+
+
+def _asked_for(contents: Contents, wheels: Wheels | None, wish: str | None) -> Measured | None:
+    """The reference that is asked for in other words than it is listed; None if there is none."""
+    if wish is None:
+        return None
+    with suppress(InputError):  # said when the drive is read
+        chosen = choose_reference(contents, wheels or Wheels("", "", 0, "counts"), wish, False)
+        if chosen is not None:
+            child = f":{chosen.child}" if chosen.child else ""
+            return replace(chosen.source, name=f"{chosen.source.name}{child}")
+    return None
 
 
 def _gyro(references: Sequence[Measured], reference: Measured | None) -> Measured | None:

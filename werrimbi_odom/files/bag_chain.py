@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.frames import MOVED, Chain, Edge, chain, frame, is_static
+from werrimbi_odom.files.levelled import levelled
 from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.own_odometry import is_base
 from werrimbi_odom.files.run import Collected, Reference, ReferenceKind
@@ -100,11 +101,11 @@ class ChainCollector:
                 "one time"
             )
         steps = (_at(each, time) for each in moved)
-        where, _, yaw = _composed(steps, self._chain.backwards)
+        where, turn, yaw = _composed(steps, self._chain.backwards)
         kind: ReferenceKind | None = None
         told = self._chain.in_words()
         measured = self._chain.measures
-        if measured and len(moved) > len(measured):
+        if measured and any(each.made_from_wheels for each in self._chain.steps):
             names = " and ".join(f"{each.parent} -> {each.child}" for each in measured)
             told += f", composed at each change of {names}"
             # A localiser corrects itself gradually, so its errors at successive corrections are
@@ -113,6 +114,9 @@ class ChainCollector:
         if ahead > POSTDATED:
             told += f", which is stamped {ahead:.2g} s ahead of its receipt and set back by that"
         x, y = where[:, 0].copy(), where[:, 1].copy()
+        if on_plane := levelled(where, turn.as_quat()):
+            x, y, yaw, tilted = on_plane
+            told += f", {tilted}"
         return Collected(Reference(time, x, y, yaw, kind=kind), told)
 
     def _ahead_of_wheels(self, moved: list[_Moved]) -> float:

@@ -17,6 +17,7 @@ from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
+from werrimbi_odom.files.levelled import levelled
 from werrimbi_odom.files.measured_topic import Measured
 from werrimbi_odom.files.own_odometry import is_map
 from werrimbi_odom.files.reference_choice import NONE
@@ -40,6 +41,8 @@ class _Row(NamedTuple):
     """Parent and child frame."""
     values: tuple[float, float, float, float, float, float]
     """Stamp, x, y, yaw, and the two sigmas."""
+    solid: tuple[float, ...] = ()
+    """x, y, z and a quaternion x, y, z, w, of poses in space."""
 
 
 def kinds_in_words() -> str:
@@ -62,6 +65,7 @@ class ReferenceCollector:
         self._base = str(robot_file.values["base_frame_id"])
         self._rows = _ROWS[source.kind]
         self._found: dict[tuple[str, str], array[float]] = {}
+        self._solid: dict[tuple[str, str], array[float]] = {}
         self._forces: dict[str, array[float]] = {}  # by frame
 
     def take(self, message: BagMessage) -> None:
@@ -73,6 +77,7 @@ class ReferenceCollector:
             forces.extend((float(force.x), float(force.y), float(force.z)))
         for row in self._rows(message):
             self._found.setdefault(row.frames, array("d")).extend(row.values)
+            self._solid.setdefault(row.frames, array("d")).extend(row.solid)
 
     def reference(self) -> Collected:
         """The reference, and its frames in words.
@@ -88,6 +93,9 @@ class ReferenceCollector:
         if self._source.kind == FIX:
             table[:, 1], table[:, 2] = east_and_north(self._place, *table[:, 1:4].T)
             table[:, 3] = NAN
+        solid = np.array(self._solid[parent, child]).reshape(-1, 7)
+        if on_plane := levelled(solid[:, :3], solid[:, 3:]):
+            table[:, 1], table[:, 2], table[:, 3], mounted = on_plane
         newest, left_out = newest_of_bursts(table[:, 0])
         time, x, y, yaw, sigma_xy, sigma_yaw = table[newest].T.copy()
         if not (np.isfinite(yaw) | np.isfinite(x + y)).any():
@@ -141,10 +149,14 @@ def planar(point: Any, orientation: Any) -> tuple[float, float, float]:
     return x, y, _yaw(orientation)
 
 
+def _solid(point: Any, q: Any) -> tuple[float, ...]:
+    return tuple(float(each) for each in (point.x, point.y, point.z, q.x, q.y, q.z, q.w))
+
+
 def _of_pose(message: BagMessage) -> Iterator[_Row]:
     pose, name = message.content.pose, message.content.header.frame_id
-    measured = planar(pose.position, pose.orientation)
-    yield _Row((frame(name), ""), (stamp_of(message), *measured, NAN, NAN))
+    both = pose.position, pose.orientation
+    yield _Row((frame(name), ""), (stamp_of(message), *planar(*both), NAN, NAN), _solid(*both))
 
 
 def _of_plane_pose(message: BagMessage) -> Iterator[_Row]:
@@ -160,17 +172,17 @@ def _of_odometry(message: BagMessage) -> Iterator[_Row]:
     """The covariance is ignored: it grows along the path and does not describe a single pose."""
     content = message.content
     frames = (frame(content.header.frame_id), frame(content.child_frame_id))
-    measured = planar(content.pose.pose.position, content.pose.pose.orientation)
-    yield _Row(frames, (stamp_of(message), *measured, NAN, NAN))
+    both = content.pose.pose.position, content.pose.pose.orientation
+    yield _Row(frames, (stamp_of(message), *planar(*both), NAN, NAN), _solid(*both))
 
 
 def _of_pose_with_covariance(message: BagMessage) -> Iterator[_Row]:
     stamped = message.content.pose
-    measured = planar(stamped.pose.position, stamped.pose.orientation)
+    both = stamped.pose.position, stamped.pose.orientation
     xx, yy, yawyaw = (float(stamped.covariance[place]) for place in (0, 7, 35))
     sigmas = _deviation(0.5 * (xx + yy)), _deviation(yawyaw, UNKNOWN_TURN)
     name = frame(message.content.header.frame_id)
-    yield _Row((name, ""), (stamp_of(message), *measured, *sigmas))
+    yield _Row((name, ""), (stamp_of(message), *planar(*both), *sigmas), _solid(*both))
 
 
 def _deviation(variance: float, unknown: float = UNKNOWN_PLACE) -> float:
@@ -184,8 +196,8 @@ def _of_transform(message: BagMessage) -> Iterator[_Row]:
 
 def _transform(message: BagMessage, content: Any) -> _Row:
     frames = (frame(content.header.frame_id), frame(content.child_frame_id))
-    measured = planar(content.transform.translation, content.transform.rotation)
-    return _Row(frames, (stamp_of(message, content), *measured, NAN, NAN))
+    both = content.transform.translation, content.transform.rotation
+    return _Row(frames, (stamp_of(message, content), *planar(*both), NAN, NAN), _solid(*both))
 
 
 def _of_imu(message: BagMessage) -> Iterator[_Row]:

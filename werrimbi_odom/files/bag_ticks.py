@@ -28,7 +28,7 @@ from werrimbi_odom.files.bag_wheels import (
     PAIRS,
     Wheels,
 )
-from werrimbi_odom.files.counter_pairs import Pairing
+from werrimbi_odom.files.counter_pairs import Pairing, apart_words, at_the_same_instants
 from werrimbi_odom.files.driver_messages import DRIVERS
 from werrimbi_odom.files.own_odometry import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
@@ -218,6 +218,7 @@ class Pairs(_TwoCounts):
         bits = _width(robot_file, PAIRS[source.kind])
         super().__init__(f"{path}: {source.name}", bits)
         self._left = source.name.split(",")[0]
+        self._wraps = int(robot_file.values["encoder_bits"]) or bits  # type: ignore[arg-type]
         self._window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._read_at, self._side, self._count = array("d"), array("b"), array("q")
         self._no_numbers = 0
@@ -234,20 +235,22 @@ class Pairs(_TwoCounts):
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All ticks, and the skipped messages in words."""
+        if (found := self._of_two_rates()) is not None:
+            return found
         pairing = Pairing(int(1e9 * self._window))
         for row in np.argsort(self._read_at, kind="stable").tolist():
             read_at, side = self._read_at[row], self._side[row]
             pair = pairing.take(side, self._count[row], round(1e9 * read_at))
             if pair is not None:
                 self._add(read_at, *pair)
-        ticks = self._ticks(
-            f"no two counts within the pairing_window of the robot file{self._apart()}"
-        )
+        apart = apart_words(np.array(self._read_at), np.array(self._side, dtype=bool), self._window)
+        ticks = self._ticks(f"no two counts within the pairing_window of the robot file{apart}")
         left_out = Counter(
             {"without a partner in time": pairing.unpaired, _NO_NUMBER: self._no_numbers}
         )
         return ticks, left_out_words(left_out)
 
+<<<<<<< HEAD
     def _apart(self) -> str:
         """How far apart the counts of both wheels are as a rule, and the window that takes them."""
         time, right = np.array(self._read_at), np.array(self._side, dtype=bool)
@@ -262,7 +265,22 @@ class Pairs(_TwoCounts):
         return (
             f", {self._window:g} s; a count of the one wheel and the nearest of the other are "
             f"{gap:.2g} s apart as a rule: pairing_window: {1.2 * most:.2g} takes them"
+=======
+    def _of_two_rates(self) -> tuple[Ticks, list[str]] | None:
+        """Ticks of topics of different rates, which the node pairs but roughly; else None."""
+        order = np.argsort(self._read_at, kind="stable")
+        time, count = np.array(self._read_at)[order], np.array(self._count, dtype=np.int64)[order]
+        right = np.array(self._side, dtype=bool)[order]
+        left, other = (_unwrapped(count[side], self._wraps) for side in (~right, right))
+        found = at_the_same_instants((time[~right], time[right]), (left, other))
+        if found is None:
+            return None
+        told = (
+            "the wheels' topics are of different rates: those of the faster one are taken when "
+            "those of the slower were read, on the line between its own. The node pairs the nearest"
+>>>>>>> t56b
         )
+        return Ticks(*found), [told, *left_out_words(Counter({_NO_NUMBER: self._no_numbers}))]
 
 
 _OF_A_PAIR = 3.0

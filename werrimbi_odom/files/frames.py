@@ -160,8 +160,9 @@ def chains_to_base(edges: Sequence[Edge], base: str) -> list[Chain]:
 
     `base`: frame of the robot; "" for the usual names (base_link, base_footprint). Result: one from
     every frame above the base, with at least one transform that is not static. If no frame has the
-    name of a base: each moving transform alone, except the robot's own joints from
-    robot_state_publisher, which hang from its base or only rotate.
+    name of a base: each moving transform, from the frame of the room to which its own is fixed (a
+    camera's), except the robot's own joints from robot_state_publisher, which hang from its base or
+    only rotate.
     """
     children = {edge.child for edge in edges}
     bases = [base] if base in children else sorted(filter(is_base, children))
@@ -179,7 +180,11 @@ def chains_to_base(edges: Sequence[Edge], base: str) -> list[Chain]:
         return found
     own = {edge.parent for edge in edges if _on_the_robot(edges, edge.parent)}
     free = [edge for edge in edges if not edge.static and edge.shifts and edge.parent not in own]
-    return [Chain((edge,), (False,), edge.parent, edge.child) for edge in free]
+    rooms = ((_above(fixed, edge.parent) or [edge.parent])[-1] for edge in free)
+    return [
+        chain([*fixed, edge], room, edge.child) or Chain((edge,), (False,), edge.parent, edge.child)
+        for room, edge in zip(rooms, free, strict=True)
+    ]
 
 
 def _on_the_robot(edges: Sequence[Edge], name: str) -> bool:

@@ -14,10 +14,14 @@ from werrimbi_odom.model.pose import Floats
 TILTED = math.radians(30.0)
 """Angle between an IMU's z axis and the vertical beyond which it is assumed to be mounted on its
 side. Wheeled robots tilt less, and a smaller angle only scales the yaw rate, which is fitted.
-Upside-down mounting is not detected: too many drivers invert the accelerometer's sign."""
+Upside-down mounting is said, not mended: too many drivers invert the accelerometer's sign."""
 GRAVITY = (5.0, 15.0)
 """Plausible range of the mean specific force [m/s^2]: half to one and a half times gravity. Other
 values have other units, or nothing was measured."""
+UPSIDE_DOWN = (
+    "upside down (z downwards) by its accelerometer, if that has the right sign; its turning about "
+    "its z axis is taken as it is, and then is of the wrong sign"
+)
 _FEWEST = 20
 _SIDES = ("x", "y", "z")
 
@@ -34,8 +38,10 @@ def yaw_rate(rates: Floats, forces: NDArray[np.float64]) -> tuple[Floats, str]:
         return rates[:, 2], ""
     up = np.median(known, axis=0)
     size = float(np.linalg.norm(up))
-    if not GRAVITY[0] < size < GRAVITY[1] or abs(up[2]) / size > math.cos(TILTED):
+    if not GRAVITY[0] < size < GRAVITY[1] or up[2] / size > math.cos(TILTED):
         return rates[:, 2], ""
+    if -up[2] / size > math.cos(TILTED):
+        return rates[:, 2], UPSIDE_DOWN
     main = int(np.argmax(np.abs(up)))
     axis = f"{'minus ' if up[main] < 0.0 else ''}{_SIDES[main]}"
     aside = math.degrees(math.acos(min(abs(up[main]) / size, 1.0)))

@@ -80,9 +80,9 @@ def _not_independent(found: Sequence[Measured]) -> str:
 
 
 def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -> Chosen:
-    name, *frames = wish.split(":")
+    name, *parts = wish.split(":")
     name = "/" + name.strip().strip("/")
-    frames = [frame(each) for each in frames]
+    frames = _frames(held, parts)
     if any(each.kind in TRANSFORMS for each in held.topics if each.name == name):
         return Chosen(_transforms(held, name, frames, force))
     for each in there:
@@ -96,6 +96,16 @@ def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -
         f"{held.path}: there is no reference in {name}; candidates are: "
         f"{listed(candidates)}{_not_independent(there)}"
     )
+
+
+def _frames(held: Contents, parts: Sequence[str]) -> list[str]:
+    """Frames in PARENT:CHILD, or in CHILD; their names may hold colons (tag36h11:5)."""
+    known = {each for edge in held.edges for each in (edge.parent, edge.child)}
+    for place in range(len(parts)):
+        both = [frame(":".join(each)) for each in (parts[:place], parts[place:]) if each]
+        if known.issuperset(both):
+            return both
+    return [frame(each) for each in parts]
 
 
 def _transforms(held: Contents, topic: str, frames: Sequence[str], force: bool) -> Measured:

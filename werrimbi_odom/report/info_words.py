@@ -8,14 +8,13 @@ import math
 from collections.abc import Iterator
 
 from werrimbi_odom.files.bag import topic_in_words
-from werrimbi_odom.files.bag_chain import POSTDATED
 from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.files.bag_wheels import ARRAYS, FLOATS
 from werrimbi_odom.files.held_poses import words_about_held
+from werrimbi_odom.files.levelled import TOLD
 from werrimbi_odom.files.own_odometry import names_a_measurement
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.run_folder import REFERENCE
-from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
 from werrimbi_odom.inference.recording_info import (
     Held,
@@ -28,19 +27,19 @@ from werrimbi_odom.inference.recording_info import (
 from werrimbi_odom.inference.set_up.findings import WIRING_WORDS
 from werrimbi_odom.inference.set_up.search import SWAPPED
 from werrimbi_odom.report.document import Paragraph, paragraphs
+from werrimbi_odom.report.info_stamps import milliseconds, stamps_words
 from werrimbi_odom.report.info_wheels import (
     no_wheels_words,
     other_wheels_words,
     rate_words,
     wheels_words,
 )
-from werrimbi_odom.report.number_format import TIME_OF_DAY, capital, counted, listed
+from werrimbi_odom.report.number_format import capital, listed
 from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
 _WITHOUT_FORM = ("std_msgs/msg/String", *FLOATS, *ARRAYS)
 """Types in which anything may be sent, and so a pose."""
-_WANDERS = 0.1  # reported variation of the delay from stamp to receipt [s]
 
 
 def words_of(held: Held, found: Info) -> list[Paragraph]:
@@ -55,7 +54,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield from no_wheels_words(held.joints)
         yield from other_wheels_words(held)
         yield from _references(held)
-        yield from _stamps(held)
+        yield from stamps_words(held)
     else:
         yield "Wheels: ticks.csv, counters."
     if found.given is None and "bits" in (found.first.told or {}):
@@ -70,12 +69,12 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         yield (
             "The counts show that the wheels' counters were read at even intervals, and stamped as "
             "their messages came: the stamps are set back to the readings, by "
-            f"{_ms(held.restamped)} (rms)."
+            f"{milliseconds(held.restamped)} (rms)."
         )
     if held.scans_restamped:
         yield (
             "The path shows that the lidar turned evenly, and that its scans are not stamped so: "
-            f"their stamps are set back by {_ms(held.scans_restamped)} (rms)."
+            f"their stamps are set back by {milliseconds(held.scans_restamped)} (rms)."
         )
     if held.gyro_bias:
         yield (
@@ -121,7 +120,7 @@ def _references(held: Held) -> Iterator[str]:
                     f"R{note[1:]}."
                     for note in held.run.notes
                     if note.startswith("reference ")
-                    and (each.kind == SCAN or "accelerometer" in note)
+                    and (each.kind == SCAN or "accelerometer" in note or TOLD in note)
                 )
         else:
             yield f"No reference: {each.name}, {each.why}."
@@ -179,11 +178,10 @@ def _unread_sensors(held: Held) -> str:
 
 def _gyro_in_odometry(held: Held) -> Iterator[str]:
     """Warn where the wheels' headings may be those of the gyro that is to judge them."""
-    taken = (held.reference, held.beside)
     if (
         held.wheels is not None
         and held.wheels.gives == "odometry"
-        and any(each is not None and each.measures == "yaw" for each in taken)
+        and any(each and each.measures == "yaw" for each in (held.reference, held.beside))
     ):
         yield (
             "Many drivers (TurtleBot3's, Kobuki's) put the gyro's heading into "
@@ -191,81 +189,6 @@ def _gyro_in_odometry(held: Held) -> Iterator[str]:
             "agrees, and shows nothing of base and wheels. Joint angles or counters, recorded too, "
             "do."
         )
-
-
-def _stamps(held: Held) -> Iterator[str]:
-    for name, stamps in held.stamps.items():
-        chosen = [held.wheels and held.wheels.name, *held.topics]
-        if any(each and name in (*each.split(","), each.partition(":")[0]) for each in chosen):
-            yield _clock(name, stamps)
-    yield from _apart(held)
-
-
-def _clock(name: str, stamps: Stamps) -> str:
-    if stamps.jitter is None:
-        words = (
-            f"{name} has no stamps: the times of receipt are used, whose intervals vary by "
-            f"± {_ms(stamps.received_jitter)}"
-        )
-    else:
-        own, receipt = _ms(stamps.jitter), _ms(stamps.received_jitter)
-        pair = f"± {own} against ± {receipt} of receipt"
-        if stamps.alike:
-            both = own if own == receipt else f"{own} and {receipt}"
-            words = (
-                f"Stamps of {name}: the headers are used; by their evenness either clock will do "
-                f"(intervals vary by ± {both})"
-            )
-        elif stamps.believed == "header":
-            words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"
-        else:
-            words = (
-                f"Stamps of {name}: the headers are used, though their intervals vary by {pair}: "
-                "the times of receipt are the evener"
-            )
-        if abs(stamps.offset or 0.0) > TIME_OF_DAY:
-            apart = "they are of another clock than receipt (a simulation's, or one that began"
-            return f"{words}; {apart} when a computer was switched on)."
-        if (stamps.wander or 0.0) > _WANDERS:
-            words += (
-                f"; from stamp to receipt it takes {stamps.offset:.2g} s as a rule and "
-                f"{stamps.latest:.2g} s at most, and wanders by {stamps.wander:.2g} s"
-            )
-            if (stamps.offset or 0.0) < 0.0:
-                words += " (negative: two clocks that differ)"
-    extras = []
-    if stamps.bursts > 0.01:
-        extras.append(f"{100 * stamps.bursts:.0f} % come together with the one before")
-    if stamps.late > 0.01:
-        extras.append(f"{100 * stamps.late:.0f} % are late by a tenth of a second and more")
-    if stamps.back:
-        extras.append(f"the stamps go back {counted(stamps.back, 'time')}")
-    return f"{words}{'; ' if extras else ''}{', '.join(extras)}."
-
-
-def _apart(held: Held) -> Iterator[str]:
-    both = (each for each in (held.wheels, held.reference) if each is not None)
-    names = [each.name.split(",")[0].partition(":")[0] for each in both]
-    offsets = [held.stamps[name].offset for name in names if name in held.stamps]
-    if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
-        apart = offsets[0] - offsets[1]
-        if apart > POSTDATED and held.reference is not None and held.reference.through_wheels:
-            yield (
-                f"The reference's transforms are stamped {apart:.3g} s ahead of the wheels, by "
-                "when both were received: a localiser's transform_tolerance, or a clock. They are "
-                "set back by that, or the odometry of that time would be in each of its poses. "
-                "Better still are the localiser's own poses (/amcl_pose): record them too."
-            )
-        elif abs(apart) > _WANDERS:
-            yield (
-                f"Their clocks are apart: the reference's stamps are {abs(apart):.3g} s "
-                f"{'later' if apart > 0 else 'earlier'} than those of the wheels, by when both "
-                "were received."
-            )
-
-
-def _ms(seconds: float) -> str:
-    return f"{1e3 * seconds:.{1 if 0.05 <= 1e3 * seconds < 0.95 else 0}f} ms"
 
 
 def _driven(held: Held, drive: DrivenAmount, sizes: bool) -> str:
