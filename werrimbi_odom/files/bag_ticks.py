@@ -250,22 +250,6 @@ class Pairs(_TwoCounts):
         )
         return ticks, left_out_words(left_out)
 
-<<<<<<< HEAD
-    def _apart(self) -> str:
-        """How far apart the counts of both wheels are as a rule, and the window that takes them."""
-        time, right = np.array(self._read_at), np.array(self._side, dtype=bool)
-        left = np.sort(time[~right])
-        if left.size < 2 or not right.any():
-            return ""
-        after = np.searchsorted(left, time[right])
-        beside = left[np.stack([np.maximum(after - 1, 0), np.minimum(after, left.size - 1)])]
-        gaps = np.abs(beside - time[right]).min(axis=0)
-        gap = float(np.median(gaps))
-        most = float(gaps[gaps <= _OF_A_PAIR * gap].max())
-        return (
-            f", {self._window:g} s; a count of the one wheel and the nearest of the other are "
-            f"{gap:.2g} s apart as a rule: pairing_window: {1.2 * most:.2g} takes them"
-=======
     def _of_two_rates(self) -> tuple[Ticks, list[str]] | None:
         """Ticks of topics of different rates, which the node pairs but roughly; else None."""
         order = np.argsort(self._read_at, kind="stable")
@@ -278,13 +262,10 @@ class Pairs(_TwoCounts):
         told = (
             "the wheels' topics are of different rates: those of the faster one are taken when "
             "those of the slower were read, on the line between its own. The node pairs the nearest"
->>>>>>> t56b
         )
         return Ticks(*found), [told, *left_out_words(Counter({_NO_NUMBER: self._no_numbers}))]
 
 
-_OF_A_PAIR = 3.0
-"""Multiple of the median distance of both wheels' counts beyond which the partner is missing."""
 _NO_NUMBER = "with a value that is no number"
 
 

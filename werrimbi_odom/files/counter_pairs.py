@@ -24,6 +24,8 @@ _FEWEST = 20
 """Counts of each wheel from which on a rate is known."""
 _BETWEEN = 4.0
 """Longest gap between the counts of the faster topic [intervals] in which it is on a line."""
+_OF_A_PAIR = 3.0
+"""Multiple of the median distance of both wheels' counts beyond which the partner is missing."""
 
 
 class Pairing:
@@ -117,8 +119,10 @@ def apart_words(time: Floats, right: NDArray[np.bool_], window: float) -> str:
         return ""
     after = np.searchsorted(left, time[right])
     beside = left[np.stack([np.maximum(after - 1, 0), np.minimum(after, left.size - 1)])]
-    gap = float(np.median(np.abs(beside - time[right]).min(axis=0)))
+    gaps = np.abs(beside - time[right]).min(axis=0)
+    gap = float(np.median(gaps))
+    most = float(gaps[gaps <= _OF_A_PAIR * gap].max())
     return (
         f", {window:g} s; a count of the one wheel and the nearest of the other are "
-        f"{gap:.2g} s apart as a rule: pairing_window: {1.2 * gap:.2g} takes them"
+        f"{gap:.2g} s apart as a rule: pairing_window: {1.2 * most:.2g} takes them"
     )
