@@ -178,6 +178,11 @@ SELDOM_BACK = 0.02
 direction of driving. Chosen: wheels that settle by a count as they stop make a millimetre or two a
 metre, and the reported range of a variable leaves out as much at either end."""
 
+STRAIGHT_SIGMAS, STRAIGHT_WINDOW = 3.0, 0.5
+"""A robot drives straight where it turns, by its wheels, within so many standard deviations of their
+noise over the window [s]: what a law of turning says there is as much noise as turn. Chosen: three
+leave one step of 370 that is noise; a robot takes half a second to turn by more."""
+
 NEIGHBOUR = 1.6
 """Distance of neighbouring floor cells, in widths: cells that share a corner are 1.4 apart, and
 steps are seldom in the very middle of their cell."""
