@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
 ROOT = Path(__file__).parents[1]
 ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"

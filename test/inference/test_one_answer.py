@@ -22,7 +22,7 @@ from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.calibration.any_driving import calibrate
