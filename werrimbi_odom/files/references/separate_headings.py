@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Reference
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 
 FEW = 10
 """Up to so many positions beside more headings, those are judged alone: by tape at the ends of a
@@ -64,7 +64,9 @@ def _filled(reference: Reference, place: NDArray[np.bool_], yaw: NDArray[np.bool
     near = (kept.time >= time[after - 1]) & (kept.time <= time[after])
     near &= apart <= NEAR * float(np.median(np.diff(time)))
     lacking = ~kept.has_yaw & near
-    between: Floats = np.interp(kept.time, time, heading)
+    between: Floats = wrap_all(np.interp(kept.time, time, heading))
+    same = kept.time == time[after]
+    between[same] = reference.yaw[seen][after][same]
     sigma = kept.sigma_yaw
     if reference.sigma_yaw is not None and sigma is not None:
         sigma = np.where(lacking, reference.sigma_yaw[seen][after], sigma)
