@@ -64,7 +64,7 @@ def page_of(case: Case) -> str:
     (recorded,) = (robot for robot in RECORDED if robot.folder == case.robot)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        steps = followed(case, folder, as_printed=True)
+        steps = followed(case, folder)
         judged = [compared(case, step.robot, folder) for step in steps]
         lines = [
             f"# {re.sub(', (median|rms) .*', '', case.told)}: `{case.robot}`",

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Real robots mended by the tool's own advice alone: diagnose, add what it names, again.
 
-Prints the table of the README and of docs/real_robots.md. Nobody chooses: the first effect named is
-added, until nothing is named or the addition is refused.
+Prints the table of the README and of docs/real_robots.md. Nobody chooses: what the printed command
+names is added, until it names nothing or the addition is refused.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
 ROOT = Path(__file__).parents[1]
 ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"
@@ -93,14 +93,8 @@ def drives_of(case: Case, patterns: tuple[str, ...]) -> list[str]:
     return [str(path) for pattern in patterns for path in sorted(home.glob(pattern))]
 
 
-def followed(case: Case, folder: Path, *, as_printed: bool = False) -> list[Step]:
-    """All that was said, and done because of it; the last step adds nothing.
-
-    Parameters
-    ----------
-    as_printed
-        Add all that the printed command names, not its first effect alone.
-    """
+def followed(case: Case, folder: Path) -> list[Step]:
+    """All that was said, and done because of it; the last step adds nothing."""
     judged = drives_of(case, case.judged)
     drives = drives_of(case, case.fitted)
     drives += [*(["--holdout", *judged] if judged else []), *case.options]
@@ -113,7 +107,7 @@ def followed(case: Case, folder: Path, *, as_printed: bool = False) -> list[Step
         printed = _ADD.search(done.stdout)
         if printed is None:
             return [*steps, Step(robot, done.stdout, answer, None)]
-        effect = printed[1] if as_printed else answer["effect"] or printed[1]
+        effect = printed[1]
         tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
         while tried.returncode != 0:
             without = _WITHOUT.search(" ".join(tried.stderr.split()))

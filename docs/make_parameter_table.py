@@ -7,8 +7,8 @@ python docs/make_parameter_table.py
 
 from __future__ import annotations
 
-from werrimbi_odom.files.node_parameter import NodeParameter
-from werrimbi_odom.files.parameters import PARAMETERS
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter
+from werrimbi_odom.files.robot_files.parameters import PARAMETERS
 
 
 def markdown_table() -> str:

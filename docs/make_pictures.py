@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.start_pose import start_of
+from werrimbi_odom.files.references.start_pose import start_of
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure
 from werrimbi_odom.report.save import save_png

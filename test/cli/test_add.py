@@ -15,7 +15,7 @@ from test.cli.commands import PLAIN, written
 from test.command_line import Werrimbi
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
 
 @pytest.fixture(scope="module")

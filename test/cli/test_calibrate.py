@@ -15,7 +15,7 @@ from test.cli.commands import RECORDING, written_by
 from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.report.calibration.fit_words import fit_in_words
 from werrimbi_odom.report.terminal import as_text

@@ -15,7 +15,7 @@ from test.cli.commands import called
 from test.command_line import Printed
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.inference.calibration.noise_likelihood import design
 from werrimbi_odom.inference.calibration.out_and_back import out_and_back
 

@@ -17,7 +17,7 @@ from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.api import calibrate_umbmark as from_squares
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.inference.calibration.squares import Squares
 from werrimbi_odom.report.document import Paragraph
 from werrimbi_odom.simulation import TrueRobot, record, square, write_run

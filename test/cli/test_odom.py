@@ -18,7 +18,7 @@ import werrimbi_odom as wo
 from test.cli.odometry import ROBOT, TICK, command, figures, odom, reference, table, ticks
 from test.command_line import ROOT, WERRIMBI, Complaint, Printed, Werrimbi
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.model.odometer import Odometer
 
 RECORDINGS = ROOT / "werrimbi_odom" / "recordings"

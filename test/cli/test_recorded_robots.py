@@ -14,7 +14,7 @@ import pytest
 
 from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.model.covariance import path_noise
 
 RUNS = sorted(path.parent for path in ROBOTS.glob("*/*/ticks.csv"))

@@ -11,7 +11,7 @@ import numpy as np
 from werrimbi_odom.driving.driver import Driver
 from werrimbi_odom.driving.limits import Area, Limits, OdometryReading, Watch
 from werrimbi_odom.driving.plan import ManoeuvrePlan
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.end_of_piece import PieceTolerance
 from werrimbi_odom.model.odometer import Odometer

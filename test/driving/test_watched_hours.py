@@ -22,7 +22,7 @@ import werrimbi_odom as wo
 from test.driving.in_engine import LIMITS, InEngine
 from werrimbi_odom.driving.manoeuvres import BEFORE
 from werrimbi_odom.driving.plan import ManoeuvrePlan, Move
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.simulation import LiveRobot, Peculiarity, TrueRobot, hide, write_robot_file
 

@@ -28,7 +28,7 @@ with atheris.instrument_imports(include=["werrimbi_odom", "rosbags"]):
 
     from werrimbi_odom.errors import InputError
     from werrimbi_odom.files.read_run import read_run
-    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
 
 def readers(folder: Path) -> dict[str, tuple[Path, Callable[[Path], object]]]:

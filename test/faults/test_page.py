@@ -9,7 +9,8 @@ import math
 import pytest
 
 from test.command_line import ROOT
-from werrimbi_odom.files import csv_table, text_files
+from werrimbi_odom.files import text_files
+from werrimbi_odom.files.tables import csv_table
 
 PAGE = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
 

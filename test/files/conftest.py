@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 
 BARE = """\
 odom_node:
@@ -42,7 +42,7 @@ class Messages:
     def __init__(self) -> None:
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-        from werrimbi_odom.files.driver_messages import DEFINITIONS
+        from werrimbi_odom.files.bags.driver_messages import DEFINITIONS
 
         self.store = get_typestore(Stores.ROS2_JAZZY)
         self.noetic = get_typestore(Stores.ROS1_NOETIC)

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.bag_contents import Contents, contents_of
-from werrimbi_odom.files.measured_topic import preference
-from werrimbi_odom.files.own_odometry import is_asked_for, why_from_wheels
+from werrimbi_odom.files.bags.bag import opened_bag
+from werrimbi_odom.files.bags.bag_contents import Contents, contents_of
+from werrimbi_odom.files.bags.measured_topic import preference
+from werrimbi_odom.files.bags.own_odometry import is_asked_for, why_from_wheels
+from werrimbi_odom.files.bags.reference_choice import other_scans
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.simulation.lidar import Lidar
 
 MS = 10**6

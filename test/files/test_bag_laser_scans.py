@@ -14,8 +14,8 @@ import pytest
 
 from test.scans.drives import ahead, in_circles
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.bag_contents import contents_of
+from werrimbi_odom.files.bags.bag import opened_bag
+from werrimbi_odom.files.bags.bag_contents import contents_of
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import compare

@@ -16,7 +16,7 @@ import pytest
 
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_writing import BagWriter
+from werrimbi_odom.files.bags.bag_writing import BagWriter
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -498,7 +498,7 @@ def test_progress_is_told(tmp_path: Path, ros: Any, robot: Any) -> None:
 @pytest.mark.skipif(not (RECORDINGS / "square_bag").exists(), reason="no recordings/square_bag")
 def test_the_shipped_bag_and_folder_are_one_drive(tmp_path: Path) -> None:
     pytest.importorskip("rosbags.rosbag2", reason="rosbags is not installed")
-    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
     file = read_robot_file(RECORDINGS / "square" / "robot.yaml")
     bag = tmp_path / "bag"

@@ -14,9 +14,9 @@ import pytest
 import werrimbi_odom as wo
 from test.files.unseen import JOINTS, urdf
 from test.model.drives import ROBOT
-from werrimbi_odom.files.controller_wheels import of_controller
-from werrimbi_odom.files.first_robot import with_steps
-from werrimbi_odom.files.urdf_wheels import of_urdf
+from werrimbi_odom.files.robot_descriptions.controller_wheels import of_controller
+from werrimbi_odom.files.robot_descriptions.first_robot import with_steps
+from werrimbi_odom.files.robot_descriptions.urdf_wheels import of_urdf
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.3])

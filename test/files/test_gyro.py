@@ -13,8 +13,8 @@ import pytest
 
 import werrimbi_odom as wo
 from test.files.conftest import MakeRobot
-from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.references.gyro import yaw_rate
 
 MS = 10**6
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.half_turns import without_half_turns
+from werrimbi_odom.files.references.half_turns import without_half_turns
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import wrap_all
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from werrimbi_odom.files.levelled import levelled
 from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.references.levelled import levelled
 
 MS = 10**6
 TIME = np.arange(1.0, 9.0, 0.04)

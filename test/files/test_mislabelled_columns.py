@@ -13,11 +13,11 @@ import pytest
 
 from test.files.recorded import ROBOT, TRUE, driven
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import mislabelled_columns
-from werrimbi_odom.files.compared_ways import ends_of_chords, words_about_ways
-from werrimbi_odom.files.mislabelled_columns import words_about_one_clock_unit
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.files.tables import mislabelled_columns
+from werrimbi_odom.files.tables.compared_ways import ends_of_chords, words_about_ways
+from werrimbi_odom.files.tables.mislabelled_columns import words_about_one_clock_unit
 from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 

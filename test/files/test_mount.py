@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from werrimbi_odom.files.bag_laser_scans import of_base
+from werrimbi_odom.files.bags.bag_laser_scans import of_base
 from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.three_pass_odometry import ScanPath

@@ -11,10 +11,10 @@ import pytest
 from werrimbi_odom.api.odom import odometry
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.controller_wheels import of_controller
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.robot_file_rewrite import write_robot_file
+from werrimbi_odom.files.robot_descriptions.controller_wheels import of_controller
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file_rewrite import write_robot_file
 from werrimbi_odom.ros.odom_parameters import settings_of
 
 RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.own_headings import words_about_own_headings
+from werrimbi_odom.files.references.own_headings import words_about_own_headings
 from werrimbi_odom.files.run import Reference, Ticks
 from werrimbi_odom.files.run_folder import read_reference, write_run_folder
 

@@ -14,7 +14,11 @@ from hypothesis import strategies as st
 
 from test.files import recorded
 from test.files.recorded import ROBOT
-from werrimbi_odom.files.held_poses import held_poses, without_held_poses, words_about_held
+from werrimbi_odom.files.references.held_poses import (
+    held_poses,
+    without_held_poses,
+    words_about_held,
+)
 from werrimbi_odom.files.run import Reference, Run, Ticks
 
 

@@ -17,10 +17,10 @@ from ruamel.yaml import YAML
 from test.command_line import ROOT
 from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.node_parameter import NodeParameter, Value
-from werrimbi_odom.files.parameters import PARAMETERS, on_both_sides
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.files.robot_file_rewrite import write_robot_file
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter, Value
+from werrimbi_odom.files.robot_files.parameters import PARAMETERS, on_both_sides
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file_rewrite import write_robot_file
 
 COMMENTED = """\
 # The robot in the cellar.

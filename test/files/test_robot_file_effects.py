@@ -15,8 +15,8 @@ from ruamel.yaml import YAML
 
 from werrimbi_odom.effects import LIBRARY, Collection, find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.files.robot_file_rewrite import write_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file_rewrite import write_robot_file
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 
 BARE = """\

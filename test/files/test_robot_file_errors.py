@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import yaml_text
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files import yaml_text
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
 
 def _with(line: str) -> str:

@@ -21,11 +21,11 @@ from hypothesis import strategies as st
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import csv_table
 from werrimbi_odom.files.content_hash import mark_of
 from werrimbi_odom.files.held_counts import without_held_counts
 from werrimbi_odom.files.read_run import bag_at
 from werrimbi_odom.files.run_folder import read_run_folder, write_run_folder
+from werrimbi_odom.files.tables import csv_table
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 
 TICKS = "t_s,left_ticks,right_ticks\n"

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from werrimbi_odom.files.references.separate_headings import one_kind_of_row
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.files.separate_headings import one_kind_of_row
 from werrimbi_odom.inference.comparison.residuals import measured_alike
 from werrimbi_odom.model.pose import Floats, wrap_all
 

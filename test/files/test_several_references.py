@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.merged_reference import merged, with_one_scale
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.recordings import Asked, DriveOptions, read
+from werrimbi_odom.files.references.merged_reference import merged, with_one_scale
 from werrimbi_odom.files.run import Reference
 
 MS = 10**6

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.bag import BagMessage, opened_bag
+from werrimbi_odom.files.bags.bag import BagMessage, opened_bag
+from werrimbi_odom.files.bags.stamps import _judged, newest_of_bursts, stamps_of
+from werrimbi_odom.files.bags.unstamped import NEVER_STAMPS, with_stamps
 from werrimbi_odom.files.clocks import Lateness, of_one_rate, on_one_clock
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.run import Collected, Reference, Ticks
-from werrimbi_odom.files.stamps import _judged, newest_of_bursts, stamps_of
-from werrimbi_odom.files.unstamped import NEVER_STAMPS, with_stamps
 from werrimbi_odom.report.info_stamps import clock_words
 
 MS = 10**6

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.references.start_pose import start_of, start_pose
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.files.start_pose import start_of, start_pose
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.trajectory import trajectory
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from werrimbi_odom.files.references.stated_noise import without_wrong_noise
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.files.stated_noise import without_wrong_noise
 
 TIME = np.arange(0.0, 20.0, 0.05)
 WAY = np.clip(TIME - 5.0, 0.0, 10.0) * 0.3

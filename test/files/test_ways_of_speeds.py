@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from werrimbi_odom.files.bags.ways_of_speeds import BEHIND, ways_of
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.ways_of_speeds import BEHIND, ways_of
 from werrimbi_odom.model.pose import Floats
 
 MESSAGES = 3000

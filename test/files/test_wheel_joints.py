@@ -15,10 +15,10 @@ import pytest
 
 import werrimbi_odom as wo
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import BagMessage, opened_bag
+from werrimbi_odom.files.bags.bag import BagMessage, opened_bag
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.urdf_wheels import of_urdf
-from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
+from werrimbi_odom.files.robot_descriptions.urdf_wheels import of_urdf
+from werrimbi_odom.files.robot_descriptions.wheel_joints import joints_told_apart, turned_joints
 
 MS = 10**6
 WHEELS = ("wheel_left_front", "wheel_left_back", "wheel_right_front", "wheel_right_back")

@@ -24,7 +24,7 @@ from test.hidden.resumable_jobs import Line, commit_now
 from test.hidden.sets import HiddenSet, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.simulation.hidden import find as hideable
 

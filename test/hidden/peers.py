@@ -36,7 +36,7 @@ from werrimbi_odom.api.draft import draft
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.inference.comparison.residuals import chained
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import fit_calibration

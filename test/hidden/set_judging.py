@@ -21,7 +21,7 @@ from test.hidden.resumable_jobs import Line, commit_now
 from test.hidden.right_laws import RIGHT_LAWS
 from test.hidden.sets import HiddenSet, make, runs_of
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.simulation.hidden import find as hideable
 

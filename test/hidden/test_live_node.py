@@ -22,8 +22,8 @@ from test.hidden.set_judging import read_set
 from test.hidden.sets import HiddenSet
 from test.ros.conftest import DEEP, Launched, launcher
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.robot_file_rewrite import write_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file_rewrite import write_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.adding.adding import add_effects
 

@@ -15,7 +15,7 @@ from test.recorded_robots import ROBOTS
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.changes.between_drives import (

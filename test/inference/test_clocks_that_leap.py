@@ -16,8 +16,8 @@ import pytest
 from test.inference.driven import run_of
 from test.inference.test_held_or_carried import held
 from test.model.drives import ROBOT
-from werrimbi_odom.files.mislabelled_columns import refuse_wrong_columns
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.tables.mislabelled_columns import refuse_wrong_columns
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.motion_states import driven
 from werrimbi_odom.inference.legs.usable_run import with_no_driving

@@ -15,7 +15,7 @@ import werrimbi_odom as wo
 from test.evidence import in_evidence
 from test.inference.driven import COARSE, COMMON, common, of_coarse_counts
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.verdict import verdict_of

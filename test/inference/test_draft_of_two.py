@@ -25,7 +25,7 @@ from werrimbi_odom.effects.contract.sample_drive import Rehearsal
 from werrimbi_odom.effects.functions import limited
 from werrimbi_odom.effects.shapes import mean_product, mean_ratio
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects

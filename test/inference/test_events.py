@@ -17,7 +17,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import compare

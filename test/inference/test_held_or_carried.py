@@ -17,9 +17,9 @@ from test.model.drives import ROBOT
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive
 from werrimbi_odom.effects.lookup import find
-from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.references.merged_reference import merged
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import NoDriving, Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.compare import compare

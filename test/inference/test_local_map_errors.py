@@ -14,7 +14,7 @@ from test.inference.driven import of_headings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.merged_reference import merged
+from werrimbi_odom.files.references.merged_reference import merged
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare

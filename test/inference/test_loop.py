@@ -19,7 +19,7 @@ from test.inference.test_late_clock import later
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects

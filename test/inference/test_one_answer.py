@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +23,7 @@ from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.lookup import all_effects, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.calibration.any_driving import calibrate
@@ -146,14 +147,17 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_base_by_headings_alone_is_as_sure_by_add_as_by_diagnose(seed: int) -> None:
-    """Half a wider base and half smaller wheels were an estimate of both: ± ten times as much."""
+    """Half a wider base and half smaller wheels were an estimate of both: ± ten times as much.
+
+    What is written is fitted on the whole drive, of which a diagnosis has three quarters.
+    """
     runs = [parts(run, "yaw") for run in drives((seed,), WRONG)]
     base = find("track_width")
     (told,) = values_of(diagnose(runs, WRONG, COMMON), base.name).values()
     (added,) = add_effects([base], runs, WRONG).fitted[base.name].values()
     assert added.value == pytest.approx(told.value, abs=told.std)
     assert added.std is not None
-    assert told.std <= added.std < 2.5 * told.std
+    assert 0.95 * math.sqrt(0.75) * told.std <= added.std < 2.5 * told.std
 
 
 def test_diagnose_states_what_add_will_write() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
-from werrimbi_odom.files.first_robot import FirstRobot
+from werrimbi_odom.files.robot_descriptions.first_robot import FirstRobot
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount, TimeSpan
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell

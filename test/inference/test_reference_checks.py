@@ -16,7 +16,7 @@ from test.evidence import in_evidence
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.prepared_runs import prepare

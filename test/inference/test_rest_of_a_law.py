@@ -15,7 +15,7 @@ import pytest
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Ticks
 from werrimbi_odom.inference.diagnosis import diagnosis, misfit
 from werrimbi_odom.inference.diagnosis.effect_support import Support, is_even

@@ -14,7 +14,7 @@ import pytest
 from test.inference.set_up_mistakes import DELAYS, FACTORS, ONE_SIDE, REFERENCE, SIZES, WIRING
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 
 ROBOT = Path(__file__).parents[2] / "config" / "robot.yaml"

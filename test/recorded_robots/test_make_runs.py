@@ -13,7 +13,7 @@ import pytest
 from test.recorded_robots import RECORDINGS, ROBOTS, converters, robots, with_recordings
 from test.recorded_robots.make_runs import main, make, reader
 from test.recorded_robots.runs import Read, write
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run_folder import read_run_folder
 
 CLONES = Path(os.environ.get("WERRIMBI_CLONES", RECORDINGS / "clones"))

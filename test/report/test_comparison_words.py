@@ -19,7 +19,7 @@ from test.evidence import in_evidence
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.compare import compare

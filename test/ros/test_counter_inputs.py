@@ -22,7 +22,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, Int64, Int64MultiArray
 
 from test.ros.messages import seconds_of
-from werrimbi_odom.files.bag_joints import side_counts
+from werrimbi_odom.files.bags.bag_joints import side_counts
 from werrimbi_odom.ros.wheel_side import WheelSide
 
 Robot = dict[str, Any]

@@ -13,8 +13,8 @@ import pytest
 pytest.importorskip("rclpy")
 
 from test.package.launching import launched
-from werrimbi_odom.files.node_parameter import NodeParameter
-from werrimbi_odom.files.parameters import PARAMETERS
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter
+from werrimbi_odom.files.robot_files.parameters import PARAMETERS
 from werrimbi_odom.ros import compare_parameters, drive_parameters
 from werrimbi_odom.ros.declared_parameters import NONE, told
 from werrimbi_odom.ros.odom_parameters import CHANGEABLE

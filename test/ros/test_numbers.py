@@ -15,7 +15,7 @@ pytest.importorskip("rclpy")
 from test.robot_file import BARE
 from test.ros.messages import read_by_ros
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.ros.domain import free_domain
 
 NUMBERS = st.one_of(

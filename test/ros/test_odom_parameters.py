@@ -22,7 +22,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 
 from werrimbi_odom.effects import find, lookup
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import PARAMETERS, VIRTUAL_TICKS_PER_REVOLUTION
+from werrimbi_odom.files.robot_files.parameters import PARAMETERS, VIRTUAL_TICKS_PER_REVOLUTION
 from werrimbi_odom.ros.odom_parameters import CHANGEABLE, settings_of
 
 Robot = dict[str, Any]

@@ -21,7 +21,7 @@ pytest.importorskip("rclpy")
 pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[all])")
 
 from test.ros.messages import in_plane, stamp_at
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.model.slip import NOTHING, SlipGuard
 from werrimbi_odom.ros.live_odometer import LiveOdometer
 from werrimbi_odom.ros.odometry_messages import OdometryMessage

@@ -43,7 +43,7 @@ from test.memory import resident
 from test.ros.messages import stamp_at, turn, values_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.demo.node_processes import private_domain
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.pose import Floats, Pose, compose, inverse
 from werrimbi_odom.ros.compare_node import CompareNode

@@ -18,7 +18,7 @@ from test.evidence import in_evidence
 from werrimbi_odom import simulation as sim
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.simulation.bag import EPOCH, write_bag
 from werrimbi_odom.simulation.hidden.axle_and_reference import DriftingClock
 from werrimbi_odom.simulation.hidden.knocks import ReferenceJump
@@ -184,7 +184,7 @@ def test_a_gyro_that_contradicts_the_localiser_is_not_proposed(
 
 
 def test_a_localiser_is_read_as_a_chain_of_transforms(bag: Path, tmp_path: Path) -> None:
-    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.files.robot_files.robot_file import read_robot_file
     from werrimbi_odom.simulation import write_robot_file
 
     robot = write_robot_file(ROBOT, tmp_path / "robot.yaml")

@@ -19,7 +19,7 @@ from test.command_line import Complaint
 from werrimbi_odom.cli import main as command
 from werrimbi_odom.cli import simulate
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.simulation import (
     CATALOGUE,
     Nominal,

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from test.workbench.session import written
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.workbench import drawings

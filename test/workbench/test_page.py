@@ -17,7 +17,7 @@ from test.command_line import WERRIMBI, ran
 from test.evidence import in_evidence
 from test.workbench.conftest import PATIENCE, Looked, Served
 from test.workbench.session import HIDDEN, RATIO, ROBOT
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
 GIVEN_UP = 10.0
 """From when on a tab that was closed is taken for closed (`workbench.server`) [s]."""

@@ -13,7 +13,7 @@ import pytest
 
 from test.workbench.session import ROBOT
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.text_files import beside
 from werrimbi_odom.workbench.saving import Target, file_of, saved, text_of
 from werrimbi_odom.workbench.session import Session, begun

@@ -16,8 +16,8 @@ from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.files.results_table import read_results
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
+from werrimbi_odom.files.tables.results_table import read_results
 from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate, errors_of_legs
 from werrimbi_odom.inference.calibration.noise_likelihood import design
 from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back

@@ -14,8 +14,8 @@ import numpy as np
 from werrimbi_odom.api.result import Found, NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.results_table import read_results
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
+from werrimbi_odom.files.tables.results_table import read_results
 from werrimbi_odom.inference.calibration.recorded_square import (
     SquareRecording,
     recorded_square,

@@ -14,7 +14,7 @@ from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError, TooFewLegsError
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.text_files import beside
 from werrimbi_odom.progress import Show, silent
 from werrimbi_odom.report.number_format import more_like_these

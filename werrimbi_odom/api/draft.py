@@ -15,7 +15,7 @@ from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.text_files import beside, replacing
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects

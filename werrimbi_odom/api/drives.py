@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run as read_one
 from werrimbi_odom.files.recordings import DriveOptions, Recordings, gathered
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 
 if TYPE_CHECKING:

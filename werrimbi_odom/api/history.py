@@ -27,7 +27,7 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
 from werrimbi_odom.files.recordings import DriveOptions, gathered, reference_of_each, refuse_twice
-from werrimbi_odom.files.robot_file import RobotFile, robot_file_of_text
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, robot_file_of_text
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference import rules

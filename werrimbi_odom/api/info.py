@@ -17,18 +17,18 @@ from werrimbi_odom.api.info_stretches import judged_stretches
 from werrimbi_odom.api.info_topics import DESCRIPTION, chosen_topics, separate_reference
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_joints import wheel_names
-from werrimbi_odom.files.bag_wheels import Wheels
-from werrimbi_odom.files.controller_wheels import of_controller
-from werrimbi_odom.files.first_robot import FirstRobot, with_steps, with_wraps
-from werrimbi_odom.files.merged_reference import SCALE_MOST
+from werrimbi_odom.files.bags.bag_joints import wheel_names
+from werrimbi_odom.files.bags.bag_wheels import Wheels
+from werrimbi_odom.files.bags.reference_choice import NONE
 from werrimbi_odom.files.read_run import bag_at, read_run
 from werrimbi_odom.files.recordings import reference_of_each
-from werrimbi_odom.files.reference_choice import NONE
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.references.merged_reference import SCALE_MOST
+from werrimbi_odom.files.robot_descriptions.controller_wheels import of_controller
+from werrimbi_odom.files.robot_descriptions.first_robot import FirstRobot, with_steps, with_wraps
+from werrimbi_odom.files.robot_descriptions.wheel_joints import SIDES
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text_files import replacing
-from werrimbi_odom.files.wheel_joints import SIDES
 from werrimbi_odom.inference.recording_info import Held, Info
 from werrimbi_odom.report.info import document_of, info_json
 

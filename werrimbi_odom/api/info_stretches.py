@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.compared_ways import words_about_ways
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.first_robot import FirstRobot
-from werrimbi_odom.files.gyro_headings import as_of_a_gyro
-from werrimbi_odom.files.held_poses import without_held_poses
-from werrimbi_odom.files.mislabelled_columns import without_zeros
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.references.gyro_headings import as_of_a_gyro
+from werrimbi_odom.files.references.held_poses import without_held_poses
+from werrimbi_odom.files.robot_descriptions.first_robot import FirstRobot
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.files.tables.compared_ways import words_about_ways
+from werrimbi_odom.files.tables.mislabelled_columns import without_zeros
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
 from werrimbi_odom.inference.legs.count_interpolation import counters_of

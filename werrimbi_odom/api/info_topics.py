@@ -10,20 +10,24 @@ from dataclasses import replace
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Bag, opened_bag
-from werrimbi_odom.files.bag_contents import Contents, contents_of
-from werrimbi_odom.files.bag_reference import LOCALISED
-from werrimbi_odom.files.bag_ticks import KINDS
-from werrimbi_odom.files.bag_wheels import Wheels
-from werrimbi_odom.files.first_robot import FirstRobot, with_driver
-from werrimbi_odom.files.measured_topic import Measured, preference
+from werrimbi_odom.files.bags.bag import Bag, opened_bag
+from werrimbi_odom.files.bags.bag_contents import Contents, contents_of
+from werrimbi_odom.files.bags.bag_reference import LOCALISED
+from werrimbi_odom.files.bags.bag_ticks import KINDS
+from werrimbi_odom.files.bags.bag_wheels import Wheels
+from werrimbi_odom.files.bags.measured_topic import Measured, preference
+from werrimbi_odom.files.bags.reference_choice import choose_reference
+from werrimbi_odom.files.bags.stamps import stamps_of
 from werrimbi_odom.files.read_run import bag_at
-from werrimbi_odom.files.reference_choice import choose_reference
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_descriptions.first_robot import FirstRobot, with_driver
+from werrimbi_odom.files.robot_descriptions.urdf_wheels import of_urdf
+from werrimbi_odom.files.robot_descriptions.wheel_joints import (
+    chosen_wheels,
+    joints_told_apart,
+    of_another_robot,
+)
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run_folder import REFERENCE
-from werrimbi_odom.files.stamps import stamps_of
-from werrimbi_odom.files.urdf_wheels import of_urdf
-from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart, of_another_robot
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.recording_info import Held
 

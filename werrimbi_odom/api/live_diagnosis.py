@@ -27,7 +27,7 @@ from werrimbi_odom.api.drives import Options, read_robot, read_run
 from werrimbi_odom.api.next_command import NOT_STORED
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_writing import BagWriter
+from werrimbi_odom.files.bags.bag_writing import BagWriter
 from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.text_files import replacing

@@ -18,10 +18,10 @@ from werrimbi_odom.api.arrays import ticks_of
 from werrimbi_odom.api.drives import read_run, require_robot
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.counter_columns import wraps_words
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.references.start_pose import driven, start_of, with_learnt_phases
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run, Ticks, by_hand
-from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
+from werrimbi_odom.files.tables.counter_columns import wraps_words
 from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.model.effect import view_of

@@ -14,7 +14,7 @@ from werrimbi_odom.errors import InputError
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.files.robot_files.robot_file import RobotFile
     from werrimbi_odom.model.effect import AppliedEffect
     from werrimbi_odom.report.document import Document
 
@@ -96,7 +96,7 @@ class Result(Generic[Found]):
         InputError
             If this verb changes no robot file, or the file exists and `force` is not set.
         """
-        from werrimbi_odom.files.robot_file_rewrite import write_robot_file
+        from werrimbi_odom.files.robot_files.robot_file_rewrite import write_robot_file
 
         if self.new_robot is None:
             raise InputError("this finding changes no robot file; add and calibrate do")

@@ -19,7 +19,7 @@ from werrimbi_odom.cli.outputs import add_file_arguments, write_and_tell
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
-    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.files.robot_files.robot_file import RobotFile
 
 HELP = "base, radii and noise of the wheels, by tape or from drives, with error bars"
 
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _robot(arguments: argparse.Namespace) -> RobotFile:
-    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
     source = read_robot_file(arguments.robot)
     remark(source)

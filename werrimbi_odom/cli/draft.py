@@ -61,7 +61,7 @@ def _next(folder: Path, given: Recordings, name: str) -> str:
     the law they are needless, but a model that holds them finds no fault with them.
     """
     from werrimbi_odom.api.next_command import next_command
-    from werrimbi_odom.files.earlier_robot_file import earlier_robot_file
+    from werrimbi_odom.files.robot_files.earlier_robot_file import earlier_robot_file
     from werrimbi_odom.files.text_files import beside
     from werrimbi_odom.report.number_format import listed
 

@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Process the drives, combine and report them; return 0."""
     from werrimbi_odom.api.history import history
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 
     collection = read_effects(arguments)
     robot, like = (

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from werrimbi_odom.effects.lookup import Collection
     from werrimbi_odom.files.recordings import DriveOptions, Recordings
-    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.files.robot_files.robot_file import RobotFile
     from werrimbi_odom.progress import Show
 
 N = TypeVar("N", int, float)
@@ -141,8 +141,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.api.drives import refuse_circles, told_apart
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.gyro_headings import WORDS
     from werrimbi_odom.files.recordings import Asked, read
+    from werrimbi_odom.files.references.gyro_headings import WORDS
     from werrimbi_odom.files.run_checks import words_about
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())

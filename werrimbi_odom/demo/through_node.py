@@ -26,11 +26,11 @@ import numpy as np
 
 from werrimbi_odom.demo.node_processes import end, private_domain, save_and_tell
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import TICKS
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.references.start_pose import driven, start_pose
+from werrimbi_odom.files.robot_files.parameters import TICKS
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.files.start_pose import driven, start_pose
 from werrimbi_odom.model.pose import Pose, wrap
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure
 

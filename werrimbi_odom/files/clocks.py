@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.files.bag import BagMessage
-from werrimbi_odom.files.frames import is_static
+from werrimbi_odom.files.bags.bag import BagMessage
+from werrimbi_odom.files.bags.frames import is_static
+from werrimbi_odom.files.bags.stamps import header_stamp
 from werrimbi_odom.files.run import Collected, Ticks
 from werrimbi_odom.files.run_checks import APART, span_in_words
-from werrimbi_odom.files.stamps import header_stamp
 from werrimbi_odom.model.pose import Floats
 
 STEADY = 1.0

@@ -10,8 +10,8 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from werrimbi_odom.files.bag import SUFFIXES
-from werrimbi_odom.files.echoed_topics import SUFFIXES as OF_TEXT
+from werrimbi_odom.files.bags.bag import SUFFIXES
+from werrimbi_odom.files.bags.echoed_topics import SUFFIXES as OF_TEXT
 from werrimbi_odom.files.recordings import BAG
 from werrimbi_odom.files.run_folder import REFERENCE, TICKS
 

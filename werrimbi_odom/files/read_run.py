@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import SUFFIXES, named_files
-from werrimbi_odom.files.echoed_topics import echoed_files
-from werrimbi_odom.files.half_turns import without_half_turns
+from werrimbi_odom.files.bags.bag import SUFFIXES, named_files
+from werrimbi_odom.files.bags.echoed_topics import echoed_files
+from werrimbi_odom.files.bags.reference_choice import NONE
+from werrimbi_odom.files.bags.unfinished_bag import ending
 from werrimbi_odom.files.held_counts import without_held_counts
-from werrimbi_odom.files.reference_choice import NONE
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.references.half_turns import without_half_turns
+from werrimbi_odom.files.references.stated_noise import without_wrong_noise
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_bag import (
     FoundReference,
@@ -32,8 +34,6 @@ from werrimbi_odom.files.run_folder import (
     read_reference,
     read_run_folder,
 )
-from werrimbi_odom.files.stated_noise import without_wrong_noise
-from werrimbi_odom.files.unfinished_bag import ending
 
 _TEXT = (".csv", ".txt", ".dat", ".log", ".tsv", ".clf")
 _TABLES = (".mat", ".xls", ".xlsx", ".ods", ".npy", ".npz", ".pkl", ".parquet", ".h5", ".json")

@@ -13,16 +13,16 @@ from typing import get_args
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import LEAST, MOST, EvaluationOptions
-from werrimbi_odom.files.gyro_headings import as_of_a_gyro
-from werrimbi_odom.files.held_poses import without_held_poses
-from werrimbi_odom.files.merged_reference import with_one_scale
-from werrimbi_odom.files.mislabelled_columns import without_zeros
 from werrimbi_odom.files.read_run import read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.references.gyro_headings import as_of_a_gyro
+from werrimbi_odom.files.references.held_poses import without_held_poses
+from werrimbi_odom.files.references.merged_reference import with_one_scale
+from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_bag import Topics
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.run_folder import TICKS
+from werrimbi_odom.files.tables.mislabelled_columns import without_zeros
 from werrimbi_odom.files.text_files import place_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent

@@ -11,20 +11,20 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Bag, BagMessage, opened_bag, topic_in_words
-from werrimbi_odom.files.bag_chain import ChainCollector, mounting_chain
-from werrimbi_odom.files.bag_contents import SCAN, Contents, contents_of
-from werrimbi_odom.files.bag_laser_scans import LidarCollector
-from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
-from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
-from werrimbi_odom.files.bag_wheels import JOINT_STATE, Wheels
+from werrimbi_odom.files.bags.bag import Bag, BagMessage, opened_bag, topic_in_words
+from werrimbi_odom.files.bags.bag_chain import ChainCollector, mounting_chain
+from werrimbi_odom.files.bags.bag_contents import SCAN, Contents, contents_of
+from werrimbi_odom.files.bags.bag_laser_scans import LidarCollector
+from werrimbi_odom.files.bags.bag_reference import ReferenceCollector, kinds_in_words
+from werrimbi_odom.files.bags.bag_ticks import choose_ticks, ticks_collector
+from werrimbi_odom.files.bags.bag_wheels import JOINT_STATE, Wheels
+from werrimbi_odom.files.bags.reference_choice import Chosen, choose_reference
+from werrimbi_odom.files.bags.unstamped import unstamped_words, with_stamps
 from werrimbi_odom.files.clocks import Lateness, of_one_rate, on_one_clock
-from werrimbi_odom.files.merged_reference import merged
-from werrimbi_odom.files.reference_choice import Chosen, choose_reference
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.references.merged_reference import merged
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.files.run import WORKED_OUT, Collected, Reference, Run, Ticks
 from werrimbi_odom.files.text_files import readable
-from werrimbi_odom.files.unstamped import unstamped_words, with_stamps
 
 Progress = Callable[[float], None]
 """Callback for the share of the work done."""

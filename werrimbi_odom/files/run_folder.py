@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.course_headings import without_course
-from werrimbi_odom.files.csv_table import CsvTable, read_table
-from werrimbi_odom.files.interpolated_poses import without_interpolated
-from werrimbi_odom.files.own_headings import words_about_own_headings
-from werrimbi_odom.files.row_order import in_order
+from werrimbi_odom.files.bags.stamps import newest_of_bursts
+from werrimbi_odom.files.references.course_headings import without_course
+from werrimbi_odom.files.references.interpolated_poses import without_interpolated
+from werrimbi_odom.files.references.own_headings import words_about_own_headings
+from werrimbi_odom.files.references.separate_headings import one_kind_of_row
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
-from werrimbi_odom.files.separate_headings import one_kind_of_row
-from werrimbi_odom.files.stamps import newest_of_bursts
+from werrimbi_odom.files.tables.csv_table import CsvTable, read_table
+from werrimbi_odom.files.tables.row_order import in_order
 from werrimbi_odom.files.text_files import readable, replacing
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats

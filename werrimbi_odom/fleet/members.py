@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import SUFFIXES
+from werrimbi_odom.files.bags.bag import SUFFIXES
 from werrimbi_odom.files.recordings import BAG, refuse_twice
 from werrimbi_odom.files.run_folder import TICKS
 from werrimbi_odom.files.text_files import readable

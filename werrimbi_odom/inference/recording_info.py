@@ -11,13 +11,13 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.files.bag_contents import Contents
-from werrimbi_odom.files.bag_wheels import Wheels
-from werrimbi_odom.files.first_robot import FirstRobot
-from werrimbi_odom.files.measured_topic import Measured
+from werrimbi_odom.files.bags.bag_contents import Contents
+from werrimbi_odom.files.bags.bag_wheels import Wheels
+from werrimbi_odom.files.bags.measured_topic import Measured
+from werrimbi_odom.files.bags.stamps import Stamps
+from werrimbi_odom.files.robot_descriptions.first_robot import FirstRobot
+from werrimbi_odom.files.robot_descriptions.wheel_joints import WheelJoints
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.files.stamps import Stamps
-from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.prediction import tell_lengths
 from werrimbi_odom.inference.legs.gaps import LeftOut

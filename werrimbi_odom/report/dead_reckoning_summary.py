@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.files.references.start_pose import StartPose
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.files.start_pose import StartPose
 from werrimbi_odom.model.covariance import PoseCovariance, carried, sigmas_along_and_across
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.model.reference_measurement import Path as ShownPath

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.bag_contents import SCAN
-from werrimbi_odom.files.first_robot import PLACEHOLDER_TICKS
+from werrimbi_odom.files.bags.bag_contents import SCAN
+from werrimbi_odom.files.robot_descriptions.first_robot import PLACEHOLDER_TICKS
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.files.text_files import beside
 from werrimbi_odom.inference import rules

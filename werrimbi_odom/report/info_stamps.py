@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from werrimbi_odom.files.bag_chain import POSTDATED
-from werrimbi_odom.files.stamps import Stamps
+from werrimbi_odom.files.bags.bag_chain import POSTDATED
+from werrimbi_odom.files.bags.stamps import Stamps
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.report.number_format import TIME_OF_DAY, counted
 

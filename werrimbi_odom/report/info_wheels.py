@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from werrimbi_odom.files.bag import Topic, topic_in_words
-from werrimbi_odom.files.bag_wheels import ARRAYS, FLOATS, PAIRS
-from werrimbi_odom.files.own_odometry import ODOMETRY, is_filtered, names_a_sensor
-from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
+from werrimbi_odom.files.bags.bag import Topic, topic_in_words
+from werrimbi_odom.files.bags.bag_wheels import ARRAYS, FLOATS, PAIRS
+from werrimbi_odom.files.bags.own_odometry import ODOMETRY, is_filtered, names_a_sensor
+from werrimbi_odom.files.robot_descriptions.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.report.number_format import listed
 

@@ -7,13 +7,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from werrimbi_odom.files.bag import topic_in_words
-from werrimbi_odom.files.bag_contents import SCAN
-from werrimbi_odom.files.bag_wheels import ARRAYS, FLOATS
-from werrimbi_odom.files.held_poses import words_about_held
-from werrimbi_odom.files.levelled import TOLD
-from werrimbi_odom.files.own_odometry import names_a_measurement
-from werrimbi_odom.files.reference_choice import other_scans
+from werrimbi_odom.files.bags.bag import topic_in_words
+from werrimbi_odom.files.bags.bag_contents import SCAN
+from werrimbi_odom.files.bags.bag_wheels import ARRAYS, FLOATS
+from werrimbi_odom.files.bags.own_odometry import names_a_measurement
+from werrimbi_odom.files.bags.reference_choice import other_scans
+from werrimbi_odom.files.references.held_poses import words_about_held
+from werrimbi_odom.files.references.levelled import TOLD
 from werrimbi_odom.files.run_folder import REFERENCE
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
 from werrimbi_odom.inference.recording_info import (

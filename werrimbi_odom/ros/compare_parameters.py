@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from werrimbi_odom.files.evaluation_options import LEAST, MOST
-from werrimbi_odom.files.node_parameter import NodeParameter
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter
 from werrimbi_odom.inference import rules
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 from werrimbi_odom.ros.declared_parameters import table, within

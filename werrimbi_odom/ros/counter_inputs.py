@@ -22,9 +22,9 @@ from rclpy.time import Time
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, Int64, Int64MultiArray
 
-from werrimbi_odom.files.counter_pairs import Pairing
-from werrimbi_odom.files.node_parameter import Value
-from werrimbi_odom.files.parameters import WHOLE_COUNTS, robot_of
+from werrimbi_odom.files.bags.counter_pairs import Pairing
+from werrimbi_odom.files.robot_files.node_parameter import Value
+from werrimbi_odom.files.robot_files.parameters import WHOLE_COUNTS, robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.input_health import Health
 from werrimbi_odom.ros.topics import subscribe

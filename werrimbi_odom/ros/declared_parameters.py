@@ -13,9 +13,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import parameters as robot_file
-from werrimbi_odom.files.effect_parameters import EFFECTS
-from werrimbi_odom.files.node_parameter import NodeParameter, Value
+from werrimbi_odom.files.robot_files import parameters as robot_file
+from werrimbi_odom.files.robot_files.effect_parameters import EFFECTS
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter, Value
 
 NONE = "none"
 """An empty text, in a launch file or on a command line: those cannot say one."""

@@ -12,7 +12,7 @@ from werrimbi_odom.driving.limits import Area, Limits, Watch
 from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
 from werrimbi_odom.driving.plan import ManoeuvrePlan
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.node_parameter import NodeParameter, Value
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter, Value
 from werrimbi_odom.ros.declared_parameters import above_zero, table, within
 
 FASTEST = 5.0

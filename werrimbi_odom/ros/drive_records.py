@@ -17,8 +17,8 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from werrimbi_odom.files.bag_writing import BagWriter, known_types
-from werrimbi_odom.files.node_parameter import Value
+from werrimbi_odom.files.bags.bag_writing import BagWriter, known_types
+from werrimbi_odom.files.robot_files.node_parameter import Value
 from werrimbi_odom.ros.topics import full_topic
 
 

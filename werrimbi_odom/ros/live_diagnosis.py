@@ -29,8 +29,8 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.node_parameter import Value
-from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.robot_files.node_parameter import Value
+from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.text_files import place_of, replacing
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.ros import counter_inputs

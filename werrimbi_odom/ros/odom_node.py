@@ -25,7 +25,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import doubtful_sizes
+from werrimbi_odom.files.robot_files.parameters import doubtful_sizes
 from werrimbi_odom.ros import counter_inputs, odom_parameters
 from werrimbi_odom.ros.diagnostics import diagnostics_publisher, status_of, tell
 from werrimbi_odom.ros.input_health import OF_POSE, Health

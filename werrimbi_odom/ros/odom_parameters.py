@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robot file as ROS parameters, rejected as a whole if any is invalid.
 
-Types, ranges and descriptions come from `werrimbi_odom.files.parameters`.
+Types, ranges and descriptions come from `werrimbi_odom.files.robot_files.parameters`.
 """
 
 from __future__ import annotations
@@ -17,10 +17,15 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files import parameters as table
-from werrimbi_odom.files.effect_parameters import EFFECTS, Named, named_effects, parameters_of
-from werrimbi_odom.files.node_parameter import NodeParameter, Value
-from werrimbi_odom.files.other_drivers_parameters import is_of_diff_drive
+from werrimbi_odom.files.robot_files import parameters as table
+from werrimbi_odom.files.robot_files.effect_parameters import (
+    EFFECTS,
+    Named,
+    named_effects,
+    parameters_of,
+)
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter, Value
+from werrimbi_odom.files.robot_files.other_drivers_parameters import is_of_diff_drive
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder_online import EncoderLimits
 from werrimbi_odom.model.end_of_piece import PieceTolerance

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.node_parameter import NodeParameter
+from werrimbi_odom.files.robot_files.node_parameter import NodeParameter
 from werrimbi_odom.ros.declared_parameters import above_zero, table, within
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.gyro import yaw_rate
+from werrimbi_odom.files.references.gyro import yaw_rate
 from werrimbi_odom.model.pose import Floats
 
 LISTENED = 50

@@ -10,8 +10,8 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.robot_file_rewrite import new_text, write_robot_file
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file_rewrite import new_text, write_robot_file
 from werrimbi_odom.files.text_files import place_of
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot

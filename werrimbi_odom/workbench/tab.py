@@ -19,7 +19,7 @@ from typing import Any
 from werrimbi_odom.effects.lookup import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.robot_files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.report.number_format import error_words, listed

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from werrimbi_odom.files.compared_ways import ways_of_one_scale
+from werrimbi_odom.files.tables.compared_ways import ways_of_one_scale
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import name_of_base
 from werrimbi_odom.inference.comparison.another_drive import (

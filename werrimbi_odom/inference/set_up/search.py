@@ -17,8 +17,8 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
-from werrimbi_odom.files.mislabelled_columns import YAW_IN_DEGREES
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.tables.mislabelled_columns import YAW_IN_DEGREES
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.calibration_parametrisation import effective_track, skids_in_turns
 from werrimbi_odom.inference.legs.usable_run import with_no_driving

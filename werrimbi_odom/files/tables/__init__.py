@@ -1,0 +1,7 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of numbers, and columns that hold something else than their names say.
+
+`csv_table` reads one; `mislabelled_columns`, `counter_columns` and `compared_ways` judge what is in
+it.
+"""

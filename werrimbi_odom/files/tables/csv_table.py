@@ -1,0 +1,304 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Numeric tables from CSV: fast for valid files, with exact locations in error messages."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import re
+import warnings
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.tables.column_names import perhaps_meant
+from werrimbi_odom.model.pose import Floats
+
+MAX_BYTES = 2**30
+MAX_ROWS = 20_000_000
+"""Five and a half hours at 1 kHz; such a run's arrays still fit an ordinary memory."""
+MAX_COLUMNS = 256
+MAX_LINE = 2**20
+"""Bytes."""
+
+_NUMBER = re.compile(
+    r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
+)
+_BLANK = re.compile(r'[\s,"]*\Z')
+"""A line with no value in it."""
+_EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
+"""Empty cells of a line."""
+_BEFORE_QUOTE = re.compile(r'(?<=,)[ \t]+(?=")')
+"""Blanks in front of a cell in quotes."""
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """Columns of a CSV file; empty cells are NaN, and so is all of a column that is not there."""
+
+    path: Path
+    names: tuple[str, ...]
+    values: Floats
+    """Shape (rows, columns); at least one row."""
+    cut: int = 0
+    """Number of the last line, if it is truncated and therefore skipped; else 0."""
+
+    def column(self, name: str) -> Floats:
+        """The column with this name."""
+        if name not in self.names:
+            return np.full(len(self.values), np.nan)
+        return np.ascontiguousarray(self.values[:, self.names.index(name)])
+
+    def integers(self, name: str) -> NDArray[np.int64] | None:
+        """A column as exact integers beyond the range of floats; None if it has other values.
+
+        Of integers without a sign, the upper half stands for those below zero.
+        """
+        for whole in ("i8", "u8"):
+            kinds = [(str(i), whole if item == name else "f8") for i, item in enumerate(self.names)]
+            with suppress(ValueError):
+                rows = _loaded(_lines(self.path, self.cut), np.dtype(kinds))
+                return np.ascontiguousarray(rows[str(self.names.index(name))]).view(np.int64)
+        return None
+
+    def refuse_where(self, name: str, wrong: Callable[[str], str]) -> None:
+        """Raise on the first invalid cell of a column.
+
+        `wrong`: takes a cell's text and returns what is wrong with it; "" if nothing is. InputError
+        at the first invalid cell, with its line and column.
+        """
+        place = self.names.index(name)
+        for line, cells in _rows(self.path, self.cut):
+            complaint = wrong(cells[place].strip())
+            if complaint:
+                raise InputError(f"{self.path}, line {line}, column {name}: {complaint}")
+
+
+def read_table(
+    path: Path,
+    required: Sequence[str],
+    filled: Sequence[str],
+    enough: Sequence[Collection[str]] = (),
+) -> CsvTable:
+    """Read a CSV file of numbers whose first line names the columns, in any order.
+
+    An incomplete last line without a line end (from a power failure) is skipped. `filled`: columns
+    without empty cells. `enough`: headers that will do without the other columns that are required;
+    under any further name these might be meant. InputError if the file is not valid; the message
+    names line, column and content.
+    """
+    try:
+        _refuse_too_large(path)
+        names = _header(path, required, filled, enough)
+        cut = _cut_line(path, names, [names.index(name) for name in filled])
+        values = _values(path, names, cut, required)
+    except IsADirectoryError:
+        raise InputError(f"{path} is a folder; it must be a CSV file") from None
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError:
+        raise _not_text(path) from None
+    return CsvTable(path, names, values, cut)
+
+
+def _refuse_too_large(path: Path) -> None:
+    """Raise on files that would exceed the memory limit."""
+    lines = 0
+    with path.open("rb") as file:
+        while block := file.read(MAX_LINE):
+            ends = block.count(b"\n") or block.count(b"\r")
+            lines += ends
+            if not ends and len(block) == MAX_LINE:
+                raise InputError(f"{path}, line {lines + 1} is longer than {MAX_LINE:,} bytes")
+            if lines > MAX_ROWS or file.tell() > MAX_BYTES:
+                raise InputError(
+                    f"{path} has more than {MAX_ROWS:,} rows or {MAX_BYTES:,} bytes; "
+                    "cut the run into several"
+                )
+
+
+def _header(
+    path: Path,
+    required: Sequence[str],
+    filled: Sequence[str],
+    enough: Sequence[Collection[str]],
+) -> tuple[str, ...]:
+    wanted = ",".join(required)
+    with path.open(encoding="utf-8-sig", newline=None) as file:
+        line, row = file.readline(65536), file.readline(65536)
+    if not line:
+        raise InputError(f"{path} is empty; its first line must be {wanted}")
+    # numpy.savetxt writes the names as a remark.
+    names = tuple(name.strip() for name in next(_cells(line.lstrip("#% ")), []))
+    place = f"{path}, line 1"
+    missing = [name for name in required if name not in names]
+    if missing and set(names) not in map(set, enough):
+        if all(_NUMBER.match(name) for name in names):
+            raise InputError(f"{place}: there is no header; the first line must be {wanted}")
+        if line.lstrip()[:1] in ("#", "%"):
+            raise InputError(
+                f"{place} is a remark, {line.strip()[:200]!r}; leave such lines out: the first "
+                f"line must be {wanted}, and columns be separated by commas"
+            )
+        if len(names) == 1 and len(re.split(r"[;\s]+", names[0])) > 1:
+            points = "write a point for each comma in its numbers, " if "," in row else ""
+            raise InputError(
+                f"{place}: the columns are not separated by commas; {points}separate them so, and "
+                f"the first line must be {wanted}"
+            )
+        held = line.strip()[:200]
+        empty = [name for name in missing if name not in filled]
+        raise InputError(
+            f"{place}: no column {', '.join(missing)}; the header is {held!r}; write these names "
+            f"into it in place of its own{perhaps_meant(missing, names)}, and bring the values to "
+            f"the units that they name{_may_be_empty(empty)}"
+        )
+    if len(names) > MAX_COLUMNS:
+        raise InputError(f"{place}: {len(names)} columns are more than {MAX_COLUMNS}")
+    for number, name in enumerate(names):
+        if not name:
+            raise InputError(f"{place}: column {number + 1} has no name")
+        if name in names[:number]:
+            raise InputError(f"{place}: the column {name} is there twice")
+    return names
+
+
+def _may_be_empty(names: Sequence[str]) -> str:
+    """What to do where nothing was measured for some columns."""
+    if not names:
+        return ""
+    which = "its cells" if len(names) == 1 else "the cells of what was not measured"
+    return f"; {which} may be empty, but the name must be there"
+
+
+def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
+    """Number of the last line if it is truncated, else 0."""
+    with path.open("rb") as file:
+        size = file.seek(0, 2)
+        file.seek(max(size - MAX_LINE, 0))
+        end = file.read()
+    last = re.split(rb"[\r\n]", end)[-1].decode("utf-8", "replace")
+    if not last.strip():
+        return 0
+    cells = last.split(",")
+    whole = len(cells) == len(names) and all(
+        _NUMBER.match(cell.strip().strip('"')) or not cell.strip() for cell in cells
+    )
+    if whole and all(cells[place].strip() for place in filled):
+        return 0
+    with path.open(encoding="utf-8-sig", errors="replace", newline=None) as file:
+        lines = sum(1 for _ in file)
+    return lines if lines > 2 else 0  # only a header and no complete row: there is nothing to read
+
+
+def _values(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> Floats:
+    number = np.dtype(np.float64)
+    try:
+        try:
+            # numpy reads a named file in blocks, twice as fast as from an iterator of lines
+            values = _loaded(_lines(path, cut) if cut else str(path.absolute()), number)
+        except ValueError:
+            values = _loaded(_lines(path, cut), number)
+        if values.size and values.shape[1] == len(names):
+            return np.asarray(values, dtype=np.float64)
+    except UnicodeDecodeError:
+        raise
+    except ValueError as error:
+        _refuse_bad_row(path, names, cut, required)
+        raise InputError(f"{path} cannot be read: {error}") from error
+    _refuse_bad_row(path, names, cut, required)
+    raise InputError(f"{path} has a header and no rows")
+
+
+def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # no data: handled by the caller
+        warnings.simplefilter("error", DeprecationWarning)  # 1.0 read as an integer
+        values: NDArray[Any] = np.loadtxt(
+            source,
+            dtype=kind,
+            comments=None,
+            delimiter=",",
+            skiprows=1,
+            ndmin=1 if kind.names else 2,
+            encoding="utf-8-sig",
+            quotechar='"',
+        )
+    return values
+
+
+def _lines(path: Path, cut: int) -> Iterator[str]:
+    """Yield lines with `nan` in empty cells; skip lines without a value and the truncated one."""
+    with path.open(encoding="utf-8-sig", newline=None) as file:
+        for line in itertools.islice(file, cut - 1 if cut else None):
+            if not _BLANK.match(line):
+                yield _EMPTY.sub("nan", _BEFORE_QUOTE.sub("", line))
+
+
+def _cells(line: str) -> Iterator[list[str]]:
+    return csv.reader([_BEFORE_QUOTE.sub("", line)])
+
+
+def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
+    """Yield line number, from 1, and cells of each row below the header."""
+    with path.open(encoding="utf-8-sig", newline=None) as file:
+        for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
+            if not _BLANK.match(line):
+                yield number, next(_cells(line.rstrip("\n")))
+
+
+def _refuse_bad_row(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> None:
+    try:
+        for number, cells in _rows(path, cut):
+            place = f"{path}, line {number}"
+            for name, cell in zip(names, cells, strict=False):
+                if cell.strip() and not _NUMBER.match(cell):
+                    further = "" if name in required else "; leave a column of text out"
+                    raise InputError(
+                        f"{place}, column {name}: {_shown(cell)} is not a number; "
+                        f"leave the cell empty where there is none{further}"
+                    )
+            if len(cells) != len(names):
+                raise InputError(
+                    f"{place}: {len(cells)} cells under {len(names)} columns"
+                    f"{_in_all_rows(path, names, cut)}"
+                )
+    except csv.Error as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
+
+
+def _in_all_rows(path: Path, names: Sequence[str], cut: int) -> str:
+    """Remark on a header that fits no row."""
+    counts = {len(cells) for _, cells in _rows(path, cut)}
+    if len(counts) > 1:
+        return ""
+    few = min(counts) < len(names)
+    return (
+        f", as in all rows: {'one that it names was not written' if few else 'one has no name'}, "
+        "so the others may not stand under their names"
+    )
+
+
+def _shown(cell: str) -> str:
+    text = cell.strip()
+    return repr(text if len(text) <= 40 else text[:40] + "...")
+
+
+def _not_text(path: Path) -> InputError:
+    with path.open("rb") as file:
+        for number, line in enumerate(file, start=1):
+            try:
+                line.decode("utf-8")
+            except UnicodeDecodeError as error:
+                byte = line[error.start]
+                return InputError(f"{path}, line {number}: byte 0x{byte:02x} is not UTF-8 text")
+    return InputError(f"{path} is not UTF-8 text")
