@@ -159,6 +159,16 @@ CURVE_KNOTS = 6
 """Knots of a smooth curve, at quantiles of the variable. Chosen: a threshold, a peak or one wave
 shows in five pieces, each of a fifth of the data; every further knot costs significance."""
 
+KNOTS_APART = 6.0
+"""Least distance of knots over a speed, in standard deviations of its noise from message to message
+(three to either side). The noise of counts is in the speed that an error may depend on, and in the
+error: over a speed that is held, a curve that resolves the noise finds that, and it is no law."""
+
+VARIED = 3.0
+"""Spread of a speed along the way, in standard deviations of its noise, up to which it was held:
+noise of the counts is then a tenth of its variance and more, and what seems to go with it may be
+that noise. On circles at one speed it is 1 to 2, in mixed driving 10 and more."""
+
 FLOOR_CELL = 0.5
 """Width of the floor's cells [m], wider on large floors. Chosen: a carpet's edge, a cable or a ramp
 affects a robot of this size over about that much."""
