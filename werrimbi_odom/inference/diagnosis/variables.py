@@ -198,7 +198,7 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
     middle, scale = float(np.mean(pooled)), float(np.std(pooled))
     sides = (variable.left,) if variable.shared else (variable.left, variable.right)
     lines = [((side - middle) / scale)[:, None] for side in sides]
-    knots = curve_knots(pooled, rules.KNOTS_APART * variable.scatter)
+    knots = curve_knots(pooled, variable.scatter)
     found: dict[Form, tuple[Floats, Floats]] = {"line": (lines[0], lines[-1])}
     if knots.size > 2:
         curves = [hats(side, knots) for side in sides]
@@ -206,17 +206,22 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
     return found
 
 
-def curve_knots(values: Floats, apart: float = 0.0) -> Floats:
+def curve_knots(values: Floats, noise: float = 0.0) -> Floats:
     """Knots of a curve at quantiles, so that each piece has as many data.
 
-    None is within `apart` of another, but for the ends.
+    `noise`: standard deviation of the values' own noise. Inner knots are left out where a piece
+    would hold no more than that: over a value that was held, a curve resolves noise alone.
     """
-    first, *inner, last = np.quantile(values, np.linspace(0.0, 1.0, rules.CURVE_KNOTS)).tolist()
-    kept = [first]
-    for knot in inner:
-        if kept[-1] + apart < knot < last - apart:
-            kept.append(knot)
-    return np.array([*kept, last] if last > first else kept)
+    knots = np.unique(np.quantile(values, np.linspace(0.0, 1.0, rules.CURVE_KNOTS))).tolist()
+    piece = 0
+    while noise > 0.0 and len(knots) > 2 and piece < len(knots) - 1:
+        within = values[(values >= knots[piece]) & (values <= knots[piece + 1])]
+        if within.size and float(np.std(within)) > rules.VARIED * noise:
+            piece += 1
+            continue
+        del knots[piece + 1 if piece + 2 < len(knots) else piece]
+        piece = max(piece - 1, 0)
+    return np.array(knots)
 
 
 def hats(values: Floats, knots: Floats) -> Floats:
