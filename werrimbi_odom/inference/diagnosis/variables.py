@@ -161,9 +161,8 @@ _SPEEDS = ("speed", "yaw_rate", "yaw_rate_size")
 
 def _scatter(values: Floats) -> float:
     """Standard deviation of white noise in values that change smoothly, by second differences."""
-    if values.size < 3:
-        return 0.0
-    return MEDIAN_TO_SIGMA * float(np.median(np.abs(np.diff(values, 2)))) / math.sqrt(6.0)
+    bends = np.abs(np.diff(values, 2))
+    return MEDIAN_TO_SIGMA * float(np.median(bends)) / math.sqrt(6.0) if bends.size else 0.0
 
 
 def _places(
