@@ -353,18 +353,17 @@ REGULAR = Robot(0.53, 0.0825, 720.0, 720.0, left_wheel_noise=4e-4, right_wheel_n
 def test_a_law_of_the_turn_on_straight_drives_is_the_rounding_of_the_counts(
     seed: int, amount: Amount, variable: str
 ) -> None:
-    """There counted turns and heading errors are the same roundings."""
+    """There counted turns and heading errors are the same roundings, and make no law."""
     options = EvaluationOptions(reference_kind="incremental")
     runs = concatenated(match_for_fit([regular(seed + each) for each in range(4)], REGULAR, 1.0))
     point = fit_calibration(runs, REGULAR, options).point
-    (cell,) = (
+    cells = [
         cell
         for cell in dependences(runs, point, CALIBRATION)
-        if (cell.amount, cell.variable.name, cell.form) == (amount, variable, "curve")
-    )
-    (told,) = lasting(runs, point, CALIBRATION, [cell])
-    assert told.cell.p_value < 1e-8, "it is there"
-    assert told.p_value == 1.0, "and is nothing that a wheel does"
+        if (cell.amount, cell.variable.name) == (amount, variable)
+    ]
+    for told in lasting(runs, point, CALIBRATION, cells):
+        assert told.p_value > rules.SURE, "it is nothing that a wheel does"
 
 
 @pytest.mark.evidence

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.quarter_turns import Turning, turning_of
@@ -29,6 +30,7 @@ from werrimbi_odom.inference.diagnosis.step_jacobians import (
     shares_of_steps,
     step_jacobians,
 )
+from werrimbi_odom.inference.diagnosis.straight_steps import TURN, is_turn, straight_steps
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -42,8 +44,8 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.score_tests import residual_innovations
-from werrimbi_odom.inference.fitting.whitened_innovations import Point, unexpected
-from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
+from werrimbi_odom.inference.fitting.whitened_innovations import Point, stacked, unexpected
+from werrimbi_odom.inference.linear import ScoreTest, nuisance, score_test_of_products
 from werrimbi_odom.model.pose import Floats
 
 BATCH = 500_000
@@ -123,11 +125,19 @@ def dependences(
     determine the noise, the tests are Fisher's, as those of the effects are (`p_values.chance`).
     """
     runs.cache.forget_steps()
+    path = path_of(point.model, runs)
+    straight = straight_steps(runs, point, path)
     frame, rest = residual_innovations(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
+    if straight.any():
+        white, basis = stacked(runs, point, numbers).flat()
+        turns, _ = step_jacobians(runs, path, [TURN], point)
+        feigned = told.marks(summed_over_legs(runs, straight[:, None].astype(np.float64), turns))
+        frame = nuisance(np.column_stack([basis, feigned[..., :-1].reshape(white.size, -1)]))
+        rest = frame.residual(white)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
     known = np.concatenate([frame.basis, rest[:, None]], axis=-1)
-    for cell, change in _changes(runs, point):
+    for cell, change in _changes(runs, point, straight):
         own = np.ascontiguousarray(told.marks(change)[..., :-1].reshape(rest.size, -1).T)
         parts = 3 * (runs.legs if cell.variable.per_run else runs.legs[[0, -1]])
         rows = [slice(*pair) for pair in itertools.pairwise(parts.tolist())]
@@ -140,7 +150,6 @@ def dependences(
                 found.append((amount, cell.variable, cell.form, tested))
     spare = runs.data - frame.basis.shape[1] if runs.data < rules.NOISE_NUMBERS else math.inf
     whole = float(rest @ rest)
-    path = path_of(point.model, runs)
     shares = shares_of_steps(path, runs.drive(point.model.robot).duration)
     turning = turning_of(runs, path.motion.turn)
     cells = [
@@ -211,8 +220,13 @@ class _Cells(NamedTuple):
     amounts: Sequence[Amount]
 
 
-def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]]:
-    """Cells with their changes of the legs (m, 3, amounts * k), in blocks that fit into memory."""
+def _changes(
+    runs: Concatenated, point: Point, straight: NDArray[np.bool_]
+) -> Iterator[tuple[_Cells, Floats]]:
+    """Cells with their changes of the legs (m, 3, amounts * k), in blocks that fit into memory.
+
+    Turns of `straight` steps are left out where both wheels err alike.
+    """
     path = path_of(point.model, runs)
     of_wheels = [amount for amount in AMOUNTS if amount.of_wheels]
     both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
@@ -220,6 +234,7 @@ def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]
     for begin in range(0, both.shape[0], BLOCK):
         steps = np.arange(begin, min(begin + BLOCK, both.shape[0]))
         both[steps] = left(steps) + right(steps)
+    both[np.ix_(straight, np.repeat([is_turn(amount) for amount in AMOUNTS], 3))] = 0.0
     for variable in variables_of(runs, point.model):
         for form, (of_left, of_right) in functions_of(variable).items():
             alike = of_left is of_right

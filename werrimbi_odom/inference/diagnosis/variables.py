@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import (
@@ -53,6 +55,23 @@ class Variable:
     """Harmonic of an angle."""
     even: bool = False
     """Whether a robot seen in a mirror has the same."""
+    scatter: float = 0.0
+    """Standard deviation of its noise from message to message, where it is a speed; else 0."""
+
+    @property
+    def varied(self) -> bool:
+        """Whether it had different values: by more than its noise, where it is a speed."""
+        if not np.ptp(self.left) > 0.0:
+            return False
+        return self.scatter == 0.0 or self.spread > rules.VARIED * self.scatter
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of a speed along the way, or turn, that was driven with it."""
+        values = np.concatenate([self.left, self.right])
+        weight = np.abs(values)
+        mean = float(np.average(values, weights=weight))
+        return math.sqrt(float(np.average((values - mean) ** 2, weights=weight)))
 
     @property
     def shared(self) -> bool:
@@ -69,10 +88,13 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
     heading = headings_of(path, runs, view, model.start_yaws)
 
     def own(name: str, unit: str, left: Floats, right: Floats, *fields: str) -> Variable:
-        return Variable(name, unit, left, right, looks_at=fields)
+        scatter = max(_scatter(left), _scatter(right))
+        return Variable(name, unit, left, right, looks_at=fields, scatter=scatter)
 
     def robots(name: str, unit: str, values: Floats, *fields: str) -> Variable:
-        return Variable(name, unit, values, values, looks_at=fields, even=name != "yaw_rate")
+        scatter = _scatter(values) if name in _SPEEDS else 0.0
+        even = name != "yaw_rate"
+        return Variable(name, unit, values, values, looks_at=fields, even=even, scatter=scatter)
 
     acceleration = drive.speed.change / drive.duration
     ones = np.ones(heading.size)
@@ -131,7 +153,16 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
         found = [item for item in found if item.name != "direction"]
     if runs.own_axes:
         found = [item for item in found if not ON_THE_FLOOR & set(item.looks_at)]
-    return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)
+    return tuple(item for item in found if item.name == CONSTANT or item.varied)
+
+
+_SPEEDS = ("speed", "yaw_rate", "yaw_rate_size")
+
+
+def _scatter(values: Floats) -> float:
+    """Standard deviation of white noise in values that change smoothly, by second differences."""
+    bends = np.abs(np.diff(values, 2))
+    return MEDIAN_TO_SIGMA * float(np.median(bends)) / math.sqrt(6.0) if bends.size else 0.0
 
 
 def _places(
@@ -166,7 +197,7 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
     middle, scale = float(np.mean(pooled)), float(np.std(pooled))
     sides = (variable.left,) if variable.shared else (variable.left, variable.right)
     lines = [((side - middle) / scale)[:, None] for side in sides]
-    knots = curve_knots(pooled)
+    knots = curve_knots(pooled, variable.scatter)
     found: dict[Form, tuple[Floats, Floats]] = {"line": (lines[0], lines[-1])}
     if knots.size > 2:
         curves = [hats(side, knots) for side in sides]
@@ -174,9 +205,22 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
     return found
 
 
-def curve_knots(values: Floats) -> Floats:
-    """Knots of a curve at quantiles, so that each piece has as many data."""
-    return np.unique(np.quantile(values, np.linspace(0.0, 1.0, rules.CURVE_KNOTS)))
+def curve_knots(values: Floats, noise: float = 0.0) -> Floats:
+    """Knots of a curve at quantiles, so that each piece has as many data.
+
+    `noise`: standard deviation of the values' own noise. Inner knots are left out where a piece
+    would hold no more than that: over a value that was held, a curve resolves noise alone.
+    """
+    knots = np.unique(np.quantile(values, np.linspace(0.0, 1.0, rules.CURVE_KNOTS))).tolist()
+    piece = 0
+    while noise > 0.0 and len(knots) > 2 and piece < len(knots) - 1:
+        within = values[(values >= knots[piece]) & (values <= knots[piece + 1])]
+        if within.size and float(np.std(within)) > rules.VARIED * noise:
+            piece += 1
+            continue
+        del knots[piece + 1 if piece + 2 < len(knots) else piece]
+        piece = max(piece - 1, 0)
+    return np.array(knots)
 
 
 def hats(values: Floats, knots: Floats) -> Floats:

@@ -159,6 +159,13 @@ CURVE_KNOTS = 6
 """Knots of a smooth curve, at quantiles of the variable. Chosen: a threshold, a peak or one wave
 shows in five pieces, each of a fifth of the data; every further knot costs significance."""
 
+VARIED = 3.0
+"""Spread of a speed, in standard deviations of its noise from message to message, up to which it
+was held, along the whole way or within a piece of a curve. Noise of counts is in the speed that an
+error may depend on, and in the error: a curve that resolves it finds that, and it is no law. On
+circles at one speed the spread is 1 to 2, in mixed driving 10 and more; at three, noise makes a
+tenth of the variance."""
+
 FLOOR_CELL = 0.5
 """Width of the floor's cells [m], wider on large floors. Chosen: a carpet's edge, a cable or a ramp
 affects a robot of this size over about that much."""
@@ -177,6 +184,11 @@ SELDOM_BACK = 0.02
 """Share of the way that must be driven backwards, and forwards, for errors to depend on the
 direction of driving. Chosen: wheels that settle by a count as they stop make a millimetre or two a
 metre, and the reported range of a variable leaves out as much at either end."""
+
+STRAIGHT_SIGMAS, STRAIGHT_WINDOW = 3.0, 0.5
+"""A robot drives straight where it turns, by its wheels, within so many standard deviations of
+their noise over the window [s]: a law of turning says as much of noise there as of turns. Chosen:
+three leave one step of 370 that is noise; a robot takes half a second to turn by more."""
 
 NEIGHBOUR = 1.6
 """Distance of neighbouring floor cells, in widths: cells that share a corner are 1.4 apart, and
