@@ -86,13 +86,18 @@ def test_a_table_to_a_robot_file(desk: Path, capsys: pytest.CaptureFixture[str])
         assert words in said
 
 
+def said_of(rows: str, desk: Path, printed: Printed) -> str:
+    """What is printed of a table of squares."""
+    (desk / "squares.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
+    assert umbmark(desk, table="squares.csv") == 0
+    return printed()
+
+
 def test_squares_that_do_not_scatter_are_told_without_a_spread(
     desk: Path, printed: Printed
 ) -> None:
     rows = "cw,0.032,0.031\n" * 2 + "ccw,0.097,-0.094\n" * 2
-    (desk / "same.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
-    assert umbmark(desk, table="same.csv") == 0
-    assert "closer together than the robot file says" in printed()
+    assert "closer together than the robot file says" in said_of(rows, desk, printed)
 
 
 def test_a_second_table_says_what_was_gained(
@@ -119,9 +124,7 @@ def test_exchanged_senses_of_few_squares_are_no_proof_that_all_was_right(
 ) -> None:
     """They are too few to be refused, but 134 mm beside 4 mm of scatter are no scatter."""
     rows = "ccw,0.032,0.031\nccw,0.036,0.029\ncw,0.097,-0.094\ncw,0.091,-0.098\n"
-    (desk / "exchanged.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
-    assert umbmark(desk, table="exchanged.csv") == 0
-    said = printed()
+    said = said_of(rows, desk, printed)
     assert "do not explain where these squares ended: E_max,syst is 134.4 mm" in said
     assert "were right" not in said
 
@@ -131,9 +134,7 @@ def test_exchanged_senses_of_two_squares_that_scatter_are_not_put_down_to_scatte
 ) -> None:
     """290 mm beside 30 mm of scatter: no test of two squares a sense can prove it."""
     rows = "ccw,-0.22,-0.18\nccw,-0.19,-0.23\ncw,-0.10,0.13\ncw,-0.14,0.11\n"
-    (desk / "exchanged.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
-    assert umbmark(desk, table="exchanged.csv") == 0
-    said = printed()
+    said = said_of(rows, desk, printed)
     assert "do not explain where these squares ended" in said
     assert "no more than the scatter" not in said
     assert "Or so few squares scatter more" in said
@@ -144,9 +145,7 @@ def test_corrections_within_their_error_bars_are_not_determined(
 ) -> None:
     """Half a metre of scatter: what is worked out is chance, and no proof that all was right."""
     rows = "cw,0.30,-0.42\ncw,-0.51,0.33\nccw,0.20,0.45\nccw,-0.40,-0.31\n"
-    (desk / "scattered.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
-    assert umbmark(desk, table="scattered.csv") == 0
-    said = printed()
+    said = said_of(rows, desk, printed)
     assert "These squares determine no correction" in said
     assert "They tell the base to 2.5 % and the ratio of the radii to 0.36 %" in said
     assert "were right" not in said

@@ -82,26 +82,23 @@ def read_run(
         TICKS,
     )
     run = without_held_counts(run)
-    bits = robot_file.robot.encoder_bits
-    if reference is None:
-        return without_wrong_noise(without_half_turns(run, bits))
-    found: FoundReference = _of_kind(
-        Path(reference),
-        _reference_folder,
-        lambda bag: read_reference_bag(bag, robot_file, reference_topic, force),
-        REFERENCE,
-    )
-    notes = (*run.notes, f"reference from {reference}", *found.notes)
-    run = replace(
-        run,
-        reference=found.reference,
-        notes=notes,
-        circle=found.circle,
-        damage=(*run.damage, *found.damage),
-        no_reference="",
-        taken_out=found.taken_out,
-    )
-    return without_wrong_noise(without_half_turns(run, bits))
+    if reference is not None:
+        found: FoundReference = _of_kind(
+            Path(reference),
+            _reference_folder,
+            lambda bag: read_reference_bag(bag, robot_file, reference_topic, force),
+            REFERENCE,
+        )
+        run = replace(
+            run,
+            reference=found.reference,
+            notes=(*run.notes, f"reference from {reference}", *found.notes),
+            circle=found.circle,
+            damage=(*run.damage, *found.damage),
+            no_reference="",
+            taken_out=found.taken_out,
+        )
+    return without_wrong_noise(without_half_turns(run, robot_file.robot.encoder_bits))
 
 
 def bag_at(path: Path, table: str = TICKS) -> Path | None:

@@ -42,8 +42,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
 from werrimbi_odom.inference.distributions import bonferroni, fisher_survival
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
-from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
-from werrimbi_odom.inference.fitting.score_tests import residual_innovations
+from werrimbi_odom.inference.fitting.prediction import path_of
 from werrimbi_odom.inference.fitting.whitened_innovations import Point, stacked, unexpected
 from werrimbi_odom.inference.linear import ScoreTest, nuisance, score_test_of_products
 from werrimbi_odom.model.pose import Floats
@@ -127,14 +126,14 @@ def dependences(
     runs.cache.forget_steps()
     path = path_of(point.model, runs)
     straight = straight_steps(runs, point, path)
-    frame, rest = residual_innovations(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
+    white, basis = stacked(runs, point, numbers).flat()
     if straight.any():
-        white, basis = stacked(runs, point, numbers).flat()
         turns, _ = step_jacobians(runs, path, [TURN], point)
         feigned = told.marks(summed_over_legs(runs, straight[:, None].astype(np.float64), turns))
-        frame = nuisance(np.column_stack([basis, feigned[..., :-1].reshape(white.size, -1)]))
-        rest = frame.residual(white)
+        basis = np.column_stack([basis, feigned[..., :-1].reshape(white.size, -1)])
+    frame = nuisance(basis)
+    rest = frame.residual(white)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
     known = np.concatenate([frame.basis, rest[:, None]], axis=-1)
     for cell, change in _changes(runs, point, straight):
