@@ -52,7 +52,7 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
     clock = clock_of(counters, seen, robot, clock_offset(robot))
     seen, useless = _without_useless_poses(seen, counters, robot, clock)
     in_time = clock.put_right(seen)
-    found = [_by_both(part, clock) for part in no_driving(counters, in_time, robot)]
+    found = tuple(_by_both(part, clock) for part in no_driving(counters, in_time, robot))
     at_rest = None
     if not seen.has_position.any():  # a gyro
         spans = driven(counters, robot, found).spans
