@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference import rules
@@ -20,6 +21,11 @@ from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.windows import windows_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+_MOST = 40000
+"""Times at which the two are correlated, of a long drive."""
+_RATES = 1000
+"""Rates tried either way: of a drive of more than five hours the small ones."""
 
 
 class ReferenceClock(NamedTuple):
@@ -69,22 +75,23 @@ def clock_of(
     time, seen = windows.time[known], np.abs(windows.measured[known])
     turned = windows.rolled if ways else np.abs(windows.right - windows.left) / robot.track
     first, last = float(time[0]), float(time[-1])
-    grid = np.arange(first, last, windows.step)
-    wheels = _moving(np.interp(grid, windows.time, turned), windows.step)
-    lags = np.arange(-rules.AGREE_LATEST, rules.AGREE_LATEST, windows.step)
+    step = max(windows.step, (last - first) / _MOST)
+    grid = np.arange(first, last, step)
+    wheels = _moving(np.interp(grid, windows.time, turned), step)
+    most = round(rules.AGREE_LATEST / step)
+    at_lags = np.stack([np.roll(wheels, lag) for lag in range(-most, most + 1)])
 
     def agrees(rate: float) -> float:
         """Largest correlation of the two at any lag."""
         stamps = first + (grid - first) / (1.0 - rate)
-        moved = _moving(np.interp(stamps, time, seen), windows.step)
-        shifts = np.round(lags / windows.step).astype(int)
-        products = [float(np.roll(moved, -shift) @ wheels) for shift in shifts]
-        return max(products) / max(float(np.linalg.norm(wheels) * np.linalg.norm(moved)), 1e-300)
+        moved = _moving(np.interp(stamps, time, seen), step)
+        sizes = float(np.linalg.norm(wheels) * np.linalg.norm(moved))
+        return float((at_lags @ moved).max()) / max(sizes, 1e-300)
 
     if agrees(0.0) >= rules.CLOCK_IN_STEP:
         return as_filed
-    coarse = rules.CLOCK_COARSE / max(last - first, windows.step)
-    count = int(np.ceil(rules.CLOCK_RATE / coarse))
+    coarse = rules.CLOCK_COARSE / (last - first)
+    count = min(int(np.ceil(rules.CLOCK_RATE / coarse)), _RATES)
     best = max(coarse * np.arange(-count, count + 1), key=agrees)
     best = max(best + coarse * np.linspace(-0.75, 0.75, 13), key=agrees)
     if agrees(best) < rules.CLOCK_IN_STEP:
@@ -94,9 +101,5 @@ def clock_of(
 
 def _moving(values: Floats, step: float) -> Floats:
     """How much more or less than usual about that time, (n,)."""
-    width = max(1, round(rules.CLOCK_USUAL / step))
-    weights = np.ones(min(width, values.size))
-    usual = np.convolve(values, weights, "same") / np.convolve(
-        np.ones(values.size), weights, "same"
-    )
-    return values - usual
+    usual = uniform_filter1d(values, max(1, round(rules.CLOCK_USUAL / step)))
+    return np.asarray(values - usual)
