@@ -23,6 +23,7 @@ from werrimbi_odom.files.bags.echoed_topics import (
     echoed_topic,
 )
 from werrimbi_odom.files.bags.several_bags import refuse_several
+from werrimbi_odom.files.bags.standard_forms import kinds_as_read
 from werrimbi_odom.files.bags.unfinished_bag import Raw, absolute, ending, of_message, raw_messages
 
 ROS1 = ".bag"
@@ -37,8 +38,8 @@ class Topic(NamedTuple):
 
     name: str
     kind: str
-    """Message type, as in `sensor_msgs/msg/JointState`; if there are several, all of them
-    joined."""
+    """Message type, as in `sensor_msgs/msg/JointState`, or that as which it is read (`FORMS`); if
+    there are several, all of them joined."""
     messages: int
 
 
@@ -186,6 +187,8 @@ def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
         if messages:
             kinds.setdefault(name, {})[kind] = None
             counts[name] += messages
+    read = kinds_as_read([kind for each in kinds.values() for kind in each])
+    kinds = {name: {read.get(kind, kind): None for kind in each} for name, each in kinds.items()}
     return tuple(Topic(name, " and ".join(each), counts[name]) for name, each in kinds.items())
 
 
