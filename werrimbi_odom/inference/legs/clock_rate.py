@@ -22,11 +22,6 @@ from werrimbi_odom.inference.legs.windows import windows_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-_MOST = 40000
-"""Times at which the two are correlated, of a long drive."""
-_RATES = 1000
-"""Rates tried either way: of a drive of more than five hours the small ones."""
-
 
 class ReferenceClock(NamedTuple):
     """A reference's clock against the wheels'."""
@@ -75,7 +70,7 @@ def clock_of(
     time, seen = windows.time[known], np.abs(windows.measured[known])
     turned = windows.rolled if ways else np.abs(windows.right - windows.left) / robot.track
     first, last = float(time[0]), float(time[-1])
-    step = max(windows.step, (last - first) / _MOST)
+    step = max(windows.step, (last - first) / rules.CLOCK_TIMES)
     grid = np.arange(first, last, step)
     wheels = _moving(np.interp(grid, windows.time, turned), step)
     most = round(rules.AGREE_LATEST / step)
@@ -91,7 +86,7 @@ def clock_of(
     if agrees(0.0) >= rules.CLOCK_IN_STEP:
         return as_filed
     coarse = rules.CLOCK_COARSE / (last - first)
-    count = min(int(np.ceil(rules.CLOCK_RATE / coarse)), _RATES)
+    count = min(int(np.ceil(rules.CLOCK_RATE / coarse)), rules.CLOCK_RATES)
     best = max(coarse * np.arange(-count, count + 1), key=agrees)
     best = max(best + coarse * np.linspace(-0.75, 0.75, 13), key=agrees)
     if agrees(best) < rules.CLOCK_IN_STEP:

@@ -22,6 +22,10 @@ two off, and `reference_clock_drift` has that bound."""
 CLOCK_COARSE = 0.5
 """What two rates differ by at the end of a drive [s], when they are tried first: half a window."""
 
+CLOCK_TIMES, CLOCK_RATES = 40000, 1000
+"""Most times at which the two are correlated, and most rates that are tried either way: enough for
+an hour at 10 Hz and for five hours; of a longer drive the small rates, so that it takes seconds."""
+
 CLOCK_WINDOWS = 300
 """Fewest windows to tell a rate from a delay: at two per cent, half a minute moves the stamps by
 no more than half a window."""
