@@ -19,10 +19,9 @@ from werrimbi_odom.files.tables.compared_ways import words_about_ways
 from werrimbi_odom.files.tables.mislabelled_columns import without_zeros
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
 from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
-from werrimbi_odom.inference.legs.clock_rate import clock_of
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.motion_states import driven
-from werrimbi_odom.inference.legs.usable_run import clock_offset, with_no_driving
+from werrimbi_odom.inference.legs.usable_run import with_no_driving
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.inference.set_up.corrected_robot import with_findings
 from werrimbi_odom.inference.set_up.search import knows_left, mistakes_without_sizes
@@ -57,10 +56,9 @@ def judged_stretches(held: Held, source: RobotFile | None, first: FirstRobot) ->
     seen = None
     if record is not None:
         seen = driven(counters, wired, run.no_driving or (), unmeasured(record))
-    scans = bias = rate = 0.0
+    scans = bias = 0.0
     if recorded.reference is not None and run.reference is not None:
         given, used = recorded.reference, run.reference
-        rate = clock_of(counters, used, robot, clock_offset(robot)).rate
         scans = float(np.std(used.time - given.time))
         last = int(np.flatnonzero(used.has_yaw)[-1]) if used.has_yaw.any() else 0
         if last:
@@ -76,5 +74,4 @@ def judged_stretches(held: Held, source: RobotFile | None, first: FirstRobot) ->
         restamped=counters.restamped,
         scans_restamped=scans,
         gyro_bias=bias,
-        clock_rate=rate,
     )

@@ -60,13 +60,16 @@ class Held:
     """Correction of the scan stamps, rms [s]."""
     gyro_bias: float = 0.0
     """Rate of the headings at rest, which is removed (`legs.gyro_bias`) [rad/s]."""
-    clock_rate: float = 0.0
-    """What the reference's clock gains on the wheels', where it is far off (`legs.clock_rate`)."""
     beside: Measured | None = None
     """Gyro whose headings are taken with the positions of `reference`, a localiser."""
 
     other: Path | None = None
     """Recording that holds the reference, if it is not `path`."""
+
+    @property
+    def clock_rate(self) -> float:
+        """What the reference's clock gains on the wheels', where that is much, in a second."""
+        return 0.0 if self.run is None else self.run.clock_rate
 
     @property
     def topics(self) -> list[str]:

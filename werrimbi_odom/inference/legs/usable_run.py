@@ -63,6 +63,7 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         reference=seen,
         no_driving=tuple(sorted([*found, *useless])),
         at_rest=at_rest,
+        clock_rate=clock.rate,
         taken_out=(
             *run.taken_out,
             *((clock.stamp(part.begin), clock.stamp(part.end)) for part in useless),
