@@ -314,3 +314,14 @@ def test_hard_starts_are_no_reason_to_believe_stamps() -> None:
     counts = np.floor(160.0 * np.cumsum(speed) * 0.05).astype(np.int64)
     found = with_even_stamps(stamps, counts, counts)
     assert scatter(found - read) < 0.3 * scatter(stamps - read)
+
+
+@pytest.mark.parametrize("together", [2, 4])
+def test_of_messages_sent_together_the_last_is_as_old_as_their_stamp(together: int) -> None:
+    """A driver reads at 100 Hz and sends several readings with the stamp of the last."""
+    read = 0.01 * np.arange(2000)
+    left, right = driven(read)
+    stamps = np.repeat(read[together - 1 :: together], together)
+    found = counters_of(Run("run", Path("run"), Ticks(stamps, left, right), None), ROBOT, None)
+    np.testing.assert_allclose(found.time, read[together - 1 :: together])
+    np.testing.assert_allclose(found.left + found.first_left, left[together - 1 :: together])

@@ -17,6 +17,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
 from werrimbi_odom.inference.legs.monotone_cubic import between_messages, interval_of
+from werrimbi_odom.inference.legs.queued_messages import last_of_packets
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -141,8 +142,10 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
 
 def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float) -> Counters:
     ticks = run.ticks
-    read = with_even_stamps(ticks.time, ticks.left, ticks.right, least=least)
-    steps = wheel_steps(robot, read, ticks.left, ticks.right, limits)
+    sent = last_of_packets(ticks.time)
+    stamps, counted = ticks.time[sent], (ticks.left[sent], ticks.right[sent])
+    read = with_even_stamps(stamps, *counted, least=least)
+    steps = wheel_steps(robot, read, *counted, limits)
     if steps.first_row < 0 or steps.time.size == 0:
         raise InputError(f"{run.path}: fewer than two usable rows of ticks")
     time = np.concatenate([read[[steps.first_row]], steps.time])
@@ -164,11 +167,11 @@ def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float)
         time,
         summed(left),
         summed(right),
-        float(ticks.left[steps.first_row]),
-        float(ticks.right[steps.first_row]),
-        {name: np.asarray(values)[rows] for name, values in ticks.channels.items()},
+        float(counted[0][steps.first_row]),
+        float(counted[1][steps.first_row]),
+        {name: np.asarray(values)[sent[rows]] for name, values in ticks.channels.items()},
         leaps=leaps,
-        restamped=float(np.std(read - ticks.time)) if read is not ticks.time else 0.0,
+        restamped=float(np.std(read - stamps)) if read is not stamps else 0.0,
     )
 
 

@@ -13,6 +13,19 @@ from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
 
+def last_of_packets(time: Floats) -> NDArray[np.intp]:
+    """Rows that end a packet of several which were sent at once, with one stamp; all rows if single.
+
+    The last was read when it was sent, and the others before. Of a clock that stands still now and
+    then the first is right; most rows share their stamp with another only where they were packed.
+    `time` (n,): stamps [s].
+    """
+    rows = np.arange(time.size)
+    last = np.append(np.diff(time) != 0.0, True)
+    packed = 1.0 - np.count_nonzero(last) / time.size >= rules.PACKED
+    return rows[last] if packed else rows
+
+
 def period_of(stamps: Floats, number: Floats) -> float:
     """Period of a timer that sends numbered messages [s]."""
     apart = number[rules.EVEN_WINDOW :] - number[: -rules.EVEN_WINDOW]

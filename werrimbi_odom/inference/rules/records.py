@@ -155,6 +155,10 @@ wheels are off by, below which one packet brings both. The Kobuki's driver stamp
 after its counters, to a tenth of what these are off by; of two timers that are alike it would be
 two thirds."""
 
+PACKED = 0.45
+"""Share of the messages that have the stamp of the next one, above which they are sent in packets:
+half of them in pairs, less a few that are left over."""
+
 EVEN_MESSAGES, EVEN_WINDOW = 50, 51
 """Fewest messages for a decision whether stamps tell when counters were read, as chance decides
 with fewer; and window of the running median of their delays: a few seconds, in which two clocks
