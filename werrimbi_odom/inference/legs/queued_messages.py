@@ -14,7 +14,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 def last_of_packets(time: Floats) -> NDArray[np.intp]:
-    """Rows that end a packet of several which were sent at once, with one stamp; all rows if single.
+    """Rows that end a packet of several that were sent with one stamp; all rows if there is none.
 
     The last was read when it was sent, and the others before. Of a clock that stands still now and
     then the first is right; most rows share their stamp with another only where they were packed.
