@@ -297,6 +297,21 @@ def test_wheels_that_are_smaller_by_scans_may_be_ranges_that_are_short(scans: bo
     assert ("A lidar whose ranges are 4 % too short shows the same" in said) == scans
 
 
+def test_wheels_that_are_larger_by_a_camera_may_be_its_metre() -> None:
+    """Visual odometry, 2 % too long, and a base that was entered too small: no factor of both."""
+    runs = []
+    for run in (scan_drive(seed, 0.0) for seed in (7, 8, 9)):
+        seen = run.reference
+        long = replace(seen, x=1.02 * seen.x, y=1.02 * seen.y, own_axes=False)
+        runs.append(replace(run, reference=long))
+    given = replace(NOMINAL, wheel_separation=0.97 * NOMINAL.wheel_separation)
+    for kind in ("local_map", "absolute"):
+        found = diagnose(runs, given, COMMON, EvaluationOptions(reference_kind=kind))
+        assert set(found.found) == {"wheel_radius_scale", "track_width"}
+        said = " ".join(or_the_reference_s_scale(found))
+        assert ("A camera's or a map's metre that is 2 % too long" in said) == (kind != "absolute")
+
+
 def test_a_lidar_that_is_askew_where_it_sits_is_told_by_its_transform() -> None:
     """200 mm ahead by its transform, and turned by 50 mrad: 10 mm aside, where nothing is."""
     runs = []

@@ -158,8 +158,12 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     """What looks the same as a size that was found, as the reference's own scale is not known."""
     runs, found = diagnosis.runs, diagnosis.found
     by_ratio = not diagnosis.told.design.sized and "track_width" in found
-    if not by_ratio and not (runs.own_axes and "wheel_radius_scale" in found):
-        return or_its_metre(diagnosis)
+    radii = "wheel_radius_scale" in found
+    absolute = diagnosis.final.point.options.reference_kind == "absolute"
+    if not by_ratio and not (runs.own_axes and radii):
+        metre = or_its_metre(diagnosis)
+        if metre or not radii or (absolute and diagnosis.wander is None):
+            return metre
     size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
     share = f"{100.0 * abs(size - 1.0):.2g} %"
     if by_ratio:
@@ -172,9 +176,17 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
         ]
     if not is_ordinary(size):
         return []
+    off = f"{share} too {'long' if size > 1.0 else 'short'}"
+    if runs.own_axes:
+        return [
+            f"A lidar whose ranges are {off} shows the same: a wall at a taped distance, or a "
+            "straight line of 10 m beside a tape, tells."
+        ]
+    other = "smaller" if size > 1.0 else "larger"
     return [
-        f"A lidar whose ranges are {share} too {'long' if size > 1.0 else 'short'} shows the same: "
-        "a wall at a taped distance, or a straight line of 10 m beside a tape, tells."
+        f"A camera's or a map's metre that is {off} shows the same: the wheels are as entered "
+        f"then, and the base is {share} {other} than is told here. A straight line of 10 m beside "
+        "a tape tells."
     ]
 
 
