@@ -126,11 +126,16 @@ def windows_of(
     rolled = np.concatenate([[0.0], np.cumsum(way)])
     by_wheels = rolled if ways else (right - left) / robot.track
     if ways:
-        steps_seen = np.diff(reference.x[known][new]) + 1j * np.diff(reference.y[known][new])
+        place = reference.x[known][new] + 1j * reference.y[known][new]
+        told = np.diff(place)
     else:
-        steps_seen = wrap_all(np.diff(reference.yaw[known][new])) + 0j
+        place = None
+        told = wrap_all(np.diff(reference.yaw[known][new])) + 0j
     often = usual[0] < rules.NO_DRIVING_LEAP_WITHIN
+    steps_seen = told
     if often:
+        if place is not None:
+            steps_seen = np.diff(_without_outliers(place))
         steps_seen = _without_leaps(steps_seen, np.abs(np.diff(np.interp(time, grid, by_wheels))))
     gone = np.concatenate([[0j], np.cumsum(steps_seen)])
     over = _over(np.interp(grid, time, gone.real), steps)
@@ -153,7 +158,7 @@ def windows_of(
         measured,
         np.ones_like(measured),
         often,
-        _noise(steps_seen, stands, ways=ways),
+        _noise(told, stands, ways=ways),
     )
 
 
@@ -168,6 +173,15 @@ def _noise(seen: NDArray[np.complex128], stands: NDArray[np.bool_], *, ways: boo
     each = np.concatenate([third.real, third.imag]) if ways else third.real
     # Of poses with unit noise a third difference has the variance 20, a difference of two 2.
     return float(np.median(np.abs(each)) * np.sqrt(2.0 / 20.0))
+
+
+def _without_outliers(places: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Positions without single ones far from both neighbours, as radio ranging has them.
+
+    They are too small for jumps, and several in a second would be a stretch. A motion of its own
+    goes on for more than two poses: it passes the median of three.
+    """
+    return np.asarray(median_filter(places.real, 3) + 1j * median_filter(places.imag, 3))
 
 
 def leaps_of(
