@@ -533,6 +533,19 @@ def test_a_carry_below_a_poor_camera_is_found() -> None:
     is_found(run, "carried", 62.0, 66.0, near=1.0)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_nobody_lifts_a_robot_whose_tag_is_seen_elsewhere_now_and_then(seed: int) -> None:
+    """Radio ranging: single positions off by half a metre, several in some seconds."""
+    run = parts(run_of(ROBOT, seed), "positions")
+    reference, random = at_10_hz(run), np.random.default_rng(seed)
+    size = (2, reference.x.size)
+    off = 0.02 * random.standard_normal(size)
+    off += 0.5 * random.standard_normal(size) * (random.random(reference.x.size) < 0.04)
+    seen = replace(reference, x=reference.x + off[0], y=reference.y + off[1])
+    seen = replace(seen, yaw=np.full_like(seen.yaw, np.nan))
+    assert with_no_driving(replace(run, reference=seen), ROBOT).no_driving == ()
+
+
 def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
     """A tenth of a radian a second, beside brisk turns: wheels that hardly roll are believed."""
     time = np.arange(0.0, 60.0, 0.02)

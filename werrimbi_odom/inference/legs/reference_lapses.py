@@ -82,12 +82,15 @@ def _away(
     ]
     leaps, usual = leaps_of(seen, 0.5 * per_way * (travel[0] + travel[1]))
     at = runs_of(leaps)
-    sizes = [(seen - usual)[first : last + 1].sum() for first, last in at]
+    steps = [(seen - usual)[first : last + 1] for first, last in at]
+    sizes = [each.sum() for each in steps]
     most = rules.JUMP_RARE * time.size
     found: list[tuple[int, int, float]] = []
     for number, (first, _) in enumerate(at):
         leap = abs(sizes[number])
-        if leap < least or (found and first < found[-1][1]):
+        # A wrong pose or two, after which it is where it would be: noise is all that remains.
+        stray = leap < rules.JUMP_LASTS * float(np.abs(steps[number]).max())
+        if leap < least or stray or (found and first < found[-1][1]):
             continue
         left = np.abs(np.cumsum(sizes[number:]))
         back = np.flatnonzero(left < rules.JUMP_LASTS * leap)
