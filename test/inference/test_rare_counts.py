@@ -91,9 +91,8 @@ def test_steps_end_within_rare_messages() -> None:
     assert legs.left.sum() == pytest.approx(np.diff(counted[:, 0])[0])
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_hard_starts_between_rare_counts_are_no_events_and_no_law(seed: int) -> None:
-    """The reference was said to jump at thirty of them, or sideways errors to be a law."""
-    found = diagnose([driven(10 * seed + each, 5.0)[0] for each in range(3)], ROBOT, LIBRARY)
+def test_hard_starts_between_rare_counts_are_no_events_and_no_law() -> None:
+    """Something was said to be missing, in others the reference to jump at thirty of them."""
+    found = diagnose([driven(20 + each, 5.0)[0] for each in range(3)], ROBOT, LIBRARY)
     assert found.verdict == "none"
     assert not found.happened.events

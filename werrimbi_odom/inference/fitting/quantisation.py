@@ -28,11 +28,10 @@ def quantisation(robot: Robot, heading: Floats, unseen: Floats | None = None) ->
     axes of the covariance [rad]; where it is NaN, the mean over all headings. `unseen` (m, 2): what
     the counters did between messages (`Counters.unseen_at`) [counts].
     """
-    more = wiring_of(robot.effects).wheels(
-        *(np.zeros((heading.size, 2)) if unseen is None else unseen).T
-    )
-    left = robot.left_tick**2 * (1.0 / 12.0 + np.square(more[0]))
-    right = robot.right_tick**2 * (1.0 / 12.0 + np.square(more[1]))
+    between = np.zeros((heading.size, 2)) if unseen is None else unseen
+    left, right = wiring_of(robot.effects).wheels(*between.T)
+    left = robot.left_tick**2 / 12.0 + np.square(robot.left_tick * left)
+    right = robot.right_tick**2 / 12.0 + np.square(robot.right_tick * right)
     along, yaw = 0.25 * (left + right), (left + right) / robot.track**2
     both = 0.5 * (right - left) / robot.track
     cos, sin = np.nan_to_num(np.cos(heading)), np.nan_to_num(np.sin(heading))

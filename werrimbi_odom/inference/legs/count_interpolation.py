@@ -83,7 +83,7 @@ class Counters:
     @property
     def are_rare(self) -> bool:
         """Whether wheels change their speed much from one message to the next."""
-        return self.time.size > 3 and self.interval > rules.RARE_COUNTS
+        return self.interval > rules.RARE_COUNTS
 
     @property
     def within(self) -> Floats:
