@@ -77,6 +77,61 @@ def test_a_bag_without_definitions(tmp_path: Path, ros: Any, robot: Any) -> None
     assert read_run(bag, robot()).ticks.left.tolist() == [1, 2, 3]
 
 
+def _joints_of_ros2_control(ros: Any, nanoseconds: int, left: float, right: float) -> Any:
+    kind, names = "control_msgs/msg/DynamicJointState", ["castor_joint", *WHEELS]
+    values = [
+        ros.make("control_msgs/msg/InterfaceValue", ["velocity", "position"], np.array(both))
+        for both in ([0.0, 3.0], [0.5, left], [0.5, right])
+    ]
+    return kind, ros.make(kind, ros.header(nanoseconds), names, values)
+
+
+def test_joints_of_ros2_control_are_read_as_joint_states(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """As `joint_state_broadcaster` sends them beside its joint states, which come first."""
+    entries = [
+        ("/dynamic_joint_states", n * MS, _joints_of_ros2_control(ros, n * MS, 0.1 * n, 0.2 * n))
+        for n in range(1, 4)
+    ]
+    alone = read_run(ros.write(tmp_path / "alone", entries), robot())
+    assert alone.ticks.right == pytest.approx(2000.0 / (2.0 * math.pi) * np.array([0.2, 0.4, 0.6]))
+    both = [("/joint_states", n * MS, ros.joints(n * MS, WHEELS, [n, n])) for n in range(1, 4)]
+    beside = read_run(ros.write(tmp_path / "both", entries + both), robot())
+    assert beside.ticks.right == pytest.approx(2000.0 / (2.0 * math.pi) * np.array([1, 2, 3]))
+
+
+def test_a_leo_rover_by_its_firmware_alone(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Four wheels and a gyro in messages of its own, whose definitions the bag does not hold."""
+    import sqlite3
+
+    wheels, imu, none = "leo_msgs/msg/WheelStates", "leo_msgs/msg/Imu", np.zeros(4, np.float32)
+    entries = []
+    for n in range(1, 40):
+        stamp = ros.header(n * 50 * MS).stamp
+        angles = np.array([n, n, 2 * n, 2 * n], dtype=np.float32)
+        rate = (0.0, 0.0, 0.5)
+        states = ros.make(wheels, stamp, angles, none, none, none)
+        turning = ros.make(imu, stamp, 30.0, *rate, 0.0, 0.0, 9.8)
+        entries.append(("/firmware/wheel_states", n * 50 * MS + 9, (wheels, states)))
+        entries.append(("/firmware/imu", n * 50 * MS + 9, (imu, turning)))
+    bag = ros.write(tmp_path / "bag", entries, "sqlite3")
+    with sqlite3.connect(next(bag.glob("*.db3"))) as database:
+        database.execute("DELETE FROM message_definitions")
+    sides = {
+        "left": "[wheel_FL_joint, wheel_RL_joint]",
+        "right": "[wheel_FR_joint, wheel_RR_joint]",
+    }
+    leo = robot(*(f"{side}_wheel_names: {names}" for side, names in sides.items()))
+    run = read_run(bag, leo)
+    assert run.ticks.time[:2].tolist() == [0.05, 0.1], "stamps, not times of receipt"
+    per_radian = 1000.0 / (2.0 * math.pi)
+    assert np.ptp(run.ticks.left) == pytest.approx(38 * per_radian)
+    assert np.ptp(run.ticks.right) == pytest.approx(2 * 38 * 2 * per_radian)
+    assert run.reference is not None
+    assert np.ptp(run.reference.yaw) == pytest.approx(0.5 * 38 * 0.05)
+
+
 def test_a_kobuki_counts_with_16_bits(tmp_path: Path, ros: Any, robot: Any) -> None:
     kind = "kobuki_ros_interfaces/msg/SensorState"
     counts = [65400, 65500, 64, 164]

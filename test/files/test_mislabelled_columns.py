@@ -103,6 +103,10 @@ def test_times_that_are_rounded(unit: float) -> None:
     refuse_wrong_columns(
         replace(run, ticks=replace(run.ticks, time=bursts + jitter[: bursts.size]))
     )
+    bursts[-1] = (
+        bursts[-2] + (bursts[-2] - bursts[-5]) / 3.0
+    )  # on a grid, but for most of its times
+    refuse_wrong_columns(replace(run, ticks=replace(run.ticks, time=bursts)))
 
 
 @pytest.mark.parametrize("seed", range(4))

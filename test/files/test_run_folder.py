@@ -192,6 +192,7 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
             "ticks.csv, line 1: column 4 has no name",
         ),
         (FINE + "0.2,x,6\n", "ticks.csv, line 4, column left_ticks: 'x' is not a number"),
+        (FINE + FINE, "ticks.csv, line 4: the column names again: the log was begun anew there"),
         (
             TICKS[:-1] + ",mode\n0,1,2,auto\n",
             "ticks.csv, line 2, column mode: 'auto' is not a number; leave the cell empty where "

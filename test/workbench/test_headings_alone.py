@@ -17,7 +17,7 @@ import werrimbi_odom as wo
 from test.workbench.session import HIDDEN, written
 from werrimbi_odom.api.drives import recordings_of
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.workbench.drawings import gain_figure
+from werrimbi_odom.workbench.drawings import errors_told, floor_figure, gain_figure
 from werrimbi_odom.workbench.loaded_input import error_of, opened
 from werrimbi_odom.workbench.session import begun
 from werrimbi_odom.workbench.tab import Shared, Tab, change_told, size_told
@@ -48,6 +48,14 @@ def test_the_error_that_falls_is_that_of_the_headings(tmp_path: Path) -> None:
     drawn: Any = gain_figure([*tab.session.steps, step])
     assert "[°]" in drawn.layout.yaxis.title.text
     assert drawn.data[1].y[0] == pytest.approx(degrees)
+    told = errors_told(look.train, 0)
+    assert list(told) == ["heading"]
+    floor: Any = floor_figure(look.train)
+    legs = np.concatenate([line.x for line in floor.data if line.mode == "lines"])
+    assert np.isfinite(legs.astype(float)).sum() > look.train.legs.run.size  # drawn all the same
+    texts = [words for line in floor.data for words in line.text or ()]
+    assert len(texts) == look.train.legs.run.size
+    assert all("heading" in words and "along" not in words for words in texts)
 
 
 def test_without_anything_measured_it_is_said() -> None:

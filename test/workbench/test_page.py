@@ -76,6 +76,7 @@ def test_the_hidden_effect_is_found_added_and_saved(
     looked.at("verdict").wait_for(timeout=PATIENCE)
     assert HIDDEN in looked.at("verdict").inner_text()
     looked.page.get_by_text("how to check it on the robot").wait_for()
+    looked.page.get_by_text(f"{HIDDEN}: its error before and after").wait_for()
     press(looked, f"add-{HIDDEN}", how)
     looked.at("undo").and_(looked.page.locator(":enabled")).wait_for(timeout=PATIENCE)
     after = looked.error

@@ -126,7 +126,8 @@ def _told_of(run: Run, robot: RobotFile, how: DriveOptions) -> Looked:
 def told_of_task(task: DriveTask) -> Looked:
     """Process a drive, and cache the result."""
     try:
-        robot = _source(task.robot, task.text, task.how.effects)
+        effects = task.how.effects
+        robot = _parsed(task.robot, task.text, effects, mark_of(effects))
         found = _looked_at(task.run, robot, task.how)
     except (InputError, OSError) as error:
         return _unusable(task.run, error)
@@ -147,7 +148,8 @@ def _unusable(run: Path, why: object) -> Unusable:
 
 @with_one_blas_thread
 def _looked_at(run: Run | Path, robot: RobotFile, how: DriveOptions) -> Dated:
-    given = gathered(robot, _collection(how.effects), [run], (), how)
+    collection = _collected(how.effects, mark_of(how.effects))
+    given = gathered(robot, collection, [run], (), how)
     for words in refuse_circles(given):
         warnings.warn(words, stacklevel=2)
     told = estimate_of_drive(given.runs[0], given.robot, given.evaluation)
@@ -206,17 +208,9 @@ def _as_given(drives: Sequence[Dated], given: Sequence[Run | str | Path]) -> lis
     return sorted(drives, key=lambda drive: places.get(str(drive.run), 0))
 
 
-def _collection(effects: tuple[Path, ...]) -> Any:
-    return _collected(effects, mark_of(effects))
-
-
 @cached
 def _collected(effects: tuple[Path, ...], content: str) -> Any:
     return collection_of(effects)
-
-
-def _source(robot: Path, text: str, effects: tuple[Path, ...]) -> RobotFile:
-    return _parsed(robot, text, effects, mark_of(effects))
 
 
 @cached

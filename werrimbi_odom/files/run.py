@@ -232,6 +232,8 @@ class Run:
     at_rest: tuple[float, float] | None = None
     """Of a gyro: how its heading turns while the wheels stand, and the standard deviation [rad/s],
     by all rests of the drive that this may be a part of; None if there are none."""
+    clock_rate: float = 0.0
+    """What the reference's clock gains on the wheels', where that is much, in a second."""
     taken_out: tuple[tuple[float, float], ...] = ()
     """Stretches of the reference that are excluded on purpose, start and end in its stamps [s]:
     legs end there, and start again."""

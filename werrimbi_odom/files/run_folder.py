@@ -112,18 +112,20 @@ def _ticks(path: Path) -> tuple[Ticks, tuple[str, ...]]:
     channels = {name: table.column(name) for name in table.names if name not in TICKS_COLUMNS}
     left, right = (_counts(table, name) for name in TICKS_COLUMNS[1:])
     times = _times(table)
-    return Ticks(times, left, right, channels), (*_cut(table), *_whole_seconds(table, times))
+    whole = _whole_seconds(times)
+    told = (f"{path.name}: {whole}",) if whole else ()
+    return Ticks(times, left, right, channels), (*_cut(table), *told)
 
 
-def _whole_seconds(table: CsvTable, times: Floats) -> tuple[str, ...]:
-    """Remark on times without a fraction, as `int(time.time())` writes them."""
+def _whole_seconds(times: Floats) -> str:
+    """Remark on times without a fraction, as `int(time.time())` writes them; "" for others."""
     if times.size < FEWEST_WHOLE or not (times == np.rint(times)).all():
-        return ()
+        return ""
     if float(np.median(np.abs(np.diff(times)))) >= SELDOM:
-        return ()
+        return ""
     return (
-        f"{table.path.name}: all its times are whole seconds; if they were rounded, each is off by "
-        "up to one, and delays and short legs tell no more than that: write all their digits",
+        "all its times are whole seconds; if they were rounded, each is off by up to one, and "
+        "delays and short legs tell no more than that: write all their digits"
     )
 
 
@@ -191,18 +193,12 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
     reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
         raise _nothing_measured(table)
-    whole = _whole_seconds(table, reference.time)
+    whole = _whole_seconds(reference.time)
     reference, resampled = without_interpolated(reference)
     keep, late = _on_time(reference)
-    remarks = (*_cut(table), *(f"{path.name}: of its rows {each}" for each in late))
-    if was_sorted:
-        remarks += (f"{path.name}: its rows are not in the order of time; they are sorted by t_s",)
-    remarks += (f"{path.name}: {reckoned}",) if reckoned else ()
-    remarks += tuple(f"{path.name}: {each}" for each in (course, resampled) if each)
-    remarks += whole
     reference, alike = one_kind_of_row(reference if keep.all() else reference.chosen(keep))
-    remarks += (f"{path.name}: {alike}",) if alike else ()
-    return reference, remarks
+    told = (*late, was_sorted, reckoned, course, resampled, whole, alike)
+    return reference, (*_cut(table), *(f"{path.name}: {each}" for each in told if each))
 
 
 def _on_time(reference: Reference) -> tuple[NDArray[np.bool_], list[str]]:
@@ -215,7 +211,7 @@ def _on_time(reference: Reference) -> tuple[NDArray[np.bool_], list[str]]:
     for kind in np.unique(measured):
         own = measured == kind
         keep[own], left_out = newest_of_bursts(reference.time[own])
-        told += [left_out] if left_out else []
+        told += [f"of its rows {left_out}"] if left_out else []
     return keep, told
 
 

@@ -70,6 +70,11 @@ class Held:
     """Recording that holds the reference, if it is not `path`."""
 
     @property
+    def clock_rate(self) -> float:
+        """What the reference's clock gains on the wheels', where that is much, in a second."""
+        return 0.0 if self.run is None else self.run.clock_rate
+
+    @property
     def topics(self) -> list[str]:
         """Topics of the references that are taken."""
         return [each.name for each in (self.reference, self.beside) if each is not None]

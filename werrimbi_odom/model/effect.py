@@ -53,7 +53,7 @@ Stage = Literal["wiring", "wheels", "body", "reference"]
 
 
 Apply = Callable[..., Any]
-Motion = TypeVar("Motion", WheelTravel[Any], BodyMotion[Any])
+ActedOn = TypeVar("ActedOn", Wiring, WheelTravel[Any], BodyMotion[Any], View)
 
 
 @dataclass(frozen=True)
@@ -227,7 +227,8 @@ def wheel_effect(
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""
-    return _declared("wheels", parameters, 2, twins, sketch, quadrature, channels, one_of_channels)
+    more = {"sketch": sketch, "channels": channels, "one_of_channels": one_of_channels}
+    return _declared("wheels", parameters, twins, quadrature, **more)
 
 
 def body_effect(
@@ -240,7 +241,7 @@ def body_effect(
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(motion, drive, **parameters) -> BodyMotion`` as an effect on the body."""
-    return _declared("body", parameters, 2, twins, sketch, quadrature, channels)
+    return _declared("body", parameters, twins, quadrature, sketch=sketch, channels=channels)
 
 
 def reference_effect(
@@ -251,27 +252,26 @@ def reference_effect(
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(view, **parameters) -> View`` as an effect on the measurement."""
-    return _declared("reference", parameters, 1, twins, sketch, extends=extends)
+    return _declared("reference", parameters, twins, sketch=sketch, extends=extends)
 
 
 def wiring_mistake(
     *, twins: Sequence[Twin | str] = (), sketch: Sketch | None = None
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(wiring) -> Wiring`` as a set-up mistake: present or not."""
-    return _declared("wiring", {}, 1, twins, sketch)
+    return _declared("wiring", {}, twins, sketch=sketch)
 
 
 def _declared(
     stage: Stage,
     parameters: Mapping[str, Parameter],
-    looked_at: int,
     twins: Sequence[Twin | str],
-    sketch: Sketch | None,
     quadrature: tuple[str, str] | None = None,
-    channels: tuple[str, ...] = (),
-    one_of_channels: tuple[str, ...] = (),
-    extends: str = "",
+    **more: Any,
 ) -> Callable[[Apply], Effect]:
+    """`more`: of `Effect`, as they are."""
+    looked_at = 2 if stage in ("wheels", "body") else 1
+
     def declare(apply: Apply) -> Effect:
         name = apply.__name__
         doc = inspect.getdoc(apply)
@@ -289,19 +289,7 @@ def _declared(
                 f"effect {name}: its quadrature names {quadrature}, no parameters of it"
             )
         others = tuple(Twin(each) if isinstance(each, str) else each for each in twins)
-        return Effect(
-            name,
-            stage,
-            dict(parameters),
-            apply,
-            doc,
-            others,
-            quadrature,
-            channels,
-            sketch,
-            one_of_channels,
-            extends,
-        )
+        return Effect(name, stage, dict(parameters), apply, doc, others, quadrature, **more)
 
     return declare
 
@@ -319,16 +307,13 @@ def always_twins(one: Effect, other: Effect) -> bool:
 
 
 def after_stage(
-    stage: Literal["wheels", "body"],
-    effects: tuple[AppliedEffect, ...],
-    motion: Motion,
-    drive: Drive[Any],
-) -> Motion:
-    """Apply the effects on the travel of the wheels, or on the motion of the body, in order."""
+    stage: Stage, effects: tuple[AppliedEffect, ...], acted_on: ActedOn, *drive: Drive[Any]
+) -> ActedOn:
+    """Apply the effects of a stage in order: on travel or motion, which `drive` belongs to."""
     for applied in effects:
         if applied.effect.stage == stage and applied.ready:
-            motion = applied.effect.apply(motion, drive, **applied.values)
-    return motion
+            acted_on = applied.effect.apply(acted_on, *drive, **applied.values)
+    return acted_on
 
 
 def applied_of(effects: tuple[AppliedEffect, ...], name: str) -> AppliedEffect:
@@ -343,17 +328,9 @@ def extended_by(effects: tuple[AppliedEffect, ...]) -> frozenset[str]:
 
 def view_of(effects: tuple[AppliedEffect, ...]) -> View:
     """How the reference observes the robot."""
-    view = View()
-    for applied in effects:
-        if applied.effect.stage == "reference" and applied.ready:
-            view = applied.effect.apply(view, **applied.values)
-    return view
+    return after_stage("reference", effects, View())
 
 
 def wiring_of(effects: tuple[AppliedEffect, ...]) -> Wiring:
     """How the counters must be read."""
-    wiring = Wiring()
-    for applied in effects:
-        if applied.effect.stage == "wiring":
-            wiring = applied.effect.apply(wiring, **applied.values)
-    return wiring
+    return after_stage("wiring", effects, Wiring())

@@ -73,6 +73,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "left_out": left_out_json(held.left_out),
         **picked(held, "restamped_s:restamped scans_restamped_s:scans_restamped"),
         "gyro_bias_rad_per_s": held.gyro_bias,
+        "clock_rate": held.clock_rate,
         "can_show": can,
         "cannot_show": cannot,
     }

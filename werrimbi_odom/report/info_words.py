@@ -86,6 +86,13 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             f"Its headings turn by {math.degrees(held.gyro_bias):.2g}°/s while the wheels stand: "
             "a gyro's bias, which is removed."
         )
+    if held.clock_rate:
+        yield (
+            f"The reference's clock {'gains' if held.clock_rate > 0.0 else 'loses'} "
+            f"{milliseconds(abs(held.clock_rate))} a second on the wheels': only so do both move "
+            "alike. `diagnose` fits it (`reference_clock_drift`); better mend the stamps of "
+            "whichever is wrong."
+        )
     if held.problem:
         yield f"It cannot be used as it is: {held.problem}{'' if held.problem[-1] == '?' else '.'}"
     if held.driven is not None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of the page: measured paths, legs on the floor, decrease of the error; light and dark.
+"""Figures of the page: paths, legs on the floor, decrease of the error; light and dark.
 
 They are functions from values to figures, testable without a page. Long drives are drawn with fewer
 points; all statistics are of the complete data.
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.dead_reckoning import headings_alone, middles
 from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
@@ -100,14 +101,13 @@ def _add_texts(
 
     A line instead of marks is a single element of the page.
     """
-    legs = comparison.legs
-    told = np.flatnonzero(chosen & np.isfinite(legs.x) & np.isfinite(legs.end_x))
+    middle = middles(comparison)
+    told = np.flatnonzero(chosen & np.isfinite(middle))
     if told.size > _TEXTS:
         told = told[np.argsort(-grade[told], kind="stable")[:_TEXTS]]
     style.plot(
         figure,
-        style.small(0.5 * (legs.x + legs.end_x)[told]),
-        style.small(0.5 * (legs.y + legs.end_y)[told]),
+        *style.places(middle[told]),
         shown=False,
         hover="%{text}",
         text=[leg_told(comparison, int(index)) for index in told],
@@ -127,26 +127,29 @@ def leg_told(comparison: Comparison, index: int) -> str:
 
 
 def errors_told(comparison: Comparison, index: int) -> dict[str, str]:
-    """Errors of one leg by their names; a dash for what was not measured."""
-    along, sideways, heading = comparison.legs.errors.error[index].tolist()
+    """Errors of one leg by their names, but for what was not measured of any."""
+    errors = comparison.legs.errors.error
+    told = (("along", length_told), ("sideways", length_told), ("heading", angle_told))
+    measured = np.any(np.isfinite(errors), axis=0).tolist()
     return {
-        "along": length_told(along, signed=True),
-        "sideways": length_told(sideways, signed=True),
-        "heading": angle_told(heading, signed=True),
+        name: words(float(size), signed=True)
+        for (name, words), size, known in zip(told, errors[index], measured, strict=True)
+        if known
     }
 
 
 def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
-    """The measured path of every leg, thinned out."""
-    legs, paths = comparison.legs, comparison.paths
+    """The path of every leg, thinned out: measured, or the model's where only headings are."""
+    legs, paths, unseen = comparison.legs, comparison.paths, headings_alone(comparison)
     total = sum(path.measured.size for path in paths)
     every = max(1, total // _POINTS)
     lines = []
     for run, begin, end in zip(legs.run, legs.start_time, legs.end_time, strict=True):
-        measured = paths[int(run)].measured
-        first, last = np.searchsorted(paths[int(run)].time, [begin, end])
+        path = paths[int(run)]
+        way = path.predicted if int(run) in unseen else path.measured
+        first, last = np.searchsorted(path.time, [begin, end])
         places = np.unique(np.append(np.arange(first, last + 1, every), last))
-        points = measured[places[places < measured.size]]
+        points = way[places[places < way.size]]
         points = points[np.isfinite(points)]
         lines.append((points.real, points.imag))
     return lines

@@ -11,6 +11,7 @@ from typing import Any
 from nicegui import Client, app, ui
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.report.number_format import counted
 from werrimbi_odom.workbench.drawings import empty_floor
 from werrimbi_odom.workbench.html import ask_for_drawing, box, button, listen, text
 from werrimbi_odom.workbench.session import begun
@@ -128,12 +129,15 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
 
 def _head(tab: Tab, turn_theme: object) -> None:
     shared = tab.shared
-    fitted, held = shared.opened.train.runs, shared.opened.holdout.runs
+    given = shared.opened.given
+    drives = f"{counted(len(given.runs), 'drive')}, parts held out"
+    if given.holdout:
+        drives = f"{len(given.runs)} fitted and {len(given.holdout)} held-out drives"
     with box("div", "title"):
         text("h1", "werrimbi workbench")
         text(
             "p",
-            f"{shared.source.path.name}: {len(fitted)} fitted and {len(held)} held-out drives. "
+            f"{shared.source.path.name}: {drives}. "
             "Find out where the wheel odometry fails, why, and mend it: 1 to 4.",
         )
     assert callable(turn_theme)

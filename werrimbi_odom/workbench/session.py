@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -20,14 +21,23 @@ GONE = -1
 """Index of a saved step that was undone and replaced: the file still belongs to the tab."""
 
 
+class Drawn(NamedTuple):
+    """A plotly figure as JSON, with its title and what to see."""
+
+    title: str
+    see: str
+    figure: str
+
+
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
     """A diagnosis with the next manoeuvre and detection limits, and its figures."""
 
     advised: AdvisedDiagnosis
-    figures: Mapping[str, str]
-    """Available plotly figures as JSON: response (before and after along the effect's variable),
-    set_up, manoeuvre."""
+    before_after: Drawn | None
+    """The set-up, or the error over the variable of what is missing."""
+    manoeuvre: str | None
+    """The path to drive, as JSON."""
 
     @property
     def diagnosis(self) -> Diagnosis:

@@ -9,14 +9,14 @@ from dataclasses import replace
 from werrimbi_odom.api.compare_diagnose_add import added as added_by
 from werrimbi_odom.api.compare_diagnose_add import diagnosed as diagnosis_of
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.inference.diagnosis.response_curve import before_after
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import pace_of
 from werrimbi_odom.progress import Show
-from werrimbi_odom.report.diagnosis.evidence_figures import before_after_figure
-from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
+from werrimbi_odom.report.diagnosis.document import shown_before_and_after
+from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure
 from werrimbi_odom.workbench.loaded_input import Opened, split
-from werrimbi_odom.workbench.session import Diagnosed, ModelVersion
+from werrimbi_odom.workbench.session import Diagnosed, Drawn, ModelVersion
 from werrimbi_odom.workbench.task import Add, Diagnose
 
 
@@ -27,22 +27,24 @@ def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:
     """
     told = diagnosis_of(split(replace(given, fitted=task.robot)), show).found
     show(0.99, "figures")
-    return Diagnosed(replace(told, held_out=bool(given.holdout)), _figures(told))
+    told = replace(told, held_out=bool(given.holdout))
+    return Diagnosed(told, _before_after(told.diagnosis), _manoeuvre(told))
 
 
-def _figures(advised: AdvisedDiagnosis) -> dict[str, str]:
+def _before_after(found: Diagnosis) -> Drawn | None:
+    section = shown_before_and_after(found)
+    if section is None:
+        return None
+    (drawing,) = section.figures.values()
+    return Drawn(section.title, section.see, str(drawing.to_json()))
+
+
+def _manoeuvre(advised: AdvisedDiagnosis) -> str | None:
     found, manoeuvre = advised.diagnosis, advised.manoeuvre
-    figures = {}
-    if found.set_up.findings:
-        figures["set_up"] = set_up_figure(found)
-    elif (response := before_after(found)) is not None:
-        figures["response"] = before_after_figure(response)
     ideal = None if manoeuvre is None else ideal_of(manoeuvre.name)
-    if ideal is not None:
-        figures["manoeuvre"] = manoeuvre_figure(
-            ideal, found.robot, pace_of(found.runs, found.robot)
-        )
-    return {name: str(figure.to_json()) for name, figure in figures.items()}
+    if ideal is None:
+        return None
+    return str(manoeuvre_figure(ideal, found.robot, pace_of(found.runs, found.robot)).to_json())
 
 
 def added(task: Add, opened: Opened, show: Show) -> ModelVersion:

@@ -23,6 +23,7 @@ from werrimbi_odom.files.bags.echoed_topics import (
     echoed_topic,
 )
 from werrimbi_odom.files.bags.several_bags import refuse_several
+from werrimbi_odom.files.bags.standard_forms import kinds_as_read
 from werrimbi_odom.files.bags.unfinished_bag import Raw, absolute, ending, of_message, raw_messages
 
 ROS1 = ".bag"
@@ -37,8 +38,8 @@ class Topic(NamedTuple):
 
     name: str
     kind: str
-    """Message type, as in `sensor_msgs/msg/JointState`; if there are several, all of them
-    joined."""
+    """Message type, as in `sensor_msgs/msg/JointState`, or that as which it is read (`FORMS`); if
+    there are several, all of them joined."""
     messages: int
 
 
@@ -95,20 +96,17 @@ class Bag:
         try:
             return self._types.read(of_message(raw.data), raw.kind)
         except Exception as error:  # as above
-            problem = _in_a_line(error)
             raise InputError(
                 f"{self.path} cannot be read as a bag: a message of {raw.topic} ({raw.kind}): "
-                f"{problem}"
+                f"{_in_a_line(error)}"
             ) from error
 
     def firsts(self, topics: Sequence[str]) -> dict[str, Any]:
         """First readable message of each topic, by topic name."""
         found = {}
         for topic in topics:
-            with suppress(InputError):
-                for message in self.messages([topic]):
-                    found[topic] = message.content
-                    break
+            with suppress(InputError, StopIteration):
+                found[topic] = next(self.messages([topic])).content
         return found
 
 
@@ -189,6 +187,8 @@ def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
         if messages:
             kinds.setdefault(name, {})[kind] = None
             counts[name] += messages
+    read = kinds_as_read([kind for each in kinds.values() for kind in each])
+    kinds = {name: {read.get(kind, kind): None for kind in each} for name, each in kinds.items()}
     return tuple(Topic(name, " and ".join(each), counts[name]) for name, each in kinds.items())
 
 
@@ -197,6 +197,8 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
 
     The files of `rosbag record --split`, which have no metadata, are read so as well.
     """
+    from rosbags.rosbag1 import Reader
+
     files = _files(path)
     split = path.is_dir() and all(ending(each) == ROS1 for each in files)
     counts: Counter[tuple[str, str]] = Counter()
@@ -212,13 +214,10 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
     def raw(names: Sequence[str]) -> Iterator[Raw]:
         return (each for each in raw_messages(files) if each.topic in names)
 
-    told: tuple[str, ...] = (
-        f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}",
-    )
-    if split and all(map(_is_whole, files)):
-        told = ()
+    cut = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}"
+    damage = () if split and all(_is_whole(file, Reader) for file in files) else (cut,)
     topics = _topics((name, kind, number) for (name, kind), number in counts.items())
-    return Bag(path, topics, told, raw, Types(ros1 or split, definitions))
+    return Bag(path, topics, damage, raw, Types(ros1 or split, definitions))
 
 
 def _is_cut_off(path: Path) -> bool:
@@ -227,21 +226,13 @@ def _is_cut_off(path: Path) -> bool:
 
     if not path.is_dir() or not (path / "metadata.yaml").exists():
         return True
-    for file in _files(path):
-        try:
-            with Reader(file):
-                pass
-        except Exception:  # as above
-            return True
-    return False
+    return not all(_is_whole(file, Reader) for file in _files(path))
 
 
-def _is_whole(file: Path) -> bool:
-    """Whether a ROS 1 bag has its index."""
-    from rosbags.rosbag1 import Reader
-
+def _is_whole(file: Path, reader: Callable[[Path], Any]) -> bool:
+    """Whether a reader opens a file: its end, or its index, is there."""
     try:
-        with Reader(file):
+        with reader(file):
             return True
     except Exception:  # as above
         return False
@@ -273,9 +264,7 @@ def _refuse_repeated(folder: Path) -> None:
     Other faults of the metadata are reported by rosbags.
     """
     seen: set[tuple[int, int]] = set()
-    for file in named_files(folder):
-        if not file.exists():
-            continue
+    for file in filter(Path.exists, named_files(folder)):
         found = file.stat()
         if (found.st_dev, found.st_ino) in seen:
             name = file.name

@@ -11,6 +11,8 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any, NamedTuple
 
+from werrimbi_odom.files.bags.standard_forms import FORMS, as_read
+
 
 class CounterMessage(NamedTuple):
     """Content of a driver's message, equal for all robots that send it."""
@@ -97,6 +99,7 @@ DRIVERS = {
 
 DEFINITIONS = {
     **{kind: driver.definition for kind, driver in DRIVERS.items()},
+    **{kind: form.definition for kind, form in FORMS.items()},
     "duckietown_msgs/msg/WheelEncoderStamped": DUCKIETOWN,
     "tf/msg/tfMessage": "geometry_msgs/TransformStamped[] transforms\n",
 }
@@ -122,9 +125,8 @@ class Types:
         """Deserialise a message; raises the exception of rosbags if it is unreadable."""
         if kind not in self._store.types:
             self._register(kind)
-        if self._ros1:
-            return self._store.deserialize_ros1(data, kind)
-        return self._store.deserialize_cdr(data, kind)
+        deserialised = self._store.deserialize_ros1 if self._ros1 else self._store.deserialize_cdr
+        return as_read(deserialised(data, kind), kind)
 
     def _register(self, kind: str) -> None:
         from rosbags.typesys import get_types_from_idl, get_types_from_msg

@@ -260,6 +260,11 @@ def _refuse_bad_row(path: Path, names: Sequence[str], cut: int, required: Sequen
     try:
         for number, cells in _rows(path, cut):
             place = f"{path}, line {number}"
+            if [cell.strip() for cell in cells] == list(names):
+                raise InputError(
+                    f"{place}: the column names again: the log was begun anew there; make a run of "
+                    "each part, with the names as its first line"
+                )
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):
                     further = "" if name in required else "; leave a column of text out"

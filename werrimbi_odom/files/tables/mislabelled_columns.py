@@ -45,7 +45,11 @@ SPANS_ALIKE = 2.0
 
 SHARED, WHOLE = 0.5, 0.001
 """Share of rows at the time of the row before above which times are rounded, if they come in whole
-multiples of their smallest step, to within this share of it. Bursts of messages do not."""
+multiples of their smallest step, to within this share of it. Bursts of messages do not, or skip
+most of these multiples."""
+PACKETS = 1.5
+"""Smallest steps that times are apart, in the median, from which on messages were sent together: of
+rounded times every next one is there."""
 
 FOLLOWS, CONTRADICTS = 0.8, 0.7
 """Mean resultant length of the angle between path and yaw, above which they belong together and
@@ -179,6 +183,8 @@ def _rounded_times(ticks: Ticks, reference: Reference) -> str:
         if new.size < FEWEST or shared <= SHARED * steps.size:
             continue
         unit = float(new.min())
+        if float(np.median(new)) > PACKETS * unit:  # several messages at one time, sent together
+            continue
         if (np.abs(new / unit - np.rint(new / unit)) < WHOLE).all():
             return (
                 f"{shared} of {time.size} rows of {name} share their time with the row before: "

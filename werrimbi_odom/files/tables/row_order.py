@@ -24,15 +24,16 @@ WRAPS_SHARE = 0.1
 """Share of the period that these may be: rows in no order step back by anything."""
 
 
-def in_order(reference: Reference) -> tuple[Reference, bool]:
-    """The reference with its rows sorted by time, and whether that changed something.
+def in_order(reference: Reference) -> tuple[Reference, str]:
+    """The reference with its rows sorted by time, and in words what that changed; "" if nothing.
 
     Rows that step back by less than a second may be late, and stay; so do those of a clock that was
     set back, as their order by time is not that in which they were measured.
     """
     if not (np.diff(reference.time) < -CLOCK_JUMP).any() or clock_was_set_back(reference):
-        return reference, False
-    return reference.chosen(np.argsort(reference.time, kind="stable")), True
+        return reference, ""
+    told = "its rows are not in the order of time; they are sorted by t_s"
+    return reference.chosen(np.argsort(reference.time, kind="stable")), told
 
 
 def clock_was_set_back(reference: Reference) -> bool:

@@ -21,15 +21,18 @@ def middles(comparison: Comparison) -> NDArray[np.complex128]:
     legs = comparison.legs
     found = 0.5 * (legs.x + legs.end_x) + 0.5j * (legs.y + legs.end_y)
     found = found.astype(np.complex128)
-    for group in comparison.prepared.groups:
-        if group.measure != "heading":
-            continue
-        for index in group.index:
-            mine = legs.run == index
-            time = 0.5 * (legs.start_time + legs.end_time)[mine]
-            path = comparison.paths[index]
-            found[mine] = np.interp(time, path.time, path.predicted)
+    for index in headings_alone(comparison):
+        mine = legs.run == index
+        time = 0.5 * (legs.start_time + legs.end_time)[mine]
+        path = comparison.paths[index]
+        found[mine] = np.interp(time, path.time, path.predicted)
     return found
+
+
+def headings_alone(comparison: Comparison) -> frozenset[int]:
+    """Indices of the runs of which no positions are measured."""
+    groups = comparison.prepared.groups
+    return frozenset(i for group in groups if group.measure == "heading" for i in group.index)
 
 
 def covariance_along(comparison: Comparison, index: int) -> Floats:

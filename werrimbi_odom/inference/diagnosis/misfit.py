@@ -43,7 +43,8 @@ from werrimbi_odom.inference.fitting.score_tests import Score, residual_innovati
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import AppliedEffect, Effect, Motion, Parameter
+from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Floats
 
 
@@ -201,7 +202,9 @@ def late(law: AppliedEffect) -> Effect:
     swings earlier or later.
     """
 
-    def apply(moved: Motion, drive: Drive[Floats], messages: float) -> Motion:
+    def apply(
+        moved: WheelTravel[Floats] | BodyMotion[Floats], drive: Drive[Floats], messages: float
+    ) -> WheelTravel[Floats] | BodyMotion[Floats]:
         changed = law.effect.apply(moved, drive, **law.values)
         said = (np.asarray(after - before) for after, before in zip(changed, moved, strict=True))
         later = (messages * np.diff(part, prepend=part[:1]) for part in said)

@@ -15,6 +15,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.legs.clock_rate import ReferenceClock, clock_of
 from werrimbi_odom.inference.legs.count_interpolation import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import (
     in_packets_of,
@@ -48,10 +49,10 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         counters = counters_of(run, robot, limits)
     except InputError:
         return run  # cutting into legs raises the error
-    delay = clock_offset(robot)
-    seen, useless = _without_useless_poses(seen, counters, robot, delay)
-    in_time = seen.earlier(delay)
-    found = no_driving(counters, in_time, robot)
+    clock = clock_of(counters, seen, robot, clock_offset(robot))
+    seen, useless = _without_useless_poses(seen, counters, robot, clock)
+    in_time = clock.put_right(seen)
+    found = tuple(_by_both(part, clock) for part in no_driving(counters, in_time, robot))
     at_rest = None
     if not seen.has_position.any():  # a gyro
         spans = driven(counters, robot, found).spans
@@ -62,8 +63,18 @@ def with_no_driving(run: Run, robot: Robot, limits: EncoderLimits | None = None)
         reference=seen,
         no_driving=tuple(sorted([*found, *useless])),
         at_rest=at_rest,
-        taken_out=(*run.taken_out, *((part.begin + delay, part.end + delay) for part in useless)),
+        clock_rate=clock.rate,
+        taken_out=(
+            *run.taken_out,
+            *((clock.stamp(part.begin), clock.stamp(part.end)) for part in useless),
+        ),
     )
+
+
+def _by_both(part: NoDriving, clock: ReferenceClock) -> NoDriving:
+    """A stretch by either clock: legs are cut before the rate of the reference's is fitted."""
+    begin, end = (clock.stamp(at) - clock.delay for at in (part.begin, part.end))
+    return part._replace(begin=min(part.begin, begin), end=max(part.end, end))
 
 
 def clock_offset(robot: Robot) -> float:
@@ -76,16 +87,16 @@ def clock_offset(robot: Robot) -> float:
 
 
 def _without_useless_poses(
-    seen: Reference, counters: Counters, robot: Robot, delay: float
+    seen: Reference, counters: Counters, robot: Robot, clock: ReferenceClock
 ) -> tuple[Reference, tuple[NoDriving, ...]]:
     """Blank the poses of lapses and of phases of much more noise, and list these stretches.
 
-    They are in the time of the counters. `delay`: of the reference behind the wheels, by the robot
-    file [s]. Another delay, found later, moves no pose out of a stretch or into one.
+    They are in the time of the counters. Another delay, found later, moves no pose out of a stretch
+    or into one.
     """
     if seen.own_axes:
         return seen, ()
-    in_time = seen.earlier(delay)
+    in_time = clock.put_right(seen)
     rising = in_time.chosen(later_than_all_before(in_time.time))
     found = sorted([*lapses(counters, rising, robot), *noisy_phases(counters, rising, robot)])
     useless = np.zeros(seen.time.shape, dtype=np.bool_)

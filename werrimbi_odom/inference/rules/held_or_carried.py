@@ -6,6 +6,30 @@ from __future__ import annotations
 
 import math
 
+# -------------------------------------------------------- a reference whose clock gains or loses
+
+CLOCK_IN_STEP = 0.8
+"""Correlation of how much the wheels and the reference move from which on their clocks go alike: of
+a drive without it another rate is tried, and taken where it reaches this."""
+
+CLOCK_USUAL = 20.0
+"""Time about a moment whose mean motion is subtracted for that [s]: several turns and stops."""
+
+CLOCK_RATE = 0.025
+"""Largest rate that is tried [s/s]: a microcontroller's clock without a crystal is a hundredth or
+two off, and `reference_clock_drift` has that bound."""
+
+CLOCK_COARSE = 0.5
+"""What two rates differ by at the end of a drive [s], when they are tried first: half a window."""
+
+CLOCK_TIMES, CLOCK_RATES = 40000, 1000
+"""Most times at which the two are correlated, and most rates that are tried either way: enough for
+an hour at 10 Hz and for five hours; of a longer drive the small rates, so that it takes seconds."""
+
+CLOCK_WINDOWS = 300
+"""Fewest windows to tell a rate from a delay: at two per cent, half a minute moves the stamps by
+no more than half a window."""
+
 # ----------------------------------------------------------- how wheels and reference go together
 
 AGREE_WITHIN = 0.2

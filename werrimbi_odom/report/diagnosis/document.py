@@ -58,7 +58,7 @@ def document_of(advised: AdvisedDiagnosis, steps: NextSteps | None = None) -> Do
         tables=tables_of(diagnosis, advised.sights),
         draw=lambda: [
             *_effects(diagnosis),
-            *_before_after(diagnosis),
+            *filter(None, [shown_before_and_after(diagnosis)]),
             *_ranking(diagnosis),
             *_evidence(diagnosis),
             *_events(diagnosis),
@@ -105,20 +105,19 @@ def effect_card(effect: Effect) -> str:
     return f'<div class="card">{"".join(parts)}</div>'
 
 
-def _before_after(diagnosis: Diagnosis) -> list[Shown]:
+def shown_before_and_after(diagnosis: Diagnosis) -> Shown | None:
+    """The set-up as given and put right, or the error over the variable of what is missing."""
     if diagnosis.set_up.findings:
-        return [
-            Shown(
-                "set-up",
-                "Turn and travel, as given and put right",
-                "Each mark is a short leg. What is right lies on the dashed line; a "
-                "wrong sign or a wrong factor lies on another one.",
-                {"": set_up_figure(diagnosis)},
-            )
-        ]
+        return Shown(
+            "set-up",
+            "Turn and travel, as given and put right",
+            "Each mark is a short leg. What is right lies on the dashed line; a wrong sign or a "
+            "wrong factor lies on another one.",
+            {"": set_up_figure(diagnosis)},
+        )
     found = before_after(diagnosis)
     if found is None:
-        return []
+        return None
     variable = label_of(found.cell.variable.name)
     if found.effect is None:
         title = f"What the error does over {variable}"
@@ -132,7 +131,7 @@ def _before_after(diagnosis: Diagnosis) -> list[Shown]:
             f"Over {variable}, the error before shows the effect's own pattern; with the effect in "
             "the model it should be flat on zero. Bars are 2 standard errors."
         )
-    return [Shown("before-after", title, see, {"": before_after_figure(found)})]
+    return Shown("before-after", title, see, {"": before_after_figure(found)})
 
 
 def _ranking(diagnosis: Diagnosis) -> list[Shown]:

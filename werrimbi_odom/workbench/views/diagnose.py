@@ -50,7 +50,7 @@ def diagnose_view(tab: Tab) -> None:
             _verdict(found.advised)
             _add_all(tab, found.diagnosis)
             _ranking(tab, found.diagnosis)
-            _response(tab, found)
+            _before_after(tab, found)
         with box("div", "right"):
             if tab.why is not None:
                 why(tab, tab.why)
@@ -160,18 +160,13 @@ def _ranked(tab: Tab, item: Ranked, diagnosis: Diagnosis) -> None:
             )
 
 
-def _response(tab: Tab, found: Diagnosed) -> None:
-    """The error over the effect's own variable, before and after."""
-    if "response" in found.figures:
-        name = found.diagnosis.effect or "what is missing"
-        text("h3", f"The error along the variable of {name}, before and after")
-        text("p", "Before, it shows the effect's own pattern; after, it should be flat on zero.")
-    elif "set_up" in found.figures:
-        text("h3", "The set-up, as given and put right")
-        text("p", "What is set up rightly lies on the dashed line.")
-    for name in ("response", "set_up"):
-        if name in found.figures:
-            figure(found.figures[name], tab.dark, "Figure: error before and after", "plot low")
+def _before_after(tab: Tab, found: Diagnosed) -> None:
+    """The set-up, or the error over the effect's own variable, before and after."""
+    drawn = found.before_after
+    if drawn is not None:
+        text("h3", drawn.title)
+        text("p", drawn.see)
+        figure(drawn.figure, tab.dark, "Figure: error before and after", "plot low")
 
 
 def _following(tab: Tab, found: Diagnosed) -> None:
@@ -182,10 +177,8 @@ def _following(tab: Tab, found: Diagnosed) -> None:
     text("h3", "What to do next")
     minutes = f", for about {manoeuvre.minutes:.0f} min" if manoeuvre.minutes else ""
     text("p", f"{capital(manoeuvre.do)}{minutes}: {manoeuvre.why}.")
-    if "manoeuvre" in found.figures:
-        figure(
-            found.figures["manoeuvre"], tab.dark, "Figure: the path to drive, to scale", "plot low"
-        )
+    if found.manoeuvre is not None:
+        figure(found.manoeuvre, tab.dark, "Figure: the path to drive, to scale", "plot low")
 
 
 def _by_chance(item: Ranked, diagnosis: Diagnosis) -> str:

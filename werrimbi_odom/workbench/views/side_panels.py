@@ -11,6 +11,7 @@ from nicegui import ui
 
 from werrimbi_odom.effects.effect_docstring import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.comparison.dead_reckoning import headings_alone
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.number_format import capital, counted
@@ -44,18 +45,21 @@ def floor(tab: Tab) -> None:
                 button(tab, "Show all legs", lambda: tab.point(None, "told"), key="all-legs")
             _which_drives(tab)
         figure(floor_figure(comparison, which), tab.dark, f"The floor from above. {told}")
+        if headings_alone(comparison):
+            text("p", "Where no positions are measured, legs lie where the wheels say.")
         legs = comparison.legs
         lines = [
-            [
-                comparison.runs[legs.run[index]].run.name,
-                leg_when(comparison, index),
-                str(legs.errors.kind[index]),
-                *errors_told(comparison, index).values(),
-            ]
+            {
+                "run": comparison.runs[legs.run[index]].run.name,
+                "when": leg_when(comparison, index),
+                "motion": str(legs.errors.kind[index]),
+                **errors_told(comparison, index),
+            }
             for index in worst(comparison, chosen, 5)
         ]
-        heads = ["run", "when", "motion", "along", "sideways", "heading"]
-        prose([Table("The worst of these legs, measured minus predicted", heads, lines)])
+        heads = list(dict.fromkeys(name for line in lines for name in line))
+        rows = [list(line.values()) for line in lines]
+        prose([Table("The worst of these legs, measured minus predicted", heads, rows, (1, 2))])
 
 
 def _which_drives(tab: Tab) -> None:
