@@ -109,3 +109,19 @@ def test_a_counter_that_wraps_is_no_distance_that_was_driven() -> None:
         [by_gyro(counts, np.mod(counts, 2.0**16))], replace(ROBOT, encoder_bits=16), INCREMENTAL
     ).runs
     assert run.distance_m == pytest.approx(gone(counts), rel=0.02)
+
+
+@pytest.mark.parametrize("side", [0, 1, slice(None)])
+def test_a_reset_is_left_out_and_no_travel_is_lost(side: int | slice) -> None:
+    """It was told as a slip of the wheels: what they turned in that message was left at nothing."""
+    counts = np.rint(np.cumsum(np.full((400, 2), [60.0, 90.0]), axis=0))
+    reset = counts.copy()
+    reset[250:, side] -= reset[250, side]
+    run = run_of(reset)
+    ((begin, end, words),) = counters_of(run, ROBOT, None).leaps
+    assert (begin, end) == (pytest.approx(12.45), pytest.approx(12.5))
+    assert words.startswith("a counter fell to zero")
+    found = counters_of(run, ROBOT, None)
+    np.testing.assert_allclose(found.left[-1], counts[-1, 0] - counts[0, 0])
+    np.testing.assert_allclose(found.right[-1], counts[-1, 1] - counts[0, 1])
+    assert [each.why for each in record_of(run, ROBOT).left_out] == ["counter"]

@@ -72,6 +72,7 @@ def judged_stretches(held: Held, source: RobotFile | None, first: FirstRobot) ->
         seen=seen,
         left_out=() if record is None else record.left_out,
         restamped=counters.restamped,
+        rare=counters.interval if counters.are_rare else 0.0,
         scans_restamped=scans,
         gyro_bias=bias,
     )

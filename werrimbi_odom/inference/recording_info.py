@@ -56,6 +56,9 @@ class Held:
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
     """Correction of the tick stamps (`legs.even_stamps`), rms [s]."""
+    rare: float = 0.0
+    """Usual interval of the wheels' messages where they are rare (`Counters.are_rare`), else 0
+    [s]."""
     scans_restamped: float = 0.0
     """Correction of the scan stamps, rms [s]."""
     gyro_bias: float = 0.0

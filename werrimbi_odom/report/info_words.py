@@ -71,6 +71,11 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             "their messages came: the stamps are set back to the readings, by "
             f"{milliseconds(held.restamped)} (rms)."
         )
+    if held.rare:
+        yield (
+            f"Its counts come every {held.rare:.2g} s: what the wheels do between two messages is "
+            "not in them, as at hard starts. Let the driver send 20 a second, if it can."
+        )
     if held.scans_restamped:
         yield (
             "The path shows that the lidar turned evenly, and that its scans are not stamped so: "

@@ -207,7 +207,7 @@ def _reference_part(
     The reference's part is that of its positions, headings and stamps; `shares` are as in
     `Concatenated.shares`, and `heading` is measured at the legs' starts, shape (m,).
     """
-    counted = quantisation_of_legs(robot, prediction.relative, runs.rounding)
+    counted = quantisation_of_legs(robot, prediction.relative, runs.unseen, runs.rounding)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
     begun = ended = np.zeros((runs.count, 3))
     if sigmas[2] > 0.0:  # speeds for an hour of steps are costly

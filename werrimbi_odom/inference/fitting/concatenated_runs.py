@@ -185,6 +185,18 @@ class Concatenated:
         return _at_both_ends([run.counters.rounding_at(run.time[run.ends]) for run in self.runs])
 
     @property
+    def unseen(self) -> Floats:
+        """What the counters did between messages, at both ends of each leg (`Counters.unseen_at`).
+
+        Shape (2, m, 2). At the poses as they were stamped, whatever delay is tried: one for which
+        it seems to be much would be preferred.
+        """
+        return self.cache.known(
+            "unseen",
+            lambda: _at_both_ends([run.counters.unseen_at(run.measured.time) for run in self.runs]),
+        )
+
+    @property
     def inside(self) -> NDArray[np.intp]:
         """Steps that belong to a leg."""
         both = zip(self.runs, self.steps, strict=False)

@@ -210,7 +210,7 @@ def _of_increments(
     covariance = (
         wheel_covariance(prediction, runs, variances.left, variances.right)
         + walked(prediction, runs.intervals, variances.xy[:, None], variances.yaw[:, None])
-        + quantisation_of_legs(robot, prediction.relative)
+        + quantisation_of_legs(robot, prediction.relative, runs.unseen)
     )
     covariance = covariance + UNMEASURED * diagonal_of(~np.isfinite(value))
     value = np.where(known, value, 0.0)
@@ -266,7 +266,8 @@ def _reading(
         pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
         late = variances.stamp[:, None, None] * pace
         reading = reading + late[..., None] * np.eye(3)
-    return np.asarray(reading + quantisation(robot, finish[:, 2] - view_of(robot.effects).yaw))
+    heading = finish[:, 2] - view_of(robot.effects).yaw
+    return np.asarray(reading + quantisation(robot, heading, runs.unseen[1]))
 
 
 def stated_shares(runs: Concatenated, kind: ReferenceKind, mirrored: bool) -> Floats | None:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from werrimbi_odom.inference.fitting.leg_loop import lever_of
-from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -19,15 +19,19 @@ def quantisation_variance(robot: Robot) -> Floats:
     return np.asarray(np.diagonal(quantisation(robot, np.array([np.nan]))[0]))
 
 
-def quantisation(robot: Robot, heading: Floats) -> Floats:
+def quantisation(robot: Robot, heading: Floats, unseen: Floats | None = None) -> Floats:
     """Quantisation covariance of a pose from one reading of both counters (uniform), (m, 3, 3).
 
     Counts err along the path and in heading, never sideways. So they do at a message. Between two
     they err less (`Counters.rounding_at`), which fits leave out: how much depends on the speed, and
     a delay for which it seems to be least would be preferred. `heading` (m,): of the robot, in the
-    axes of the covariance [rad]; where it is NaN, the mean over all headings.
+    axes of the covariance [rad]; where it is NaN, the mean over all headings. `unseen` (m, 2): what
+    the counters did between messages (`Counters.unseen_at`) [counts].
     """
-    left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
+    between = np.zeros((heading.size, 2)) if unseen is None else unseen
+    left, right = wiring_of(robot.effects).wheels(*between.T)
+    left = robot.left_tick**2 / 12.0 + np.square(robot.left_tick * left)
+    right = robot.right_tick**2 / 12.0 + np.square(robot.right_tick * right)
     along, yaw = 0.25 * (left + right), (left + right) / robot.track**2
     both = 0.5 * (right - left) / robot.track
     cos, sin = np.nan_to_num(np.cos(heading)), np.nan_to_num(np.sin(heading))
@@ -43,16 +47,20 @@ def quantisation(robot: Robot, heading: Floats) -> Floats:
 
 
 def quantisation_of_legs(
-    robot: Robot, relative: Floats, rounding: Sequence[float] | Floats = (1.0, 1.0)
+    robot: Robot,
+    relative: Floats,
+    unseen: Floats,
+    rounding: Sequence[float] | Floats = (1.0, 1.0),
 ) -> Floats:
     """Quantisation covariance of the legs' errors, from the readings at both ends, (m, 3, 3).
 
-    `relative` (m, 3): predicted, in the frame of the reference at each leg's start. `rounding`:
-    shares of it at the starts and ends (`Concatenated.rounding`).
+    `relative` (m, 3): predicted, in the frame of the reference at each leg's start. `unseen`,
+    `rounding`: `Concatenated.unseen`, and shares of all at the starts and ends
+    (`Concatenated.rounding`).
     """
     axis = view_of(robot.effects).yaw
     lever = lever_of(relative)
-    begun = quantisation(robot, np.array([-axis]))
-    ended = quantisation(robot, relative[:, 2] - axis)
+    begun = quantisation(robot, np.full(relative.shape[0], -axis), unseen[0])
+    ended = quantisation(robot, relative[:, 2] - axis, unseen[1])
     first, last = (np.reshape(share, (-1, 1, 1)) for share in rounding)
     return np.asarray(last * ended + first * (lever @ begun @ lever.swapaxes(-1, -2)))

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -16,7 +17,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
-from werrimbi_odom.inference.legs.monotone_cubic import between_messages, interval_of
+from werrimbi_odom.inference.legs.monotone_cubic import between_messages, interval_of, missed_at
 from werrimbi_odom.inference.legs.queued_messages import last_of_packets
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
@@ -55,8 +56,7 @@ class Counters:
 
         Counts and times of all messages remain known.
         """
-        usual = float(np.median(np.diff(self.time)))
-        return replace(self, every=max(1, int(1.0 / (rate * usual) + ROUNDING)))
+        return replace(self, every=max(1, int(1.0 / (rate * self.interval) + ROUNDING)))
 
     def at(self, time: Floats) -> Floats:
         """Counts at any times, (n, 2): left and right; see `between_messages`."""
@@ -75,6 +75,46 @@ class Counters:
         _, _, share = interval_of(time, self.time)
         weight = share * share * (3.0 - 2.0 * share)
         return np.asarray(1.0 - 2.0 * rules.ROUNDING_SHARED * weight * (1.0 - weight))
+
+    @property
+    def interval(self) -> float:
+        """Usual time between two messages [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def are_rare(self) -> bool:
+        """Whether wheels change their speed much from one message to the next."""
+        return self.interval > rules.RARE_COUNTS
+
+    @property
+    def within(self) -> Floats:
+        """Times between rare messages, at which steps end too; none where they are not rare.
+
+        A wheel that gains speed within a step of both turns the path elsewhere than an arc does:
+        by a curve of the robot's sideways errors over its acceleration, which no robot has.
+        """
+        if not self.are_rare:
+            return np.zeros(0)
+        parts = math.ceil(self.interval / rules.RARE_COUNTS) + 1
+        last = self.time.size - 1
+        row = np.arange(last * parts + 1) / parts
+        return np.interp(row, np.arange(last + 1), self.time)
+
+    def unseen_at(self, time: Floats) -> Floats:
+        """Standard deviation of the counts between messages that are rare, at any times, (n, 2).
+
+        Wheels that change their speed within an interval are elsewhere than interpolation has them.
+        How much it misses is seen at the messages: each is interpolated between its neighbours.
+        With intervals half as long, half of that is missed (`UNSEEN_OF_LEFT_OUT`). Rounding misses
+        a count at the most. Zero where messages are not rare.
+        """
+        if not self.are_rare:
+            return np.zeros((time.size, 2))
+        before, _, share = interval_of(time, self.time)
+        missed = np.stack([missed_at(self.time, side) for side in (self.left, self.right)], axis=-1)
+        missed = np.maximum(missed - 1.0, 0.0)
+        most = np.maximum(missed[before], missed[before + 1])
+        return np.asarray(rules.UNSEEN_OF_LEFT_OUT * 4.0 * (share * (1.0 - share))[:, None] * most)
 
     @property
     def nodes(self) -> NDArray[np.intp]:
@@ -155,7 +195,8 @@ def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float)
         )
     per_turn = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
     left, right = steps.left / robot.left_tick, steps.right / robot.right_tick
-    found = bridged(time, left / per_turn[0], right / per_turn[1])
+    reset = (steps.left_lost > 0.0) | (steps.right_lost > 0.0)
+    found = bridged(time, left / per_turn[0], right / per_turn[1], reset)
     leaps = _told(found.leaps, time, robot)
     rows = np.concatenate([[steps.first_row], steps.row])
     if leaps:
@@ -190,6 +231,8 @@ def _told(
         words = (
             f"the {'left' if leap.left else 'right'} counter leapt by {size:.3g} m"
             f"{' and came back' if leap.back else ''}, faster than its wheel turns"
+            if leap.turns
+            else "a counter fell to zero, as where a driver starts anew"
         )
         found.append((float(time[leap.first]), float(time[leap.last + 1]), words))
     return tuple(found)
@@ -198,7 +241,7 @@ def _told(
 def nodes_at(
     counters: Counters, at: Floats
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
-    """Nodes at the counters' messages and at the ascending times `at` (n,).
+    """Nodes at the counters' messages, within rare ones, and at the ascending times `at` (n,).
 
     Result: times of the nodes (k + 1,), counts between them
     (k,) and (k,), node indices of `at` (n,), and values of the other channels at the start and end
@@ -208,6 +251,8 @@ def nodes_at(
     known, left, right = (part[kept] for part in (counters.time, counters.left, counters.right))
     place = np.searchsorted(known, at)
     new = np.unique(at[known[np.minimum(place, known.size - 1)] != at])
+    if counters.are_rare:
+        new = np.setdiff1d(np.concatenate([new, counters.within]), known)
     if new.size == 0:
         time, left, right = known, np.diff(left), np.diff(right)
     else:

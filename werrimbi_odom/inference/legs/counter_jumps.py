@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Counter jumps: outliers that return (a corrupted message), and permanent steps.
+"""Counter jumps: outliers that return (a corrupted message), permanent steps, and resets.
 
 An encoder model takes any step but a fall to zero for motion, unless it knows the wheel's top
 speed. The record itself shows it: a speed that a wheel keeps for several intervals is possible.
+Where it saw a reset it knows no motion, and a record has it from before and after, as of a step.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ class CounterJump(NamedTuple):
     last: int
     """Its last step, inclusive."""
     turns: float
-    """Largest of these steps, in turns of the wheel."""
+    """Largest of these steps, in turns of the wheel; 0 of a reset, which is no step."""
     left: bool
     """Whether the left wheel jumped."""
     back: bool
@@ -42,14 +43,16 @@ class Bridged(NamedTuple):
     leaps: tuple[CounterJump, ...]
 
 
-def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
+def bridged(time: Floats, left: Floats, right: Floats, reset: NDArray[np.bool_]) -> Bridged:
     """Remove jumps from the steps of a record.
 
     A counter that came back kept counting: only the readings in between are dropped. One that did
     not has lost its counts: the wheel is assumed to have moved as before and after. `time` (n +
     1,): stamps, ascending [s]. `left`, `right` (n,): travel between them, in turns of the wheel.
+    `reset` (n,): steps in which the encoder model saw a counter fall to zero.
     """
-    found = counter_jumps_in(time, left, right)
+    anew = (CounterJump(row, row, 0.0, True, False) for row in np.flatnonzero(reset).tolist())
+    found = tuple(sorted((*counter_jumps_in(time, left, right), *anew)))
     kept = np.ones(left.size, dtype=np.bool_)
     sides = [left.copy(), right.copy()] if found else [left, right]
     for leap in found:

@@ -33,6 +33,17 @@ def between_messages(time: Floats, known: Floats, *columns: Floats) -> Floats:
     return np.stack(found, axis=-1)
 
 
+def missed_at(known: Floats, values: Floats) -> Floats:
+    """How far each value (k,) is from what is interpolated between the others; the ends are 0."""
+    missed = np.zeros(known.size)
+    odd = np.arange(known.size) % 2 == 1
+    for out in (odd, ~odd):
+        out = out & (known > known[0]) & (known < known[-1])
+        between = between_messages(known[out], known[~out], values[~out])[:, 0]
+        missed[out] = np.abs(values[out] - between)
+    return missed
+
+
 def interval_of(time: Floats, known: Floats) -> tuple[NDArray[np.intp], Floats, Floats]:
     """Interval of each time (n,): index and width, and what share of it has gone by."""
     within = np.clip(time, known[0], known[-1])

@@ -154,6 +154,20 @@ def coarse_counters(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def rare_counts(diagnosis: Diagnosis) -> list[str]:
+    """Of counters whose messages are rare, how little is known of the wheels between two."""
+    runs, robot = diagnosis.runs, diagnosis.robot
+    rare = [run.counters.interval for run in runs.runs if run.counters.are_rare]
+    if not rare:
+        return []
+    unseen = float(runs.unseen.max(initial=0.0)) * max(robot.left_tick, robot.right_tick)
+    return [
+        f"Counts come every {two_digits(max(rare))} s: how the wheels changed their speed from one "
+        "message to the next is not in them. Where a wheel was between two is uncertain by up to "
+        f"{error_words(unseen, 'm')} (standard deviation), which the fits allow for."
+    ]
+
+
 def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     """What looks the same as a size that was found, as the reference's own scale is not known."""
     runs, found = diagnosis.runs, diagnosis.found
