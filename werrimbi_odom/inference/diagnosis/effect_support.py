@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidate import Candidate, usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.model.drive import Drive
@@ -19,6 +18,9 @@ from werrimbi_odom.model.effects_over_run import watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+ON_THE_FLOOR = frozenset({"heading", "x", "y"})
+"""Quantities of a drive that have a meaning only in axes common to all drives."""
 
 ACCELERATIONS = frozenset({"left_acceleration", "right_acceleration"})
 

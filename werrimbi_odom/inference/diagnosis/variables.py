@@ -27,9 +27,6 @@ from werrimbi_odom.model.pose import Floats
 CONSTANT = "constant"
 """Name of the variable that is 1 everywhere: for an error proportional to its amount alone."""
 
-ON_THE_FLOOR = frozenset({"heading", "x", "y"})
-"""Quantities of a drive that have a meaning only in axes common to all drives."""
-
 _TURNING = ("yaw_rate", "left_speed", "right_speed", "castor_angle")
 """What an effect reads that knows how quickly the robot turns."""
 
@@ -50,7 +47,7 @@ class Variable:
     looks_at: tuple[str, ...] = ()
     """Fields of `Drive` that an effect would read to know it."""
     per_run: bool = False
-    """Whether its zero differs between runs (a wheel's angle)."""
+    """Whether its zero differs between runs (a wheel's angle, a heading by matched scans)."""
     harmonic: int = 1
     """Harmonic of an angle."""
     even: bool = False
@@ -134,14 +131,14 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
             "right_since_reversal",
             "castor_angle",
         ),
-        Variable("heading", "rad", heading, heading, "turns", ("heading",)),
+        Variable("heading", "rad", heading, heading, "turns", ("heading",), runs.own_axes),
     ]
     for harmonic, times in ((1, ""), (2, "_twice")):
         for side, span in (("left", drive.left_angle), ("right", drive.right_angle)):
             name, angle, read = f"{side}_wheel_angle{times}", span.mean, (f"{side}_angle",)
             found.append(Variable(name, "rad", angle, angle, "turns", read, True, harmonic))
     place = _places(runs, path.position, heading, path.yaw, right_handed(runs.start, view))
-    if place is not None:
+    if place is not None and not runs.own_axes:
         found.append(Variable("position", "m", place[0], place[1], "place", ("x", "y")))
     for name, span in drive.channels.items():
         found.append(robots(name, "", np.asarray(span.mean), name))
@@ -151,8 +148,6 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
     back = way[drive.speed.end < 0.0].sum() / max(way.sum(), 1e-9)
     if not rules.SELDOM_BACK < back < 1.0 - rules.SELDOM_BACK:
         found = [item for item in found if item.name != "direction"]
-    if runs.own_axes:
-        found = [item for item in found if not ON_THE_FLOOR & set(item.looks_at)]
     return tuple(item for item in found if item.name == CONSTANT or item.varied)
 
 

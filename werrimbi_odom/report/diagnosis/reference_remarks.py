@@ -31,12 +31,13 @@ square; of a bend that is open it is more."""
 
 
 def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
-    """That effects of the floor are not among those asked for, where axes begin anew."""
+    """That effects of the floor have no name here, where axes begin anew."""
     if not diagnosis.runs.own_axes:
         return []
     return [
-        "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched scans "
-        "begin anew with each drive. Motion capture or a localiser's map shows it."
+        "What lies on the floor, as a slope or a carpet, has no name by scans, whose axes begin "
+        "anew with each drive: it looks like an error that goes with the heading, in each drive by "
+        "a wave of its own. Motion capture or a localiser's map shows it."
     ]
 
 
