@@ -23,13 +23,20 @@ WHEELS_ANGLE = frozenset({"left_angle", "right_angle"})
 
 
 def shorter_leg(diagnosis: Diagnosis, leg: float) -> float | None:
-    """Length of legs that may tell the rivals apart [m]; None where the legs are not the reason.
+    """Length of legs that may tell more [m]; None where the legs are not the reason.
 
-    Over whole turns of a wheel a bump on its tread is a larger radius, and an axle off the centre
-    is nothing: what tells them apart is seen within a turn alone. And few legs, as of one square,
-    hold a start, a stop and a turn each: a late clock is like play of a wheel. `leg`: length of the
-    legs of this diagnosis [m].
+    Drives of a metre or two make so few legs that they do not tell the noise, and without it what
+    is missing cannot be told. (Positions alone need long legs for a heading.)
+
+    Of rivals: over whole turns of a wheel a bump on its tread is a larger radius, and an axle off
+    the centre is nothing: what tells them apart is seen within a turn alone. And few legs, as of
+    one square, hold a start, a stop and a turn each: a late clock is like play of a wheel. `leg`:
+    length of the legs of this diagnosis [m].
     """
+    if diagnosis.verdict == "none":
+        return None
+    if noise_assumed(diagnosis) and not diagnosis.runs.positions_alone:
+        return rules.SHORT_LEG if leg > rules.SHORT_LEG else None
     if diagnosis.verdict != "ambiguous":
         return None
     if not _repeats_each_turn(diagnosis):
@@ -45,13 +52,23 @@ def shorter_leg(diagnosis: Diagnosis, leg: float) -> float | None:
 
 
 def settles(shorter: Diagnosis, longer: Diagnosis) -> bool:
-    """Whether the diagnosis with shorter legs names one of the rivals of the one with longer."""
+    """Whether the diagnosis with shorter legs names one of the rivals of the one with longer.
+
+    Or, where longer legs are too few to tell the noise, whether there are more of the shorter.
+    """
+    if noise_assumed(longer):
+        return shorter.runs.data > longer.runs.data
     known = {*longer.rivals, *longer.found}
     return (
         shorter.verdict == "named"
         and shorter.effect in longer.rivals
         and known.issuperset(shorter.found)
     )
+
+
+def noise_assumed(diagnosis: Diagnosis) -> bool:
+    """Whether the noise is not fitted, because the legs are too few."""
+    return diagnosis.runs.data < rules.NOISE_NUMBERS
 
 
 def _legs(diagnosis: Diagnosis, leg: float) -> float:
@@ -85,7 +102,9 @@ class AdvisedDiagnosis:
     changes: Sequence[ParameterChange] = ()
     """Changes between the fitted drives."""
     open_at: float | None = None
-    """Length of legs that leave this verdict *ambiguous*, where shorter ones were needed [m]."""
+    """Length of legs that leave it open, where shorter ones were needed [m]."""
+    too_few: bool = False
+    """Whether those are too few to tell the noise; else they leave the verdict *ambiguous*."""
 
     @property
     def drives_differ(self) -> bool:
@@ -102,19 +121,22 @@ def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosi
     InputError when the drives do not allow it; the message says why.
     """
     diagnosis = _diagnosis(given, show)
-    leg, open_at = given.how.leg, None
+    leg, open_at, too_few = given.how.leg, None, False
     if shorter := shorter_leg(diagnosis, leg):
         again = _diagnosis(
             with_leg(given, shorter),
             lambda share, words: show(share, f"legs of {shorter:g} m: {words}"),
         )
         if settles(again, diagnosis):
+            too_few = noise_assumed(diagnosis)
             diagnosis, leg, open_at = again, shorter, leg
     show(0.97, "the next step")
     effects = given.collection.effects
     changes = changes_between(diagnosis, effects)
     sights = detection_limits(diagnosis, effects)
-    told = AdvisedDiagnosis(diagnosis, None, sights, leg, bool(given.holdout), changes, open_at)
+    told = AdvisedDiagnosis(
+        diagnosis, None, sights, leg, bool(given.holdout), changes, open_at, too_few
+    )
     return told if told.drives_differ else replace(told, manoeuvre=next_manoeuvre(diagnosis))
 
 

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     one_wheel,
     reference_wanders,
 )
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, noise_assumed
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.ambiguous import ambiguous_words
@@ -50,9 +50,15 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
 
 
 def _shorter(advised: AdvisedDiagnosis) -> list[str]:
-    """Why the legs are shorter than was asked for."""
+    """Why the legs are shorter than was asked for, or that they are too few."""
     if advised.open_at is None:
-        return []
+        few = noise_assumed(advised.diagnosis)
+        return ["The legs are so few that their noise is assumed: they do not tell it."] * few
+    if advised.too_few:
+        return [
+            f"Legs of {advised.open_at:g} m are so few here that they do not tell the noise; all "
+            f"that is said here is of legs of {advised.leg:g} m."
+        ]
     return [
         f"Legs of {advised.open_at:g} m leave it open: it is like another error over whole turns "
         f"of a wheel, or from a start to a stop. Legs of {advised.leg:g} m show what happens "
