@@ -105,6 +105,8 @@ def alike_words(common: Alike, happened: Events, left_by: str | None = None) -> 
     """Common cause of the events that happened, and its meaning; `left_by` as of `events_words`."""
     x, y = common.at
     near = f"{common.count} of {common.of}"
+    if common.of < len(happened.events):
+        near += " in what was fitted"
     if common.what in _SUSPECTS:
         near = f"{near} come with a {common.what.replace(' or ', ' or a ')}: "
         channel = most_of(happened.events)

@@ -118,47 +118,52 @@ class EventSide(NamedTuple):
 
 
 def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
-    """Abrupt errors that a model does not explain."""
+    """Abrupt errors that a model does not explain.
+
+    Held-out drives have no part in what becomes of events: whether these are too many, and what
+    they have in common, is decided by those of the fitted drives. None is reported of a held-out
+    side that has too many.
+    """
     events: list[Event] = []
-    legs, jumped, looked = [], [], []
-    many, time = False, 0.0
-    spans: dict[Path, float] = {}
+    ways: list[Way] = []
+    common: Alike | None = None
     for side in sides:
         runs = at_every_pose(side.runs)
         steps = steps_of(runs, side.point)
         fitted = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0]
         sizes = np.asarray(fitted.reshape(-1, 3), dtype=np.float64)
         found = [
-            (own, event) for own in groups_of(steps) if (event := _event(steps, own, side, sizes))
+            (group[0], event)
+            for group in groups_of(steps)
+            if (event := _event(steps, group, side, sizes))
         ]
-        events += [event for _, event in found]
-        legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
-        jumped.append(
-            np.array([event.channel == "reference" for _, event in found], dtype=np.bool_)
-        )
-        looked.append((runs, predict_all(side.point.model, runs)))
-        many |= steps.many
-        for index, path in enumerate(side.paths):
-            own = runs.duration[(runs.run_of_leg == index) & ~runs.gap]
-            spans[path] = spans.get(path, 0.0) + float(own.sum())
-        time += float(runs.duration[~runs.gap].sum())
-    if not events:
-        return Events(many=many, kind=kind)
+        own = [event for _, event in found]
+        many = steps.many or _too_many(own, runs, side.paths)
+        if many and not side.held_out:
+            return Events(many=True, kind=kind)
+        events += [] if many else own
+        ways += [
+            Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
+            for run, path in zip(runs.runs, side.paths, strict=True)
+        ]
+        if own and not side.held_out:
+            legs = np.array([steps.found[first].leg for first, _ in found], dtype=np.intp)
+            jumped = np.array([event.channel == "reference" for event in own], dtype=np.bool_)
+            told = predict_all(side.point.model, runs)
+            common = alike(legs, runs, told, jumped, places=kind != "incremental")
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
-    many |= len(events) * rules.RARE > time or any(
+    return Events(tuple(events), tuple(ways) if events else (), common, kind=kind)
+
+
+def _too_many(events: Sequence[Event], runs: Concatenated, paths: Sequence[Path]) -> bool:
+    """Whether they are more than accidents would be, in all drives or in one of them."""
+    driven = runs.duration * ~runs.gap
+    time = np.bincount(runs.run_of_leg, driven, minlength=len(paths)).tolist()
+    return len(events) * rules.RARE > sum(time) or any(
         sum(event.run == path for event in events) > max(rules.EVENTS_ALIKE, spent / rules.RARE)
-        for path, spent in spans.items()
+        for path, spent in zip(paths, time, strict=True)
     )
-    if many:
-        return Events(many=True, kind=kind)
-    ways = [
-        Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
-        for side, (runs, _) in zip(sides, looked, strict=True)
-        for run, path in zip(runs.runs, side.paths, strict=True)
-    ]
-    common = alike(legs, looked, jumped, places=kind != "incremental")
-    return Events(tuple(events), tuple(ways), common, kind=kind)
 
 
 def without(run: Run, happened: Events) -> Run:
