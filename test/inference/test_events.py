@@ -374,14 +374,14 @@ def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(
 def test_what_comes_at_one_place_is_no_accident(undisturbed: Diagnosis) -> None:
     found = undisturbed
     runs = at_every_pose(found.runs.runs)
-    told = predict_all(found.final.point.model, runs)
+    sides = [(runs, predict_all(found.final.point.model, runs))]
     x = runs.finish[:, 0]
     chance = np.random.default_rng(1)
     anywhere = chance.choice(runs.count, 8, replace=False)
     at_a_line = np.flatnonzero(np.abs(x - np.median(x)) < 0.03)
-    robots_own = np.zeros(8, dtype=np.bool_)
-    assert alike(anywhere, runs, told, robots_own) is None
-    common = alike(chance.choice(at_a_line, 8, replace=False), runs, told, robots_own)
+    robots_own = [np.zeros(8, dtype=np.bool_)]
+    assert alike([anywhere], sides, robots_own) is None
+    common = alike([chance.choice(at_a_line, 8, replace=False)], sides, robots_own)
     assert common is not None
     assert (common.what, common.count, common.of_reference) == ("x", 8, False)
 
@@ -407,3 +407,8 @@ def test_where_a_reference_goes_wrong_is_no_floor(sound: Drives) -> None:
     assert "there the reference goes wrong" in said
     assert "floor" not in said
     assert "They are left out of the fits" in said
+    # Of a place that the held-out drives know the user is told, and the fits are not.
+    held_out = replace(found, alike=None, in_all=replace(found.alike, of_reference=False))
+    said = " ".join(events_words(held_out, robot.track))
+    assert "look at the floor there" in said
+    assert held_out.left_out

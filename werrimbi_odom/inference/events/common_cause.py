@@ -9,6 +9,7 @@ its share of the driving (binomial test).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -48,59 +49,64 @@ class Alike:
 
 
 class _Tried(NamedTuple):
-    """A possible common cause."""
+    """A possible common cause, on each of the sides."""
 
     what: Common
     at: tuple[float, float]
-    near: NDArray[np.bool_]
+    near: list[NDArray[np.bool_]]
     """Mask of the intervals that have it."""
-    weight: Floats
+    weight: list[Floats]
     """Weight of each interval in the driving."""
 
 
 def alike(
-    legs: NDArray[np.intp],
-    runs: Concatenated,
-    told: Prediction,
-    jumped: NDArray[np.bool_],
+    legs: Sequence[NDArray[np.intp]],
+    sides: Sequence[tuple[Concatenated, Prediction]],
+    jumped: Sequence[NDArray[np.bool_]],
     *,
     places: bool = True,
 ) -> Alike | None:
     """The most significant common cause of the events, if any.
 
-    `legs`: intervals of the events. `runs`: drives divided into intervals. `told`: a model's
-    prediction of them. `jumped`: which of the events are jumps of the reference. `places`: whether
-    measured positions are places on the floor; those of an incremental reference are not, after a
-    jump.
+    `legs`: intervals of the events, for each side. `sides`: sets of drives divided into intervals,
+    each with a model's prediction. `jumped`: which of the events are jumps of the reference, for
+    each side. `places`: whether measured positions are places on the floor; those of an incremental
+    reference are not, after a jump.
     """
-    of = legs.size
+    of = sum(own.size for own in legs)
     if of < rules.EVENTS_ALIKE:
         return None
     found: list[Alike] = []
     nan = float("nan")
     tried: list[_Tried] = []
-    time, way = runs.duration * ~runs.gap, told.length * ~runs.gap
+    time = [runs.duration * ~runs.gap for runs, _ in sides]
+    way = [told.length * ~runs.gap for runs, told in sides]
     for what in ("reversal", "start or stop"):
-        near = _after(runs, told, stops=what != "reversal")
+        near = [_after(runs, told, stops=what != "reversal") for runs, told in sides]
         tried.append(_Tried(what, (nan, nan), near, time))
-    if places and not runs.own_axes and not runs.headings_alone:
-        seen = runs.finish[:, :2]
-        for x, y in seen[legs].tolist():
-            if not np.isfinite(x + y):
-                continue
-            across, along = abs(seen[:, 0] - x), abs(seen[:, 1] - y)
-            tried.append(_Tried("x", (x, nan), across < rules.NEAR_BAND, way))
-            tried.append(_Tried("y", (nan, y), along < rules.NEAR_BAND, way))
-            about = np.hypot(*(seen - (x, y)).T) < rules.NEAR_PLACE
-            tried.append(_Tried("place", (x, y), about, way))
+    if places and not any(runs.own_axes or runs.headings_alone for runs, _ in sides):
+        seen = [runs.finish[:, :2] for runs, _ in sides]
+        for own, here in zip(legs, seen, strict=True):
+            for leg in own.tolist():
+                x, y = here[leg].tolist()
+                if not np.isfinite(x + y):
+                    continue
+                across = [abs(p[:, 0] - x) < rules.NEAR_BAND for p in seen]
+                along = [abs(p[:, 1] - y) < rules.NEAR_BAND for p in seen]
+                about = [np.hypot(*(p - (x, y)).T) < rules.NEAR_PLACE for p in seen]
+                tried.append(_Tried("x", (x, nan), across, way))
+                tried.append(_Tried("y", (nan, y), along, way))
+                tried.append(_Tried("place", (x, y), about, way))
     for what, at, near, weight in tried:
-        there = near[legs]
-        count = int(there.sum())
-        share = float(weight @ near) / float(weight.sum())
+        there = [here[own] for own, here in zip(legs, near, strict=True)]
+        count = sum(int(each.sum()) for each in there)
+        strayed = sum(int((a & b).sum()) for a, b in zip(there, jumped, strict=True))
+        whole = sum(float(part.sum()) for part in weight)
+        share = sum(float(p @ here) for p, here in zip(weight, near, strict=True)) / whole
         # The event that gave the place is no evidence for it.
         told_by = 0 if np.isnan(at).all() else 1
         chance = binomial_survival(count - told_by, of - told_by, share)
-        seen_badly = what in PLACES and 2 * int((there & jumped).sum()) > count
+        seen_badly = what in PLACES and 2 * strayed > count
         found.append(Alike(what, count, of, at, bonferroni(len(tried), chance), seen_badly))
     common = [
         each

@@ -13,7 +13,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.events.common_cause import Alike, alike
+from werrimbi_odom.inference.events.common_cause import PLACES, Alike, alike
 from werrimbi_odom.inference.events.groups import groups_of, net_of, returned_by
 from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -81,12 +81,19 @@ class Events:
     ways: tuple[Way, ...] = ()
     """Measured positions of the drives; empty without events."""
     alike: Alike | None = None
-    """Their common cause."""
+    """Common cause of those of the fitted drives, which decides."""
     many: bool = False
     """Whether errors jump more often than accidents happen. Then a law is missing, and no event is
     reported."""
     kind: ReferenceKind = "absolute"
     """Kind of the reference."""
+    in_all: Alike | None = None
+    """That of all of them, a place, where those of the fitted drives have none; it is only told."""
+
+    @property
+    def told(self) -> Alike | None:
+        """What they are told to have in common."""
+        return self.alike or self.in_all
 
     @property
     def systematic(self) -> bool:
@@ -118,42 +125,54 @@ class EventSide(NamedTuple):
 
 
 def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
-    """Abrupt errors that a model does not explain.
+    """Abrupt errors that a model does not explain, in sides of which those held out come last.
 
-    Held-out drives have no part in what becomes of events: whether these are too many, and what
-    they have in common, is decided by those of the fitted drives. None is reported of a held-out
-    side that has too many.
+    Held-out drives have no part in what becomes of events: whether these are too many, and have
+    something in common, is decided by those of the fitted drives. None is reported of a held-out
+    side that has too many, without anything in common.
     """
-    events: list[Event] = []
-    ways: list[Way] = []
-    common: Alike | None = None
+    found: list[list[Event]] = []
+    legs, jumped, looked, many = [], [], [], []
     for side in sides:
         runs = at_every_pose(side.runs)
         steps = steps_of(runs, side.point)
         fitted = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0]
         sizes = np.asarray(fitted.reshape(-1, 3), dtype=np.float64)
-        found = [
+        both = [
             (group[0], event)
             for group in groups_of(steps)
             if (event := _event(steps, group, side, sizes))
         ]
-        own = [event for _, event in found]
-        many = steps.many or _too_many(own, runs, side.paths)
-        if many and not side.held_out:
+        own = [event for _, event in both]
+        found.append(own)
+        legs.append(np.array([steps.found[first].leg for first, _ in both], dtype=np.intp))
+        jumped.append(np.array([event.channel == "reference" for event in own], dtype=np.bool_))
+        looked.append((runs, predict_all(side.point.model, runs)))
+        many.append(steps.many or _too_many(own, runs, side.paths))
+        if many[-1] and not side.held_out:
             return Events(many=True, kind=kind)
-        events += [] if many else own
-        ways += [
-            Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
-            for run, path in zip(runs.runs, side.paths, strict=True)
-        ]
-        if own and not side.held_out:
-            legs = np.array([steps.found[first].leg for first, _ in found], dtype=np.intp)
-            jumped = np.array([event.channel == "reference" for event in own], dtype=np.bool_)
-            told = predict_all(side.point.model, runs)
-            common = alike(legs, runs, told, jumped, places=kind != "incremental")
+    places = kind != "incremental"
+    count = sum(not side.held_out for side in sides)
+    common = alike(legs[:count], looked[:count], jumped[:count], places=places)
+    in_all = common or alike(legs, looked, jumped, places=places)
+    if in_all is not common and in_all is not None and in_all.what not in PLACES:
+        in_all = None  # a law of the robot: that is for the fitted drives to say
+    events = [
+        event
+        for own, too_many in zip(found, many, strict=True)
+        for event in own
+        if not too_many or in_all is not None
+    ]
+    if not events:
+        return Events(kind=kind)
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
-    return Events(tuple(events), tuple(ways) if events else (), common, kind=kind)
+    ways = [
+        Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
+        for side, (runs, _) in zip(sides, looked, strict=True)
+        for run, path in zip(runs.runs, side.paths, strict=True)
+    ]
+    return Events(tuple(events), tuple(ways), common, kind=kind, in_all=in_all)
 
 
 def _too_many(events: Sequence[Event], runs: Concatenated, paths: Sequence[Path]) -> bool:
