@@ -302,12 +302,15 @@ def test_of_what_could_not_be_judged_no_number_is_told() -> None:
         effects=[SimpleNamespace(name="reference_lever_arm")],
         also=(),
         objection="reference_lever_arm cannot be judged",
+        set_aside=(),
     )
     said = _headline(added)
     assert "nan" not in said
     assert said.startswith("What reference_lever_arm does to the error of the held-out drives")
     added.holdout.sides = Sides(0.1, 0.05)
     assert "50.00 mm where it was 100 mm (50 % lower" in _headline(added)
+    added.set_aside = ("a drive of which a quarter was held out",)
+    assert "the error of the held-out part is" in _headline(added)
 
 
 def test_no_size_is_told_that_the_drives_do_not_determine(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "Serves one page on this machine alone (127.0.0.1) until Ctrl-C: where the model fails, "
         "which effect is missing, what adding it does to the error of held-out drives, undo, and "
         "the new robot file. Reads and writes nothing but what is given here. Without --holdout "
-        "some of the drives are put aside for judging."
+        "parts of the drives are put aside for judging."
     )
     add_recording_arguments(
         parser, holdout=True, force="overwrite --out if it exists", report=False

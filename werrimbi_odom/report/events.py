@@ -60,8 +60,8 @@ def events_words(happened: Events, track: float, left_by: str | None = None) -> 
     rest = len(events) - len(clear)
     if rest:
         lines.append(f"So {'is' if rest == 1 else 'are'} {rest} more, in the report and the JSON.")
-    if happened.alike is not None:
-        lines.append(alike_words(happened.alike, happened, left_by))
+    if happened.told is not None:
+        lines.append(alike_words(happened.told, happened, left_by))
     if either(happened):
         lines.append(_EITHER[happened.kind])
     if happened.left_out:
@@ -105,6 +105,8 @@ def alike_words(common: Alike, happened: Events, left_by: str | None = None) -> 
     """Common cause of the events that happened, and its meaning; `left_by` as of `events_words`."""
     x, y = common.at
     near = f"{common.count} of {common.of}"
+    if common.of < len(happened.events):
+        near += " in what was fitted"
     if common.what in _SUSPECTS:
         near = f"{near} come with a {common.what.replace(' or ', ' or a ')}: "
         channel = most_of(happened.events)
@@ -171,7 +173,7 @@ _SIZES = ("along_m", "sideways_m", "heading_rad")
 
 def alike_json(happened: Events, left_by: str | None = None) -> dict[str, Any] | None:
     """Common cause of the events; null for none. `left_by` as of `events_words`."""
-    common = happened.alike
+    common = happened.told
     if common is None:
         return None
     x, y = common.at

@@ -13,7 +13,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.events.common_cause import Alike, alike
+from werrimbi_odom.inference.events.common_cause import PLACES, Alike, alike
 from werrimbi_odom.inference.events.groups import groups_of, net_of, returned_by
 from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
@@ -81,12 +81,19 @@ class Events:
     ways: tuple[Way, ...] = ()
     """Measured positions of the drives; empty without events."""
     alike: Alike | None = None
-    """Their common cause."""
+    """Common cause of those of the fitted drives, which decides."""
     many: bool = False
     """Whether errors jump more often than accidents happen. Then a law is missing, and no event is
     reported."""
     kind: ReferenceKind = "absolute"
     """Kind of the reference."""
+    in_all: Alike | None = None
+    """That of all of them, a place, where those of the fitted drives have none; it is only told."""
+
+    @property
+    def told(self) -> Alike | None:
+        """What they are told to have in common."""
+        return self.alike or self.in_all
 
     @property
     def systematic(self) -> bool:
@@ -118,47 +125,64 @@ class EventSide(NamedTuple):
 
 
 def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
-    """Abrupt errors that a model does not explain."""
-    events: list[Event] = []
-    legs, jumped, looked = [], [], []
-    many, time = False, 0.0
-    spans: dict[Path, float] = {}
+    """Abrupt errors that a model does not explain, in sides of which those held out come last.
+
+    Held-out drives have no part in what becomes of events: whether these are too many, and have
+    something in common, is decided by those of the fitted drives. None is reported of a held-out
+    side that has too many, without anything in common.
+    """
+    found: list[list[Event]] = []
+    legs, jumped, looked, many = [], [], [], []
     for side in sides:
         runs = at_every_pose(side.runs)
         steps = steps_of(runs, side.point)
         fitted = np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0]
         sizes = np.asarray(fitted.reshape(-1, 3), dtype=np.float64)
-        found = [
-            (own, event) for own in groups_of(steps) if (event := _event(steps, own, side, sizes))
+        both = [
+            (group[0], event)
+            for group in groups_of(steps)
+            if (event := _event(steps, group, side, sizes))
         ]
-        events += [event for _, event in found]
-        legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
-        jumped.append(
-            np.array([event.channel == "reference" for _, event in found], dtype=np.bool_)
-        )
+        own = [event for _, event in both]
+        found.append(own)
+        legs.append(np.array([steps.found[first].leg for first, _ in both], dtype=np.intp))
+        jumped.append(np.array([event.channel == "reference" for event in own], dtype=np.bool_))
         looked.append((runs, predict_all(side.point.model, runs)))
-        many |= steps.many
-        for index, path in enumerate(side.paths):
-            own = runs.duration[(runs.run_of_leg == index) & ~runs.gap]
-            spans[path] = spans.get(path, 0.0) + float(own.sum())
-        time += float(runs.duration[~runs.gap].sum())
+        many.append(steps.many or _too_many(own, runs, side.paths))
+        if many[-1] and not side.held_out:
+            return Events(many=True, kind=kind)
+    places = kind != "incremental"
+    count = sum(not side.held_out for side in sides)
+    common = alike(legs[:count], looked[:count], jumped[:count], places=places)
+    in_all = common or alike(legs, looked, jumped, places=places)
+    if in_all is not common and in_all is not None and in_all.what not in PLACES:
+        in_all = None  # a law of the robot: that is for the fitted drives to say
+    events = [
+        event
+        for own, too_many in zip(found, many, strict=True)
+        for event in own
+        if not too_many or in_all is not None
+    ]
     if not events:
-        return Events(many=many, kind=kind)
+        return Events(kind=kind)
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
-    many |= len(events) * rules.RARE > time or any(
-        sum(event.run == path for event in events) > max(rules.EVENTS_ALIKE, spent / rules.RARE)
-        for path, spent in spans.items()
-    )
-    if many:
-        return Events(many=True, kind=kind)
     ways = [
         Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
         for side, (runs, _) in zip(sides, looked, strict=True)
         for run, path in zip(runs.runs, side.paths, strict=True)
     ]
-    common = alike(legs, looked, jumped, places=kind != "incremental")
-    return Events(tuple(events), tuple(ways), common, kind=kind)
+    return Events(tuple(events), tuple(ways), common, kind=kind, in_all=in_all)
+
+
+def _too_many(events: Sequence[Event], runs: Concatenated, paths: Sequence[Path]) -> bool:
+    """Whether they are more than accidents would be, in all drives or in one of them."""
+    driven = runs.duration * ~runs.gap
+    time = np.bincount(runs.run_of_leg, driven, minlength=len(paths)).tolist()
+    return len(events) * rules.RARE > sum(time) or any(
+        sum(event.run == path for event in events) > max(rules.EVENTS_ALIKE, spent / rules.RARE)
+        for path, spent in zip(paths, time, strict=True)
+    )
 
 
 def without(run: Run, happened: Events) -> Run:

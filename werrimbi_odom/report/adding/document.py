@@ -12,7 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report import style
-from werrimbi_odom.report.adding.words import words_of
+from werrimbi_odom.report.adding.words import judged_on, words_of
 from werrimbi_odom.report.diagnosis.document import effect_card
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.document import Document, Shown
@@ -45,7 +45,7 @@ def figures_of(added: Added) -> list[Shown]:
         shown.append(
             Shown(
                 "legs",
-                "Errors of the held-out drives",
+                f"Errors of {judged_on(added)}",
                 "Each mark is a leg; with the effect the cloud should be smaller and about zero.",
                 {"": held_out_legs_figure(added)},
             )

@@ -11,7 +11,7 @@ from werrimbi_odom.inference.drafting.draft import Draft
 from werrimbi_odom.inference.drafting.formula import symbols_of
 from werrimbi_odom.report.adding.as_json import json_of
 from werrimbi_odom.report.adding.document import figures_of
-from werrimbi_odom.report.adding.words import value_told, words_of
+from werrimbi_odom.report.adding.words import judged_on, value_told, words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
 from werrimbi_odom.report.html_page import as_html
 from werrimbi_odom.report.number_format import error_words, picked
@@ -22,10 +22,11 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
     """The dependence, the error with the drafted law, and its source."""
     sides = tried.holdout.sides
     alone = tried.noise_alone(tried.holdout)
+    judges = judged_on(tried)
     floor = f"noise alone: {error_words(alone, sides.unit)}; " if tried.explained else ""
     headline = "No effect of the library explains these drives."
     text = (
-        f"{_what_it_goes_with(draft)} With it, the error of the held-out drives is "
+        f"{_what_it_goes_with(draft, judges)} With it, the error of {judges} is "
         f"{error_words(sides.after, sides.unit)} where it was "
         f"{error_words(sides.before, sides.unit)} ({floor}rms over legs of "
         f"{leg_words(sides.length, tried.holdout.after.leg)} m). Why it is so, the data cannot "
@@ -50,8 +51,11 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
     ]
 
 
-def _what_it_goes_with(draft: Draft) -> str:
-    """The dependence and its law; for two variables also the gain over a law of one."""
+def _what_it_goes_with(draft: Draft, judges: str) -> str:
+    """The dependence and its law; for two variables also the gain over a law of one.
+
+    `judges`: the name of what judged that.
+    """
     claim, two = draft.claim, draft.of_two
     symbols = symbols_of(claim.amount, draft.law)
     law = f": {draft.law} (each second{'; ' * bool(symbols)}{symbols})" if draft.law else ""
@@ -70,7 +74,7 @@ def _what_it_goes_with(draft: Draft) -> str:
         alone = f"a law of {two.one.claim.variable} alone, the best of one variable, leaves"
     chance = max(sides.chance, 1e-300)
     return (
-        f"{text} On the held-out drives {alone} {error_words(sides.after, sides.unit)} (chance "
+        f"{text} On {judges} {alone} {error_words(sides.after, sides.unit)} (chance "
         f"{chance:.0e}; the law was chosen from {two.terms_tried} terms on the others)."
     )
 

@@ -41,6 +41,11 @@ def words_of(added: Added) -> list[Part]:
     ]
 
 
+def judged_on(added: Added) -> str:
+    """What judges: held-out drives, or the part that was held out where no drives were."""
+    return "the held-out part" if added.set_aside else "the held-out drives"
+
+
 def _headline(added: Added) -> str:
     sides = added.holdout.sides
     leg = leg_words(sides.length, added.holdout.after.leg)
@@ -50,12 +55,12 @@ def _headline(added: Added) -> str:
     names = listed([effect.name for effect in added.effects])
     if math.isfinite(sides.before) and math.isfinite(sides.after):
         text = (
-            f"With {names} the error of the held-out drives is {_told(sides.after, sides.unit)} "
+            f"With {names} the error of {judged_on(added)} is {_told(sides.after, sides.unit)} "
             f"where it was {_told(sides.before, sides.unit)} ({change}; rms over legs of "
             f"{leg} m)."
         )
     else:
-        text = f"What {names} does to the error of the held-out drives is not known."
+        text = f"What {names} does to the error of {judged_on(added)} is not known."
     if added.also:
         text += f" Put right with it, as one set-up: {', '.join(added.also)}."
     if added.objection is not None:
@@ -130,7 +135,8 @@ def remark_told(item: FittedParameter) -> str:
 
 
 def _errors(added: Added) -> Table:
-    sides = (("held-out drives", added.holdout), ("fitted drives", added.train))
+    fitted = "fitted part" if added.set_aside else "fitted drives"
+    sides = ((judged_on(added).removeprefix("the "), added.holdout), (fitted, added.train))
     columns = {"before": "before", "calibrated": "calibrated", "after": "with it"}
     unit = added.holdout.unit
     what = "Position" if unit == "m" else "Heading"
