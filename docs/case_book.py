@@ -207,10 +207,12 @@ def index() -> str:
         "They are judged on drives that took no part in any fit, where there are such.",
         "*Left* is what the errors are times what model and reference promise together (root of",
         "NEES): 1 is nothing but noise; of few legs, or with wheels' noise as the file has it, it",
-        "may be more where `diagnose`, which fits that noise, finds nothing.",
+        "may be more where `diagnose`, which fits that noise, finds nothing. *Over the",
+        "reference's*: the held-out error over what the reference's own noise and the rounding",
+        "of the counts make of the same legs, where `diagnose` tells both.",
         "",
-        "| robot | added | then | left |",
-        "| --- | --- | --- | --- |",
+        "| robot | added | then | left | over the reference's |",
+        "| --- | --- | --- | --- | --- |",
     ]
     for case in BOOK:
         place = PAGES / f"{case.robot}.md"
@@ -221,7 +223,9 @@ def index() -> str:
             (said,) = re.findall(r"^- Verdict: \*(.*)\*", text, re.M)
             (left,) = re.findall(r"^- Errors are (\S+) times", text, re.M)
             words = ", then ".join(added) or "nothing"
-            lines.append(f"| [{title}]({case.robot}.md) | {words} | {said} | {left} |")
+            both = re.search(r"legs without events: (\S+?)[m° ].* make (\S+?)[m° ]", text)
+            over = f"{float(both[1]) / float(both[2]):.2g}" if both else "-"
+            lines.append(f"| [{title}]({case.robot}.md) | {words} | {said} | {left} | {over} |")
     return "\n".join(lines) + "\n"
 
 

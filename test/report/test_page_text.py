@@ -46,6 +46,15 @@ def test_points_are_a_list_and_names_are_no_html() -> None:
     assert "<ul><li>one</li><li>two <code>cmd</code></li></ul>" in found
 
 
+def test_a_command_with_a_thousand_drives_is_folded_and_whole() -> None:
+    """Below the figures of a year of drives came 15,000 pixels of their paths."""
+    few, many = (" ".join(f"drive_{number}" for number in range(count)) for count in (20, 1000))
+    words = [Paragraph("W")]
+    found = page_html(Document(title="T", words=words, made={"few": few, "many": many}))
+    assert f"<dd>{few}</dd>" in found
+    assert f"<dd><details><summary>{many[:200]} ...</summary>{many}</details></dd>" in found
+
+
 def test_a_table_is_a_table_though_cells_are_empty() -> None:
     rows = [["a", "", "2 mm"], ["b", "1", ""]]
     table = Table("Title", ("effect", "chance", "with it"), rows, rest="and 1 more")

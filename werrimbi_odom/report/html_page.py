@@ -37,6 +37,10 @@ _POLICY = (
 )
 
 
+_LONG, _BEGIN = 2000, 200
+"""Characters of a value that is folded, and of what stays of it."""
+
+
 def write_page(page: Document, path: Path) -> None:
     """Write a self-contained page; InputError if it cannot be written."""
     with replacing(path) as file:
@@ -221,11 +225,18 @@ def _made(made: Mapping[str, str]) -> str:
     return (
         '<dl class="made">'
         + "".join(
-            f"<dt>{html.escape(name)}</dt><dd>{html.escape(value)}</dd>"
-            for name, value in rows.items()
+            f"<dt>{html.escape(name)}</dt><dd>{_folded(value)}</dd>" for name, value in rows.items()
         )
         + "</dl>"
     )
+
+
+def _folded(value: str) -> str:
+    """As HTML, all of it; what is long (paths of a thousand drives) below its begin."""
+    whole = html.escape(value)
+    if len(value) <= _LONG:
+        return whole
+    return f"<details><summary>{html.escape(value[:_BEGIN])} ...</summary>{whole}</details>"
 
 
 def own_version() -> str:
