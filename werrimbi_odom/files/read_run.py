@@ -4,10 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bags.bag import SUFFIXES, named_files
@@ -62,33 +60,22 @@ def read_run(
     reference.csv. InputError if there is no run at `path`, or it is not usable; the message gives
     place and cause.
     """
-    own = reference_topic if reference is None else NONE
-
-    def of_folder(folder: Path) -> Run:
-        robot_file.refuse_counts(folder / TICKS)
-        return read_run_folder(folder)
-
-    run: Run = _of_kind(
-        Path(path),
-        of_folder,
-        lambda bag: read_run_bag(
+    bag = bag_at(Path(path))
+    if bag is None:
+        robot_file.refuse_counts(Path(path) / TICKS)
+        run = read_run_folder(path)
+    else:
+        run = read_run_bag(
             bag,
             robot_file,
             ticks_topic=ticks_topic,
-            reference_topic=own,
+            reference_topic=reference_topic if reference is None else NONE,
             force=force,
             progress=progress,
-        ),
-        TICKS,
-    )
+        )
     run = without_held_counts(run)
     if reference is not None:
-        found: FoundReference = _of_kind(
-            Path(reference),
-            _reference_folder,
-            lambda bag: read_reference_bag(bag, robot_file, reference_topic, force),
-            REFERENCE,
-        )
+        found = _reference_at(Path(reference), robot_file, reference_topic, force)
         run = replace(
             run,
             reference=found.reference,
@@ -106,33 +93,24 @@ def bag_at(path: Path, table: str = TICKS) -> Path | None:
 
     InputError if there is no run at `path`.
     """
-    found: Path | None = _of_kind(path, lambda folder: None, lambda bag: bag, table)
-    return found
-
-
-def _reference_folder(folder: Path) -> FoundReference:
-    reference, damage = read_reference(folder / REFERENCE)
-    return FoundReference(reference, (), damage=tuple(f"{folder}: {each}" for each in damage))
-
-
-def _of_kind(
-    path: Path, of_folder: Callable[[Path], Any], of_bag: Callable[[Path], Any], table: str
-) -> Any:
-    """Content of a folder with a table, or of a bag."""
     try:
         if path.is_dir():
-            if (path / table).exists():
-                return of_folder(path)
-            bag = _bag_in(path)
-        elif path.exists():
-            bag = _bag_file(path)
-        else:
-            raise InputError(f"{path}: there is no such run")
+            return None if (path / table).exists() else _bag_in(path)
+        if path.exists():
+            return _bag_file(path)
+    except InputError:
+        raise
     except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
-        if isinstance(error, InputError):
-            raise
         raise InputError(f"{path} cannot be read: {error}") from error
-    return of_bag(bag)
+    raise InputError(f"{path}: there is no such run")
+
+
+def _reference_at(path: Path, robot_file: RobotFile, topic: Topics, force: bool) -> FoundReference:
+    bag = bag_at(path, REFERENCE)
+    if bag is not None:
+        return read_reference_bag(bag, robot_file, topic, force)
+    reference, damage = read_reference(path / REFERENCE)
+    return FoundReference(reference, (), damage=tuple(f"{path}: {each}" for each in damage))
 
 
 def _bag_in(folder: Path) -> Path:
