@@ -210,5 +210,5 @@ def _collector(path: Path, held: Contents, chosen: Chosen, robot_file: RobotFile
         mounting = mounting_chain(held.edges, base, chosen.source.child)
         return LidarCollector(path, chosen.source, mounting)
     if chosen.source.chain is not None:
-        return ChainCollector(path, chosen.source.chain)
+        return ChainCollector(f"{path}: {chosen.source.chain.topic}", chosen.source.chain)
     return ReferenceCollector(path, chosen.source, robot_file, chosen.child)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -35,6 +34,11 @@ A localiser dates its transform forward by its `transform_tolerance` (AMCL: a se
 and computed it with the odometry of its last scan: the odometry of that time is no measurement."""
 
 
+LEVEL = 0.985
+"""Cosine of 10 degrees. A lidar with a larger tilt measures walls 1.5 % too far away, and at a
+height of 1 m sees the floor within 6 m."""
+
+
 class _Moved(NamedTuple):
     """A transform over time; n instants, ascending."""
 
@@ -54,9 +58,10 @@ class ChainCollector:
     measured transform changes.
     """
 
-    def __init__(self, path: Path, chain: Chain) -> None:
-        self._place = f"{path}: {chain.topic}"
-        self._chain = chain
+    def __init__(self, place: str, chain: Chain) -> None:
+        """`place`: location of the data, for error messages."""
+        self._place = place
+        self.chain = chain
         self._found: dict[tuple[str, str], array[float]] = {
             (edge.parent, edge.child): array("d") for edge in chain.steps
         }
@@ -64,9 +69,8 @@ class ChainCollector:
     @property
     def topics(self) -> tuple[str, ...]:
         """Topics of the messages to collect."""
-        return tuple(
-            dict.fromkeys((self._chain.topic, *(edge.topic for edge in self._chain.steps)))
-        )
+        steps = self.chain.steps
+        return tuple(dict.fromkeys((self.chain.topic, *(edge.topic for edge in steps))))
 
     def take(self, message: BagMessage) -> None:
         """Add a message of one of the topics."""
@@ -84,28 +88,28 @@ class ChainCollector:
 
         InputError if the transforms were never available at the same time.
         """
-        moved = [self._moved(edge) for edge in self._chain.steps]
+        moved = [self._moved(edge) for edge in self.chain.steps]
         ahead = self._ahead_of_wheels(moved)
         if ahead > POSTDATED:
             moved = [
-                each._replace(time=each.time - ahead) if edge in self._chain.measures else each
-                for edge, each in zip(self._chain.steps, moved, strict=True)
+                each._replace(time=each.time - ahead) if edge in self.chain.measures else each
+                for edge, each in zip(self.chain.steps, moved, strict=True)
             ]
         time = self._stamps(moved)
-        for edge, each in zip(self._chain.steps, moved, strict=True):
+        for edge, each in zip(self.chain.steps, moved, strict=True):
             if not edge.static:
                 time = time[(time >= each.time[0]) & (time <= each.time[-1])]
         if time.size == 0:
             raise InputError(
-                f"{self._place}: the transforms of {self._chain.in_words()} were never there at "
+                f"{self._place}: the transforms of {self.chain.in_words()} were never there at "
                 "one time"
             )
         steps = (_at(each, time) for each in moved)
-        where, turn, yaw = _composed(steps, self._chain.backwards)
+        where, turn, yaw = _composed(steps, self.chain.backwards)
         kind: ReferenceKind | None = None
-        told = self._chain.in_words()
-        measured = self._chain.measures
-        if measured and any(each.made_from_wheels for each in self._chain.steps):
+        told = self.chain.in_words()
+        measured = self.chain.measures
+        if measured and any(each.made_from_wheels for each in self.chain.steps):
             names = " and ".join(f"{each.parent} -> {each.child}" for each in measured)
             told += f", composed at each change of {names}"
             # A localiser corrects itself gradually, so its errors at successive corrections are
@@ -119,13 +123,31 @@ class ChainCollector:
             told += f", {tilted}"
         return Collected(Reference(time, x, y, yaw, kind=kind), told)
 
+    def mount(self) -> Mount:
+        """Pose of the sensor at the end of a constant chain, on the base at its begin.
+
+        InputError if it is not level, or a transform is invalid.
+        """
+        moved = [self._moved(edge) for edge in self.chain.steps]
+        steps = ((each.where[-1:], each.turn[-1:]) for each in moved)
+        (where,), turn, (yaw,) = _composed(steps, self.chain.backwards)
+        up = float(turn.apply([0.0, 0.0, 1.0])[0, 2])
+        if abs(up) < LEVEL:
+            raise InputError(
+                f"{self._place}: by its transforms ({self.chain.in_words()}) the lidar is tilted "
+                f"by {np.degrees(np.arccos(abs(up))):.0f}°: its scans are no plan of the floor; "
+                "give one that lies level, or mend the transforms"
+            )
+        ends = self.chain.parent, self.chain.child
+        return Mount(float(where[0]), float(where[1]), float(yaw), up < 0.0, *ends)
+
     def _ahead_of_wheels(self, moved: list[_Moved]) -> float:
         """By how much what is measured is stamped ahead of the wheels' transforms [s].
 
         By when both were received; 0 for a chain without wheels.
         """
-        steps = list(zip(self._chain.steps, moved, strict=True))
-        measured = [each.ahead for edge, each in steps if edge in self._chain.measures]
+        steps = list(zip(self.chain.steps, moved, strict=True))
+        measured = [each.ahead for edge, each in steps if edge in self.chain.measures]
         wheels = [each.ahead for edge, each in steps if edge.made_from_wheels]
         return min(measured) - max(wheels) if measured and wheels else 0.0
 
@@ -143,11 +165,11 @@ class ChainCollector:
 
     def _stamps(self, moved: list[_Moved]) -> Floats:
         """Times of measurement [s]: the changes of the transform that changes least often."""
-        steps = self._chain.steps
-        chosen = self._chain.measures or [each for each in steps if not each.static] or steps
+        steps = self.chain.steps
+        chosen = self.chain.measures or [each for each in steps if not each.static] or steps
         told = (each for edge, each in zip(steps, moved, strict=True) if edge in chosen)
         each = min(told, key=lambda each: each.time.size)
-        if len(self._chain.measures) == sum(not edge.static for edge in steps):
+        if len(self.chain.measures) == sum(not edge.static for edge in steps):
             return each.time  # the chain does not involve the wheels
         values = np.concatenate([each.where, each.turn.as_matrix()[:, :, 0]], axis=1)
         new: NDArray[np.bool_] = np.ones(each.time.size, dtype=np.bool_)
@@ -182,11 +204,6 @@ def _at(moved: _Moved, time: Floats) -> tuple[Floats, Any]:
     return where, Slerp(moved.time - moved.time[0], moved.turn)(time - moved.time[0])
 
 
-LEVEL = 0.985
-"""Cosine of 10 degrees. A lidar with a larger tilt measures walls 1.5 % too far away, and at a
-height of 1 m sees the floor within 6 m."""
-
-
 def mounting_chain(edges: Sequence[Edge], base: str, sensor: str) -> Chain | None:
     """Constant transforms from the robot's base to a sensor's frame; None if there are none."""
     fixed = [edge for edge in edges if edge.static or not edge.changes]
@@ -197,44 +214,3 @@ def mounting_chain(edges: Sequence[Edge], base: str, sensor: str) -> Chain | Non
         if found is not None:
             return found
     return None
-
-
-class MountingCollector:
-    """Collects transforms, and computes the mounting pose of the sensor at the end."""
-
-    def __init__(self, steps: Chain) -> None:
-        self._chain = steps
-        self._found: dict[tuple[str, str], Any] = {}
-        self.topics = tuple(dict.fromkeys(edge.topic for edge in steps.steps))
-
-    def take(self, message: BagMessage) -> None:
-        """Add a message of one of the topics."""
-        for each in message.content.transforms:
-            key = frame(each.header.frame_id), frame(each.child_frame_id)
-            self._found[key] = each.transform
-
-    def mount(self, place: str) -> Mount:
-        """Pose of the sensor on the base.
-
-        InputError if it is not level, or a transform is invalid.
-        """
-        from scipy.spatial.transform import Rotation
-
-        steps = []
-        for edge in self._chain.steps:
-            found = self._found[edge.parent, edge.child]
-            quaternion = [getattr(found.rotation, part) for part in "xyzw"]
-            if not 0.5 < float(np.square(quaternion).sum()) < 2.0:
-                raise InputError(f"{place}: {edge.parent} -> {edge.child} is never a transform")
-            step = np.array([[getattr(found.translation, part) for part in "xyz"]])
-            steps.append((step, Rotation.from_quat([quaternion])))
-        (where,), turn, (yaw,) = _composed(steps, self._chain.backwards)
-        up = float(turn.apply([0.0, 0.0, 1.0])[0, 2])
-        if abs(up) < LEVEL:
-            raise InputError(
-                f"{place}: by its transforms ({self._chain.in_words()}) the lidar is tilted by "
-                f"{np.degrees(np.arccos(abs(up))):.0f}°: its scans are no plan of the floor; give "
-                "one that lies level, or mend the transforms"
-            )
-        ends = self._chain.parent, self._chain.child
-        return Mount(float(where[0]), float(where[1]), float(yaw), up < 0.0, *ends)

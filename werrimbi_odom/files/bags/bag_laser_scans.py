@@ -10,7 +10,7 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bags.bag import BagMessage, stamp_of
-from werrimbi_odom.files.bags.bag_chain import MountingCollector
+from werrimbi_odom.files.bags.bag_chain import ChainCollector
 from werrimbi_odom.files.bags.frames import Chain
 from werrimbi_odom.files.bags.measured_topic import Measured
 from werrimbi_odom.files.mount import Mount
@@ -51,7 +51,7 @@ class LidarCollector:
         self._place = f"{path}: {source.name}"
         self._name = source.name
         self._frame = source.child
-        self._mounting = MountingCollector(mounting) if mounting else None
+        self._mounting = ChainCollector(self._place, mounting) if mounting else None
         self._matcher = AnyOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self._undirected = 0
@@ -97,7 +97,7 @@ class LidarCollector:
                     _lost(found) if self._echoes else _blind(found, self._reach)
                 )
             raise InputError(f"{self._place}: {words}")
-        mount = self._mounting.mount(self._place) if self._mounting else None
+        mount = self._mounting.mount() if self._mounting else None
         poses, covariances, walked = of_base(found, mount or Mount(0.0, 0.0, 0.0))
         # One number for both axes is that of the wider: the mean is too sure along a corridor.
         sigma_xy = np.sqrt(np.linalg.eigvalsh(covariances[:, :2, :2])[:, 1])
@@ -135,9 +135,10 @@ class LidarCollector:
                 "its own path is compared (reference_lever_arm, reference_yaw_offset)"
             )
         down = ", upside down" if mount.inverted else ""
+        topics = dict.fromkeys(edge.topic for edge in self._mounting.chain.steps)
         sits = _beside(mount.x, "ahead of", "behind"), _beside(mount.y, "left of", "right of")
         return (
-            f"frame {mount.base}: by {' and '.join(self._mounting.topics)} the lidar sits "
+            f"frame {mount.base}: by {' and '.join(topics)} the lidar sits "
             f"{sits[0]} and {sits[1]} it, turned by {np.degrees(mount.yaw):.1f}°{down}"
         )
 
