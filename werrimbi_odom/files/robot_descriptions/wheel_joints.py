@@ -158,41 +158,22 @@ def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
     wheels): several nodes may publish different joints on one topic. Speeds are integrated where
     there are no angles.
     """
-    angles: dict[str, _Values] = {}
-    speeds: dict[str, _Values] = {}
+    angles: dict[str, array[float]] = {}
+    speeds: dict[str, array[float]] = {}
     with suppress(InputError):
         for message in with_stamps(bag.messages([topic]), Counter()):
             content = message.content
             time = stamp_of(message)
             for found, values in ((angles, content.position), (speeds, content.velocity)):
                 for name, value in zip(content.name, values, strict=False):
-                    found.setdefault(name, _Values()).add(time, float(value))
+                    if math.isfinite(float(value)):
+                        found.setdefault(name, array("d")).extend((time, float(value)))
             for name in content.name:
-                angles.setdefault(name, _Values())
+                angles.setdefault(name, array("d"))
     return {
-        name: _range(each.values) or _rolled(speeds.get(name, _Values()))
-        for name, each in angles.items()
+        name: _range(np.array(rows[1::2])) or _rolled(np.array(speeds.get(name, ())))
+        for name, rows in angles.items()
     }
-
-
-class _Values:
-    """Times and finite values of a joint."""
-
-    def __init__(self) -> None:
-        self._time, self._values = array("d"), array("d")
-
-    def add(self, time: float, value: float) -> None:
-        if math.isfinite(value):
-            self._time.append(time)
-            self._values.append(value)
-
-    @property
-    def time(self) -> Floats:
-        return np.array(self._time)
-
-    @property
-    def values(self) -> Floats:
-        return np.array(self._values)
 
 
 def _range(angles: Floats) -> float:
@@ -206,8 +187,9 @@ def _range(angles: Floats) -> float:
     return within
 
 
-def _rolled(speeds: _Values) -> float:
-    return float(np.ptp(integrated(speeds.time, speeds.values)))
+def _rolled(speeds: Floats) -> float:
+    """Way by speeds, each behind its time, (2 n,)."""
+    return float(np.ptp(integrated(speeds[0::2], speeds[1::2])))
 
 
 def _words(name: str) -> set[str]:
