@@ -25,11 +25,7 @@ from werrimbi_odom.inference.calibration.squares import Squares
 from werrimbi_odom.inference.calibration.umbmark import Umbmark, corrected, recomputed, umbmark
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
-from werrimbi_odom.report.calibration.document import (
-    OffsetCloud,
-    calibration_document,
-    umbmark_figure,
-)
+from werrimbi_odom.report.calibration.document import calibration_document, umbmark_figure
 from werrimbi_odom.report.calibration.umbmark_words import (
     found_in_words,
     gained_in_words,
@@ -99,10 +95,7 @@ def calibrate_umbmark(
 
     def figure() -> go.Figure:
         shown, name = (later, "after") if later else (again, "same runs, corrected")
-        return umbmark_figure(
-            OffsetCloud("before", squares.cw, squares.ccw),
-            OffsetCloud(name, shown.cw, shown.ccw) if shown else None,
-        )
+        return umbmark_figure(squares, shown, name)
 
     return calibration(
         robot,

@@ -5,11 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.inference.calibration.squares import Squares, e_max_syst
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.adding.document import clouds_of_legs
 from werrimbi_odom.report.document import Document, Part, Shown, Table
@@ -44,30 +44,22 @@ def calibration_document(
 _MILLI = 1e3
 
 
-@dataclass(frozen=True, slots=True)
-class OffsetCloud:
-    """Offsets of one set of squares [m], shapes (n, 2) and (m, 2), and the name of the set."""
-
-    name: str
-    cw: Floats
-    ccw: Floats
-
-
-def umbmark_figure(before: OffsetCloud, after: OffsetCloud | None) -> Figure:
+def umbmark_figure(before: Squares, after: Squares | None, name: str) -> Figure:
     """Offsets of clockwise and anticlockwise squares with their centres of gravity (figure 3).
 
-    Circles of radius E_max,syst go through the farther centre of each set. Equal scales.
+    Circles of radius E_max,syst go through the farther centre of each set. Equal scales. `name`:
+    of what comes after.
     """
     figure = blank()
-    clouds = [(before, True)] + ([(after, False)] if after else [])
-    for cloud, filled in clouds:
-        _circle(figure, cloud, "dash" if filled else "dot")
-    for cloud, filled in clouds:
+    clouds = [("before", before, True)] + ([(name, after, False)] if after else [])
+    for name, cloud, filled in clouds:
+        _circle(figure, name, cloud, "dash" if filled else "dot")
+    for name, cloud, filled in clouds:
         for sense, offsets, colour, symbol in (
             ("cw", cloud.cw, BLUE, "square"),
             ("ccw", cloud.ccw, ORANGE, "circle"),
         ):
-            _offsets(figure, f"{sense}, {cloud.name}", offsets, colour, symbol, filled)
+            _offsets(figure, f"{sense}, {name}", offsets, colour, symbol, filled)
     cross = {"symbol": "x", "size": 13, "color": GREY}
     plot(figure, [None], [None], "centres of gravity", hover=None, marker=cross)
     x, y = "x, along the first leg [mm]", "y, to its left [mm]"
@@ -93,12 +85,10 @@ def _offsets(
     plot(figure, *at, centre, group=name, shown=False, marker=marker, hover=told)
 
 
-def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
-    radius = _MILLI * max(
-        float(np.hypot(*offsets.mean(axis=0))) for offsets in (cloud.cw, cloud.ccw)
-    )
+def _circle(figure: Figure, name: str, cloud: Squares, dash: str) -> None:
+    radius = _MILLI * e_max_syst(cloud)
     angle = np.linspace(0.0, 2.0 * np.pi, 145)
-    name = f"E<sub>max,syst</sub> {cloud.name}: {radius:.{1 if radius < 10.0 else 0}f} mm"
+    name = f"E<sub>max,syst</sub> {name}: {radius:.{1 if radius < 10.0 else 0}f} mm"
     line = {"color": GREY, "width": 1.3, "dash": dash}
     plot(figure, radius * np.cos(angle), radius * np.sin(angle), name, line=line)
 

@@ -30,7 +30,7 @@ def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
         "base and both radii does not show in squares: compare a long straight line with a tape."
     )
     return [
-        *_verdict(squares, result),
+        *paragraphs(_verdict(squares, result)),
         Table(
             f"Ends of squares of {squares.side:g} m, measured minus odometry",
             ("", "squares", "x [mm]", "y [mm]", "one scatters by"),
@@ -42,29 +42,25 @@ def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
     ]
 
 
-def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
+def _verdict(squares: Squares, result: Umbmark) -> list[str]:
     base, ratio = result.base, result.ratio
     base_off, radii_off = _significant(base), _significant(ratio)
     size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
     open_ = not (base_off or radii_off)
     if open_ and (result.disagreement_p < rules.SURE_WHEN_ASKED or _across(squares, result)):
         few = "" if _enough(squares) else " Or so few squares scatter more than they show."
-        return paragraphs(
-            [
-                f"Base and radii do not explain where these squares ended: {size}, and x and y "
-                f"disagree. Are cw and ccw exchanged, or is y positive to the right?{few}"
-            ]
-        )
+        return [
+            f"Base and radii do not explain where these squares ended: {size}, and x and y "
+            f"disagree. Are cw and ccw exchanged, or is y positive to the right?{few}"
+        ]
     if open_:
         tell = [two_digits(100.0 * NORMAL_95 * factor.std) for factor in (base, ratio)]
-        return paragraphs(
-            [
-                f"These squares determine no correction: {size}, no more than the scatter of the "
-                f"runs explains. They tell the base to {tell[0]} % and the ratio of the radii to "
-                f"{tell[1]} % (95 %), and what is written differs by less: keep the robot file, or "
-                "drive more squares."
-            ]
-        )
+        return [
+            f"These squares determine no correction: {size}, no more than the scatter of the "
+            f"runs explains. They tell the base to {tell[0]} % and the ratio of the radii to "
+            f"{tell[1]} % (95 %), and what is written differs by less: keep the robot file, or "
+            "drive more squares."
+        ]
     what = "Base and radii are" if base_off and radii_off else "The base is"
     lines = [f"{what if base_off else 'The radii are'} off: {size}."]
     if base_off:
@@ -79,7 +75,7 @@ def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
             f"- The {larger} wheel is larger against the other than the file says, by "
             f"{_share(ratio)}: what should be straight bends to the {bend}."
         )
-    return paragraphs(lines)
+    return lines
 
 
 def _enough(squares: Squares) -> bool:
