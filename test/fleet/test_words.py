@@ -14,8 +14,14 @@ import pytest
 from test.evidence import in_evidence
 from test.report.browser import visit
 from werrimbi_odom.report.fleet import Fleet, Row, fleet_json, headline, words_of
-from werrimbi_odom.report.fleet_document import cells, fleet_figure, fleet_table, write_fleet_page
-from werrimbi_odom.report.fleet_row import missing_words, next_words
+from werrimbi_odom.report.fleet_document import (
+    cells,
+    fleet_figure,
+    fleet_table,
+    missing_words,
+    next_words,
+    write_fleet_page,
+)
 from werrimbi_odom.report.save import find_browser
 from werrimbi_odom.report.terminal import as_text
 

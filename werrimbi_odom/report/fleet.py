@@ -16,6 +16,7 @@ from werrimbi_odom.report.number_format import listed
 
 ERROR = "error"
 """Shown in place of a verdict if a robot could not be diagnosed."""
+_NOT_DIAGNOSED = {"found": (), "rivals": (), "holdout": {"before": None, "after": None}}
 
 
 @dataclass(frozen=True)
@@ -34,37 +35,33 @@ class Row:
         return ERROR if self.figures is None else str(self.figures["verdict"])
 
     @property
+    def told(self) -> Mapping[str, Any]:
+        """Its figures; of a robot that could not be diagnosed, that nothing was found."""
+        return self.figures or _NOT_DIAGNOSED
+
+    @property
     def missing(self) -> tuple[str, ...]:
         """Effects found without rivals, the most important first."""
-        if self.figures is None:
-            return ()
-        rivals = self.rivals
-        return tuple(
-            item["effect"] for item in self.figures["found"] if item["effect"] not in rivals
-        )
+        found = (item["effect"] for item in self.told["found"])
+        return tuple(effect for effect in found if effect not in self.rivals)
 
     @property
     def rivals(self) -> tuple[str, ...]:
         """Effects that the drives cannot separate."""
-        return () if self.figures is None else tuple(self.figures["rivals"])
+        return tuple(self.told["rivals"])
 
     @property
     def errors(self) -> tuple[float, float]:
         """Position error of held-out legs, as given and with all found effects [m], or NaN."""
-        if self.figures is None:
-            return math.nan, math.nan
-        sides = self.figures["holdout"]
+        sides = self.told["holdout"]
         return number(sides["before"]), number(sides["after"])
 
     def values(self, effect: str) -> Mapping[str, Mapping[str, Any]]:
         """Fitted parameters of an effect by name: `value`, `std`, `unit`, `per_run`."""
-        if self.figures is None:
-            return {}
-        for item in self.figures["found"]:
-            if item["effect"] == effect:
-                parameters: Mapping[str, Mapping[str, Any]] = item["parameters"]
-                return parameters
-        return {}
+        found: dict[str, Mapping[str, Mapping[str, Any]]] = {
+            item["effect"]: item["parameters"] for item in self.told["found"]
+        }
+        return found.get(effect, {})
 
 
 @dataclass(frozen=True)
@@ -249,7 +246,7 @@ def error_words(row: Row) -> str:
     before, after = row.errors
     if not math.isnan(before):
         return f"{_millimetres(before)} → {_millimetres(after)}"
-    turns = {} if row.figures is None else row.figures["holdout"].get("rmse_yaw_rad", {})
+    turns = row.told["holdout"].get("rmse_yaw_rad", {})
     before, after = (number(turns.get(side)) for side in ("before", "after"))
     if math.isnan(before):
         return ""

@@ -13,9 +13,17 @@ from pathlib import Path
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import style
 from werrimbi_odom.report.document import Document, Shown, Table
-from werrimbi_odom.report.fleet import ERROR, Fleet, Row, error_words, words_of
-from werrimbi_odom.report.fleet_row import missing_words, next_words
+from werrimbi_odom.report.fleet import (
+    ERROR,
+    Fleet,
+    Row,
+    believed,
+    error_words,
+    number,
+    words_of,
+)
 from werrimbi_odom.report.html_page import table_html
+from werrimbi_odom.report.number_format import listed, with_std
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.style import Figure
 from werrimbi_odom.report.terminal import as_text
@@ -173,14 +181,14 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
         single = [[" ".join(cell.split()) for cell in row] for row in rows]
         return as_text([Table("The robots", HEADS, single)])
     made = Grid(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), expand=True)
-    for number, head in enumerate(HEADS):
+    for at, head in enumerate(HEADS):
         made.add_column(
             Text(head.replace(" error", "\nerror")),
-            justify="right" if number in _RIGHT else "left",
+            justify="right" if at in _RIGHT else "left",
             overflow="fold",
-            no_wrap=number == _VERDICT,
-            max_width=_MOST if number in (_ROBOT, _NEXT) else None,
-            ratio=1 if number == _MISSING else None,
+            no_wrap=at == _VERDICT,
+            max_width=_MOST if at in (_ROBOT, _NEXT) else None,
+            ratio=1 if at == _MISSING else None,
         )
     for cut in rows:
         made.add_row(*map(Text, cut))
@@ -202,3 +210,61 @@ def cells(row: Row, *, whole: bool = False) -> list[str]:
     if row.verdict == ERROR:
         missing, then = (row.error, "") if whole else ("could not be diagnosed", "see above")
     return [row.robot, str(row.runs), row.verdict, missing, error, then]
+
+
+def missing_words(row: Row) -> list[str]:
+    """Missing effects of a robot, each with its fitted values."""
+    if row.verdict == "none":
+        return ["nothing"]
+    said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
+    said += [_with_values(row, effect) for effect in row.missing]
+    if row.told.get("drives_differ"):
+        said.append("not the same in all drives")
+    elif wheel := _one_wheel(row):
+        said.append("the wheels err" if wheel == "both" else f"the {wheel} wheel errs")
+        said[-1] += ", by no law"
+    elif when := _by_events(row):
+        said.append(f"something at each {when}")
+    elif row.verdict == "unknown":
+        cells = row.told["depends_on"]
+        said.append(cells[0]["words"] if cells else "no effect of the library")
+    return said
+
+
+def _with_values(row: Row, effect: str) -> str:
+    values = [
+        f"{name} {with_std(item['value'], number(item['std']))} {item['unit']}".rstrip()
+        for name, item in believed(row.values(effect)).items()
+    ]
+    return "\n  ".join([f"{effect}:", *values]) if values else effect
+
+
+def _one_wheel(row: Row) -> str:
+    """The wheel that errs far more than the other, by no law; "" if none does."""
+    return str((row.told.get("one_sided_noise") or {}).get("side", ""))
+
+
+def _by_events(row: Row) -> str:
+    """With what abrupt errors come that alone say that something is missing; "" if none do."""
+    return str(row.told["events_alike"]["what"]) if row.told.get("by_events") else ""
+
+
+def next_words(row: Row) -> str:
+    """Next step in a few words; `add` and `draft` are verbs of this tool."""
+    if row.verdict == "named":
+        return f"add {','.join(row.missing)}"
+    if row.told.get("drives_differ"):
+        return "diagnose the drives since the change"
+    if wheel := _one_wheel(row):
+        return "look at the wheels" if wheel == "both" else f"look at the {wheel} wheel"
+    if row.verdict == "unknown" and not _by_events(row):
+        return "draft"
+    if row.verdict == "none" and row.told["outdated"]:
+        return f"add {row.told['outdated'][0]['effect']}"
+    if row.verdict in ("ambiguous", "unknown"):
+        move = row.told["next_manoeuvre"]
+        if move is None:
+            return "use a ruler"
+        name = str(move["name"]).replace("_", " ")
+        return f"drive {name} ({move['minutes']:.0f} min)" if move["minutes"] else name
+    return ""
