@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,6 +34,8 @@ LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
 UNKNOWN_PLACE, UNKNOWN_TURN = 1e3, math.pi**2
 """Variances [m^2, rad^2] from which they stand for "unknown" (1e6, 99999, 1000): 32 m, or half a
 turn, is the noise of no reference by which legs can be judged."""
+
+_Sigmas = tuple[float, float]
 
 
 class _Row(NamedTuple):
@@ -75,7 +77,7 @@ class ReferenceCollector:
             name = frame(message.content.header.frame_id)
             forces = self._forces.setdefault(name, array("d"))
             forces.extend((float(force.x), float(force.y), float(force.z)))
-        for row in self._rows(message):
+        if (row := self._rows(message)) is not None:
             self._found.setdefault(row.frames, array("d")).extend(row.values)
             self._solid.setdefault(row.frames, array("d")).extend(row.solid)
 
@@ -153,36 +155,39 @@ def _solid(point: Any, q: Any) -> tuple[float, ...]:
     return tuple(float(each) for each in (point.x, point.y, point.z, q.x, q.y, q.z, q.w))
 
 
-def _of_pose(message: BagMessage) -> Iterator[_Row]:
-    pose, name = message.content.pose, message.content.header.frame_id
-    both = pose.position, pose.orientation
-    yield _Row((frame(name), ""), (stamp_of(message), *planar(*both), NAN, NAN), _solid(*both))
+def _in_space(
+    message: BagMessage, where: Any, turn: Any, child: str = "", sigmas: _Sigmas = (NAN, NAN)
+) -> _Row:
+    frames = frame(message.content.header.frame_id), frame(child)
+    values = stamp_of(message), *planar(where, turn), *sigmas
+    return _Row(frames, values, _solid(where, turn))
 
 
-def _of_plane_pose(message: BagMessage) -> Iterator[_Row]:
+def _of_pose(message: BagMessage) -> _Row:
+    pose = message.content.pose
+    return _in_space(message, pose.position, pose.orientation)
+
+
+def _of_plane_pose(message: BagMessage) -> _Row:
     """Motion capture and scan matchers publish it; it has no stamp and no frame."""
     pose = message.content
     x, y, yaw = (float(each) for each in (pose.x, pose.y, pose.theta))
     if not (math.isfinite(x) and math.isfinite(y)):
         x = y = NAN
-    yield _Row(("", ""), (message.received / 1e9, x, y, yaw, NAN, NAN))
+    return _Row(("", ""), (message.received / 1e9, x, y, yaw, NAN, NAN))
 
 
-def _of_odometry(message: BagMessage) -> Iterator[_Row]:
+def _of_odometry(message: BagMessage) -> _Row:
     """The covariance is ignored: it grows along the path and does not describe a single pose."""
-    content = message.content
-    frames = (frame(content.header.frame_id), frame(content.child_frame_id))
-    both = content.pose.pose.position, content.pose.pose.orientation
-    yield _Row(frames, (stamp_of(message), *planar(*both), NAN, NAN), _solid(*both))
+    content, pose = message.content, message.content.pose.pose
+    return _in_space(message, pose.position, pose.orientation, content.child_frame_id)
 
 
-def _of_pose_with_covariance(message: BagMessage) -> Iterator[_Row]:
-    stamped = message.content.pose
-    both = stamped.pose.position, stamped.pose.orientation
-    xx, yy, yawyaw = (float(stamped.covariance[place]) for place in (0, 7, 35))
+def _of_pose_with_covariance(message: BagMessage) -> _Row:
+    pose, covariance = message.content.pose.pose, message.content.pose.covariance
+    xx, yy, yawyaw = (float(covariance[place]) for place in (0, 7, 35))
     sigmas = _deviation(0.5 * (xx + yy)), _deviation(yawyaw, UNKNOWN_TURN)
-    name = frame(message.content.header.frame_id)
-    yield _Row((name, ""), (stamp_of(message), *planar(*both), *sigmas), _solid(*both))
+    return _in_space(message, pose.position, pose.orientation, sigmas=sigmas)
 
 
 def _deviation(variance: float, unknown: float = UNKNOWN_PLACE) -> float:
@@ -190,36 +195,32 @@ def _deviation(variance: float, unknown: float = UNKNOWN_PLACE) -> float:
     return math.sqrt(variance) if 0.0 < variance < unknown else NAN
 
 
-def _of_transform(message: BagMessage) -> Iterator[_Row]:
-    yield _transform(message, message.content)
+def _of_transform(message: BagMessage) -> _Row:
+    content, pose = message.content, message.content.transform
+    return _in_space(message, pose.translation, pose.rotation, content.child_frame_id)
 
 
-def _transform(message: BagMessage, content: Any) -> _Row:
-    frames = (frame(content.header.frame_id), frame(content.child_frame_id))
-    both = content.transform.translation, content.transform.rotation
-    return _Row(frames, (stamp_of(message, content), *planar(*both), NAN, NAN), _solid(*both))
-
-
-def _of_imu(message: BagMessage) -> Iterator[_Row]:
+def _of_imu(message: BagMessage) -> _Row | None:
     """Rates about x, y and z take the place of a pose until the vertical is known."""
     turning = message.content.angular_velocity
     # Single-axis gyros leave the other axes empty.
     x, y = (each if math.isfinite(each) else 0.0 for each in (float(turning.x), float(turning.y)))
     rates = x, y, float(turning.z)
     unknown = float(message.content.angular_velocity_covariance[0]) == -1.0
-    if not unknown and math.isfinite(rates[2]):
-        name = frame(message.content.header.frame_id)
-        yield _Row(("", name), (stamp_of(message), *rates, NAN, NAN))
+    if unknown or not math.isfinite(rates[2]):
+        return None
+    name = frame(message.content.header.frame_id)
+    return _Row(("", name), (stamp_of(message), *rates, NAN, NAN))
 
 
-def _of_point(message: BagMessage) -> Iterator[_Row]:
+def _of_point(message: BagMessage) -> _Row:
     point = message.content.point
     x, y = float(point.x), float(point.y)
     name = frame(message.content.header.frame_id)
-    yield _Row((name, ""), (stamp_of(message), x, y, NAN, NAN, NAN))
+    return _Row((name, ""), (stamp_of(message), x, y, NAN, NAN, NAN))
 
 
-def _of_fix(message: BagMessage) -> Iterator[_Row]:
+def _of_fix(message: BagMessage) -> _Row:
     """Degrees and altitude take the place of a pose until the first fix is known."""
     content = message.content
     degrees = float(content.latitude), float(content.longitude)
@@ -229,10 +230,10 @@ def _of_fix(message: BagMessage) -> Iterator[_Row]:
     east, north = (float(content.position_covariance[place]) for place in (0, 4))
     sigma = _deviation(0.5 * (east + north)) if content.position_covariance_type > 0 else NAN
     name = frame(content.header.frame_id)
-    yield _Row(("", name), (stamp_of(message), *degrees, float(content.altitude), sigma, NAN))
+    return _Row(("", name), (stamp_of(message), *degrees, float(content.altitude), sigma, NAN))
 
 
-_ROWS: dict[str, Callable[[BagMessage], Iterator[_Row]]] = {
+_ROWS: dict[str, Callable[[BagMessage], _Row | None]] = {
     "nav_msgs/msg/Odometry": _of_odometry,
     "geometry_msgs/msg/PoseStamped": _of_pose,
     "geometry_msgs/msg/Pose2D": _of_plane_pose,
