@@ -79,6 +79,25 @@ def place_of(path: Path) -> str:
         return str(path)
 
 
+@contextmanager
+def reading(path: Path, wanted: str) -> Iterator[None]:
+    """Raise an InputError where a file cannot be opened; `wanted`: what to give, if not a folder.
+
+    What is wrong with its content is left to the block.
+    """
+    try:
+        yield
+    except (InputError, UnicodeError):
+        raise
+    except IsADirectoryError:
+        raise InputError(f"{path} is a folder; {wanted}") from None
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file") from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{path} cannot be read: {why}") from error
+
+
 MAX_BYTES = 1_000_000
 
 
@@ -89,16 +108,8 @@ def read_small_text(path: Path, *, wanted: str, too_large: str) -> str:
     remark on a file larger than `MAX_BYTES`, as in "it is not a robot file". InputError if it
     cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
     """
-    try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-    except IsADirectoryError:
-        raise InputError(f"{path} is a folder; {wanted}") from None
-    except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
-        why = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{path} cannot be read: {why}") from error
+    with reading(path, wanted), path.open("rb") as file:
+        raw = file.read(MAX_BYTES + 1)
     if len(raw) > MAX_BYTES:
         raise InputError(f"{path} is larger than {MAX_BYTES:,} bytes; {too_large}")
     try:

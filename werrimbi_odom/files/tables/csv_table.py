@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.tables.column_names import perhaps_meant
+from werrimbi_odom.files.text_files import reading
 from werrimbi_odom.model.pose import Floats
 
 MAX_BYTES = 2**30
@@ -27,6 +28,7 @@ MAX_ROWS = 20_000_000
 MAX_COLUMNS = 256
 MAX_LINE = 2**20
 """Bytes."""
+_FLOAT = np.dtype(np.float64)
 
 _NUMBER = re.compile(
     r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
@@ -76,8 +78,7 @@ class CsvTable:
         """
         place = self.names.index(name)
         for line, cells in _rows(self.path, self.cut):
-            complaint = wrong(cells[place].strip())
-            if complaint:
+            if complaint := wrong(cells[place].strip()):
                 raise InputError(f"{self.path}, line {line}, column {name}: {complaint}")
 
 
@@ -94,20 +95,14 @@ def read_table(
     under any further name these might be meant. InputError if the file is not valid; the message
     names line, column and content.
     """
-    try:
-        _refuse_too_large(path)
-        names = _header(path, required, filled, enough)
-        cut = _cut_line(path, names, [names.index(name) for name in filled])
-        values = _values(path, names, cut, required)
-    except IsADirectoryError:
-        raise InputError(f"{path} is a folder; it must be a CSV file") from None
-    except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError:
-        raise _not_text(path) from None
-    return CsvTable(path, names, values, cut)
+    with reading(path, "it must be a CSV file"):
+        try:
+            _refuse_too_large(path)
+            names = _header(path, required, filled, enough)
+            cut = _cut_line(path, names, [names.index(name) for name in filled])
+            return CsvTable(path, names, _values(path, names, cut, required), cut)
+        except UnicodeDecodeError:
+            raise _not_text(path) from None
 
 
 def _refuse_too_large(path: Path) -> None:
@@ -156,11 +151,10 @@ def _header(
                 f"the first line must be {wanted}"
             )
         held = line.strip()[:200]
-        empty = [name for name in missing if name not in filled]
         raise InputError(
             f"{place}: no column {', '.join(missing)}; the header is {held!r}; write these names "
             f"into it in place of its own{perhaps_meant(missing, names)}, and bring the values to "
-            f"the units that they name{_may_be_empty(empty)}"
+            f"the units that they name{_may_be_empty(set(missing) - set(filled))}"
         )
     if len(names) > MAX_COLUMNS:
         raise InputError(f"{place}: {len(names)} columns are more than {MAX_COLUMNS}")
@@ -172,7 +166,7 @@ def _header(
     return names
 
 
-def _may_be_empty(names: Sequence[str]) -> str:
+def _may_be_empty(names: Collection[str]) -> str:
     """What to do where nothing was measured for some columns."""
     if not names:
         return ""
@@ -201,13 +195,12 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
 
 
 def _values(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> Floats:
-    number = np.dtype(np.float64)
     try:
         try:
             # numpy reads a named file in blocks, twice as fast as from an iterator of lines
-            values = _loaded(_lines(path, cut) if cut else str(path.absolute()), number)
+            values = _loaded(_lines(path, cut) if cut else str(path.absolute()), _FLOAT)
         except ValueError:
-            values = _loaded(_lines(path, cut), number)
+            values = _loaded(_lines(path, cut), _FLOAT)
         if values.size and values.shape[1] == len(names):
             return np.asarray(values, dtype=np.float64)
     except UnicodeDecodeError:
@@ -268,8 +261,10 @@ def _refuse_bad_row(path: Path, names: Sequence[str], cut: int, required: Sequen
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):
                     further = "" if name in required else "; leave a column of text out"
+                    text = cell.strip()
+                    shown = text if len(text) <= 40 else f"{text[:40]}..."
                     raise InputError(
-                        f"{place}, column {name}: {_shown(cell)} is not a number; "
+                        f"{place}, column {name}: {shown!r} is not a number; "
                         f"leave the cell empty where there is none{further}"
                     )
             if len(cells) != len(names):
@@ -291,11 +286,6 @@ def _in_all_rows(path: Path, names: Sequence[str], cut: int) -> str:
         f", as in all rows: {'one that it names was not written' if few else 'one has no name'}, "
         "so the others may not stand under their names"
     )
-
-
-def _shown(cell: str) -> str:
-    text = cell.strip()
-    return repr(text if len(text) <= 40 else text[:40] + "...")
 
 
 def _not_text(path: Path) -> InputError:
