@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bags.bag import BagMessage, left_out_words, stamp_of
-from werrimbi_odom.files.bags.two_publishers import leaps_to_and_fro
 from werrimbi_odom.files.bags.ways_of_speeds import ways_of
 from werrimbi_odom.files.robot_files.parameters import WHOLE_COUNTS
 from werrimbi_odom.files.robot_files.robot_file import RobotFile
@@ -31,6 +30,15 @@ _UNLIKE = 0.25
 """Share of the way of a side's wheels that may be unlike. Steered and driven wheels of one side
 differ by up to an eighth in the tightest turns, skidding ones by less; mecanum wheels on a drive
 that is sideways in part by more than a third."""
+_FEWEST, _SHARE = 20, 0.03
+"""Messages that leap away and back, and their share, from which a second node sends them. Faults of
+a counter are fewer; what is sent by a node at 1 Hz beside a driver at 30 Hz is more."""
+_MOSTLY = 0.5
+"""Share from which both sequences take turns."""
+_LEAP, _FASTER = 0.1, 10.0
+"""Least leap, in turns of the wheel, and in usual steps from message to message."""
+_BACK = 0.1
+"""Share of a leap to within which it leads back, and to which a sequence of its own changes."""
 UNTURNED = "the angles begin anew at each turn; they are unwrapped"
 
 
@@ -127,7 +135,7 @@ class JointsCollector:
         """Raise if a second node publishes a wheel: what both say is no way of it."""
         for name, column in zip(self._sides[side == "right"], counts.T, strict=True):
             rolled = np.cumsum(differences(column, bits)[0]) if bits else column
-            if count := leaps_to_and_fro(rolled / per_turn):
+            if count := _leaps_to_and_fro(rolled / per_turn):
                 raise InputError(
                     f"{self._place}: the position of {name} jumps to and fro between two sequences "
                     f"in {count} of {column.size} messages: two nodes publish it (the driver, and "
@@ -196,6 +204,28 @@ class _Rows:
     def arrays(self, wheels: int) -> tuple[Floats, Floats]:
         """Arrays of shapes (n,) and (n, wheels)."""
         return np.array(self._time), np.array(self._values).reshape(-1, wheels)
+
+
+def _leaps_to_and_fro(turns: Floats) -> int:
+    """Number of messages of a second sequence among those of a wheel; 0 if there is none.
+
+    `turns` (n,): the wheel's angle [turns], unwrapped, in order of receipt; may hold NaN. A second
+    sequence is known by its values, which change little from one to the next (zero, as a rule):
+    faults of a counter have any value.
+    """
+    known = turns[np.isfinite(turns)]
+    if known.size < _FEWEST:
+        return 0
+    first, second = np.diff(known)[:-1], np.diff(known)[1:]
+    both = np.abs(first + second)
+    least = np.maximum(_LEAP, _FASTER * float(np.median(both)))
+    size = np.minimum(np.abs(first), np.abs(second))
+    away: NDArray[np.bool_] = (size > least) & (both < _BACK * size)
+    count = int(away.sum())
+    if count < max(_FEWEST, _SHARE * known.size):
+        return 0
+    alone = np.abs(np.diff(known[1:-1][away])) < _BACK * np.median(size[away])
+    return count if count > _MOSTLY * known.size or alone.mean() > _MOSTLY else 0
 
 
 def _begin_anew(angles: Floats) -> bool:
