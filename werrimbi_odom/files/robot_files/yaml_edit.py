@@ -51,7 +51,7 @@ def with_values(
     above = functools.reduce(_child, place[:-1], yaml.compose(io.StringIO(text)))
     node = _child(above, place[-1])
     if node.flow_style:
-        new = {**_tree(given), **values}
+        new = {**plain(given), **values}
         new = new if effects is None else _with_effects(new, effects)
         start, end = node.start_mark.index, node.end_mark.index
         return text[:start] + _written(new, quoted=True) + text[end:]
@@ -113,7 +113,7 @@ class _Block:
         `named`: whether a comment beside a list item refers to that item.
         """
         key, node = self.nodes[name]
-        old = _tree(self.given[name])
+        old = plain(self.given[name])
         known = tuple(old) if isinstance(old, list) else old
         if type(known) is type(value) and known == value:
             return
@@ -181,7 +181,7 @@ def _change_effect(block: _Block, applied: AppliedEffect, behind: int, step: str
     holder, prefix = block, f"{name}."
     if name in block.nodes:
         if block.nodes[name][1].flow_style:
-            own = _tree(block.given[name])
+            own = plain(block.given[name])
             block.change(name, _needed(own, known, declared))
             return block.behind(name)
         holder, prefix = block.below(name), ""
@@ -259,13 +259,6 @@ def _end(text: str, key: Node | None, node: Any) -> int:
 
 def _is_empty(node: Node) -> bool:
     return bool(node.start_mark.index == node.end_mark.index)
-
-
-def _tree(value: Any) -> Any:
-    """Convert to plain values recursively."""
-    if isinstance(value, CommentedMap):
-        return {str(key): _tree(below) for key, below in value.items()}
-    return plain(value)
 
 
 def _written(value: Any, *, quoted: bool = False) -> str:

@@ -154,8 +154,10 @@ def line_of(block: CommentedMap, key: object) -> int:
     return int(block.lc.key(key)[0]) + 1
 
 
-def plain(value: Any) -> object:
+def plain(value: Any) -> Any:
     """A value without the round-trip information (number format, comments)."""
+    if isinstance(value, CommentedMap):
+        return {str(key): plain(below) for key, below in value.items()}
     if isinstance(value, CommentedSeq):
         return [plain(item) for item in value]
     if isinstance(value, ScalarBoolean):
