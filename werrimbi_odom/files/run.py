@@ -175,18 +175,10 @@ class Reference:
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Reference:
         """Select poses; `which` has shape (m,), or is of rows."""
-        return replace(
-            self,
-            time=self.time[which],
-            x=self.x[which],
-            y=self.y[which],
-            yaw=self.yaw[which],
-            sigma_xy=None if self.sigma_xy is None else self.sigma_xy[which],
-            sigma_yaw=None if self.sigma_yaw is None else self.sigma_yaw[which],
-            walked=None if self.walked is None else self.walked[which],
-            covariance=None if self.covariance is None else self.covariance[which],
-            gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
-        )
+        names = ("time", "x", "y", "yaw", "sigma_xy", "sigma_yaw", "walked", "covariance")
+        known = {name: values for name in names if (values := getattr(self, name)) is not None}
+        gyro = None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which])
+        return replace(self, gyro=gyro, **{name: each[which] for name, each in known.items()})
 
 
 Why = Literal["held", "carried", "gap", "counter", "reference"]

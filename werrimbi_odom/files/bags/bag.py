@@ -129,12 +129,11 @@ def opened_bag(path: Path) -> Iterator[Bag]:
             f"{path}: bags are read by the Python package {missing.name}: "
             'pip install "werrimbi_odom[tools]"'
         ) from missing
-    reader: Any = None
     ros1 = ending(path) == ROS1 and not path.is_dir()  # `ros2 bag record -o drive.bag`: a folder
     try:
         if path.is_dir():
             _refuse_repeated(path)
-        reader = (Reader1 if ros1 else Reader2)(path)
+        reader: Any = (Reader1 if ros1 else Reader2)(path)
         reader.open()
         topics = _topics(
             (absolute(each.topic), each.msgtype, each.msgcount) for each in reader.connections
@@ -275,9 +274,8 @@ def _refuse_repeated(folder: Path) -> None:
 def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    tools = "`mcap recover`, or `ros2 bag reindex`"
-    if ending(path) == ROS1:
-        tools = "`rosbag reindex`"
+    ros1 = ending(path) == ROS1
+    tools = "`rosbag reindex`" if ros1 else "`mcap recover`, or `ros2 bag reindex`"
     hint = f"a recording cut off in mid-file: {tools}"
     with suppress(OSError), path.open("rb") as file:  # a folder cannot be opened
         if not file.read(16).startswith(_BEGIN):
