@@ -11,12 +11,12 @@ from __future__ import annotations
 import html
 import json
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from werrimbi_odom.files.text_files import readable, replacing
 from werrimbi_odom.report.document import Definition, Document, Paragraph, Part, Shown, Table
@@ -120,37 +120,29 @@ def _headed(parts: Sequence[Part]) -> str:
 
 def as_html(parts: Iterable[Part]) -> str:
     """Parts of a document as HTML; consecutive points form a list."""
-    return "\n".join(html_of(list(group)) for html_of, group in groupby(parts, key=_written_by))
+    written: list[str] = []
+    for tag, group in groupby(parts, key=_list_of):
+        found = [_of_part(part) for part in group]
+        written += [f"<{tag}>{''.join(found)}</{tag}>"] if tag else found
+    return "\n".join(written)
 
 
-def _written_by(part: Part) -> Callable[[Sequence[Any]], str]:
-    if isinstance(part, Table):
-        return _tables
+def _list_of(part: Part) -> str:
+    """Tag of the list that a part is an item of; "" for none."""
     if isinstance(part, Definition):
-        return _entries
-    return {"words": _paragraphs, "point": _points}.get(part.kind, _verbatim)
+        return "dl"
+    return "ul" if isinstance(part, Paragraph) and part.kind == "point" else ""
 
 
-def _paragraphs(parts: Sequence[Paragraph]) -> str:
-    return "\n".join(f"<p>{_inline(part.text)}</p>" for part in parts)
-
-
-def _points(parts: Sequence[Paragraph]) -> str:
-    points = "".join(f"<li>{_inline(part.text)}</li>" for part in parts)
-    return f"<ul>{points}</ul>"
-
-
-def _verbatim(parts: Sequence[Paragraph]) -> str:
-    return "\n".join(f"<pre>{html.escape(part.text)}</pre>" for part in parts)
-
-
-def _entries(parts: Sequence[Definition]) -> str:
-    rows = "".join(f"<dt>{_inline(part.term)}</dt><dd>{_inline(part.says)}</dd>" for part in parts)
-    return f"<dl>{rows}</dl>"
-
-
-def _tables(parts: Sequence[Table]) -> str:
-    return "\n".join(map(table_html, parts))
+def _of_part(part: Part) -> str:
+    if isinstance(part, Table):
+        return table_html(part)
+    if isinstance(part, Definition):
+        return f"<dt>{_inline(part.term)}</dt><dd>{_inline(part.says)}</dd>"
+    if part.kind in ("command", "code"):
+        return f"<pre>{html.escape(part.text)}</pre>"
+    tag = "li" if part.kind == "point" else "p"
+    return f"<{tag}>{_inline(part.text)}</{tag}>"
 
 
 def table_html(table: Table) -> str:
