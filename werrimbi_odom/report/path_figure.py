@@ -13,18 +13,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.distributions import CHI2_95
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    Figure,
-    along_path,
-    blank,
-    places,
-    plot,
-    styled,
-)
+from werrimbi_odom.report import style
+from werrimbi_odom.report.style import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +63,7 @@ def magnification(drawing: PathDrawing) -> float:
 
 def path_figure(drawing: PathDrawing) -> Figure:
     """The interactive figure; equal scales on both axes."""
-    figure = blank()
+    figure = style.blank()
     magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     measured = np.empty(0, dtype=np.complex128)
@@ -81,26 +71,26 @@ def path_figure(drawing: PathDrawing) -> Figure:
         measured = drawing.reference_x + 1j * drawing.reference_y
     known = measured[np.isfinite(measured)]
     if known.size:
-        some, look = measured[along_path(measured)], {"color": GREY, "width": 5}
+        some, look = measured[style.along_path(measured)], {"color": style.GREY, "width": 5}
         way = some.real, some.imag
-        plot(figure, *way, "measured", hover=f"measured{_PLACE}", line=look, opacity=0.55)
+        style.plot(figure, *way, "measured", hover=f"measured{_PLACE}", line=look, opacity=0.55)
     for order, index in enumerate(spread_along_path(drawing.x, drawing.y, 16)):
         x, y, shape = drawing.x[index], drawing.y[index], drawing.covariance[index]
-        plot(
+        style.plot(
             figure,
             *ellipse(float(x), float(y), shape, magnified=magnified),
             name,
             group="ellipse",
             shown=order == 0,
-            line={"color": ORANGE, "width": 1.2},
+            line={"color": style.ORANGE, "width": 1.2},
             fill="toself",
             fillcolor="rgba(213, 94, 0, 0.16)",
         )
-    look = {"color": BLUE, "width": 2}
-    plot(figure, drawing.x, drawing.y, "odometry", hover=f"odometry{_PLACE}", line=look)
+    look = {"color": style.BLUE, "width": 2}
+    style.plot(figure, drawing.x, drawing.y, "odometry", hover=f"odometry{_PLACE}", line=look)
     marks = [
-        (complex(drawing.x[0], drawing.y[0]), "start", "circle", GREEN),
-        (complex(drawing.x[-1], drawing.y[-1]), "end", "square", BLUE),
+        (complex(drawing.x[0], drawing.y[0]), "start", "circle", style.GREEN),
+        (complex(drawing.x[-1], drawing.y[-1]), "end", "square", style.BLUE),
     ]
     if known.size:
         marks.append((complex(known[-1]), "measured end", "x", "black"))
@@ -109,7 +99,7 @@ def path_figure(drawing: PathDrawing) -> Figure:
         add_mark(figure, at, mark, look)
     figure.update_xaxes(title="x [m]", zeroline=False)
     figure.update_yaxes(title="y [m]", zeroline=False)
-    return styled(figure, drawing.title, drawing.subtitle, width=1000, height=860)
+    return style.styled(figure, drawing.title, drawing.subtitle, width=1000, height=860)
 
 
 _PLACE = "<br>x %{x:.3f} m<br>y %{y:.3f} m"
@@ -125,7 +115,7 @@ def add_path(
     **more: Any,
 ) -> None:
     """Add a path (x + iy) on the floor, with `said` and the position as hover text."""
-    plot(figure, *places(path), name, hover=said + _PLACE, line=line, **more)
+    style.plot(figure, *style.places(path), name, hover=said + _PLACE, line=line, **more)
 
 
 def add_mark(
@@ -133,4 +123,4 @@ def add_mark(
 ) -> None:
     """Add a mark at one point (x + iy), such as a start or an end."""
     x, y = [float(at.real)], [float(at.imag)]
-    plot(figure, x, y, name, hover=name + _PLACE, marker=marker, **more)
+    style.plot(figure, x, y, name, hover=name + _PLACE, marker=marker, **more)

@@ -26,35 +26,6 @@ from werrimbi_odom.report.sketches.parts import (
 )
 
 
-def _skid_steer() -> Parts:
-    tyres = [oblong(x, y, 34, 13, colour=INK, fill=GREY) for x in (128, 182) for y in (58, 102)]
-    return [
-        oblong(155, 80, 92, 34, colour=BLUE),
-        *tyres,
-        line((155, 12), (155, 148), colour=GREY, dash=DASH),
-        circle(163, 18, 4, colour=ORANGE, fill=ORANGE),
-        circle(163, 142, 4, colour=ORANGE, fill=ORANGE),
-        words(172, 22, "centre of the left side", colour=ORANGE, anchor="start"),
-        words(172, 146, "centre of the right side", colour=ORANGE, anchor="start"),
-        arrow((82, 18), (82, 142), both=True),
-        words(76, 84, "acts", colour=ORANGE, anchor="end"),
-        arrow((100, 58), (100, 102), colour=GREY, both=True),
-        arc(155, 80, 78, 335, 25, colour=ORANGE, head=True),
-    ]
-
-
-def _carpet() -> Parts:
-    ribs = [line((25, y), (185, y), colour=GREY, width=1.0) for y in range(24, 138, 14)]
-    return [
-        *ribs,
-        robot(75, 94, size=0.7),
-        arrow((100, 94), (190, 94), colour=GREEN),
-        words(200, 98, "along it: more", colour=GREEN, anchor="start"),
-        arrow((75, 70), (75, 20)),
-        words(200, 34, "across it: less", colour=ORANGE, anchor="start"),
-    ]
-
-
 def _late(first: str, second: str) -> Parts:
     def step(y: float, at: float, colour: str) -> str:
         return line(
@@ -73,20 +44,7 @@ def _late(first: str, second: str) -> Parts:
     ]
 
 
-def _wandering_bias() -> Parts:
-    times = [x / 20.0 for x in range(21)]
-    true = [(30 + 230 * at, 112 - 26 * at) for at in times]
-    shown = [(30 + 230 * at, 112 - 26 * at - 52 * at * at) for at in times]
-    return [
-        arrow((30, 125), (318, 125), colour=GREY),
-        words(318, 116, "time", colour=GREY, anchor="end"),
-        line(*true, colour=BLUE, width=2.5),
-        words(268, 90, "heading", colour=BLUE, anchor="start"),
-        line(*shown, colour=ORANGE, width=2.5),
-        words(268, 38, "the gyro's", colour=ORANGE, anchor="start"),
-        arrow((255, 80), (255, 42), colour=GREY, both=True),
-    ]
-
+_TIMES = [x / 20.0 for x in range(21)]
 
 DRAWINGS: Mapping[str, Drawing] = {
     "track": [
@@ -136,7 +94,19 @@ DRAWINGS: Mapping[str, Drawing] = {
         arc(225, 20, 80, 235, 305, colour=ORANGE, head=True),
         words(225, 143, "wide curve", colour=ORANGE),
     ],
-    "skid": _skid_steer,
+    "skid": [
+        oblong(155, 80, 92, 34, colour=BLUE),
+        *(oblong(x, y, 34, 13, colour=INK, fill=GREY) for x in (128, 182) for y in (58, 102)),
+        line((155, 12), (155, 148), colour=GREY, dash=DASH),
+        circle(163, 18, 4, colour=ORANGE, fill=ORANGE),
+        circle(163, 142, 4, colour=ORANGE, fill=ORANGE),
+        words(172, 22, "centre of the left side", colour=ORANGE, anchor="start"),
+        words(172, 146, "centre of the right side", colour=ORANGE, anchor="start"),
+        arrow((82, 18), (82, 142), both=True),
+        words(76, 84, "acts", colour=ORANGE, anchor="end"),
+        arrow((100, 58), (100, 102), colour=GREY, both=True),
+        arc(155, 80, 78, 335, 25, colour=ORANGE, head=True),
+    ],
     "sideways": [
         robot(80, 105),
         line((110, 105), (320, 105), colour=GREY, dash=DASH),
@@ -154,7 +124,14 @@ DRAWINGS: Mapping[str, Drawing] = {
         arrow((200, 80), (275, 91)),
         words(240, 72, "downhill", colour=ORANGE),
     ],
-    "carpet": _carpet,
+    "carpet": [
+        *(line((25, y), (185, y), colour=GREY, width=1.0) for y in range(24, 138, 14)),
+        robot(75, 94, size=0.7),
+        arrow((100, 94), (190, 94), colour=GREEN),
+        words(200, 98, "along it: more", colour=GREEN, anchor="start"),
+        arrow((75, 70), (75, 20)),
+        words(200, 34, "across it: less", colour=ORANGE, anchor="start"),
+    ],
     "castor": [
         robot(180, 72, size=1.3),
         circle(134, 72, 5, colour=INK, fill=INK),
@@ -205,6 +182,18 @@ DRAWINGS: Mapping[str, Drawing] = {
         words(150, 42, "what is shown", colour=GREEN),
     ],
     "late": _late,
-    "wandering_bias": _wandering_bias,
+    "wandering_bias": [
+        arrow((30, 125), (318, 125), colour=GREY),
+        words(318, 116, "time", colour=GREY, anchor="end"),
+        line(*((30 + 230 * at, 112 - 26 * at) for at in _TIMES), colour=BLUE, width=2.5),
+        words(268, 90, "heading", colour=BLUE, anchor="start"),
+        line(
+            *((30 + 230 * at, 112 - 26 * at - 52 * at * at) for at in _TIMES),
+            colour=ORANGE,
+            width=2.5,
+        ),
+        words(268, 38, "the gyro's", colour=ORANGE, anchor="start"),
+        arrow((255, 80), (255, 42), colour=GREY, both=True),
+    ],
 }
 """By name; the arguments of those that have any are the labels of a `Sketch`."""
