@@ -18,9 +18,11 @@ from werrimbi_odom.api.next_command import next_command
 from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
+from werrimbi_odom.inference.manoeuvres.advice import significant
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.diagnosis.reference_remarks import or_a_compass
 
 FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
@@ -103,3 +105,20 @@ def test_the_command_line_says_how_headings_alone_are_taken(
     run = wo.write_run(tmp_path / "run", ticks.time, ticks.left, ticks.right, poses)
     main(["compare", "--robot", str(FILE), str(run)])
     assert ("taken as a gyro's" in capsys.readouterr().err) == said
+
+
+def test_iron_beside_a_compass_is_told_as_what_it_may_be() -> None:
+    """No wheel knows the direction in the room, and a drafted law of it would mend no wheel."""
+    random = np.random.default_rng(4)
+    turning = np.repeat(random.uniform(-0.8, 0.8, 60), 60)
+    ticks = read(ROBOT, 20.0, np.full(turning.size, 0.3), turning)
+    counted = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float))
+    yaw = trajectory(ROBOT, *ticks).yaw
+    iron = 0.12 * np.sin(yaw + 0.4)
+    run = of_columns(counted, yaw + iron + random.normal(0.0, 0.01, yaw.size))
+    given = recordings_of(wo.read_robot(FILE), run)
+    found = diagnose(given.runs, ROBOT, COMMON[:2], given.evaluation)
+    assert found.verdict == "unknown"
+    (said,) = or_a_compass(found, significant(found)[0].variable.name)
+    assert said.startswith("A compass beside iron errs so")
+    assert or_a_compass(found, "distance") == []

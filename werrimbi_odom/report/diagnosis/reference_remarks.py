@@ -205,6 +205,16 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def or_a_compass(diagnosis: Diagnosis, goes_with: str) -> list[str]:
+    """That a compass errs by the direction, where headings alone do; `goes_with`: a variable."""
+    if goes_with != "heading" or not diagnosis.runs.headings_alone:
+        return []
+    return [
+        "A compass beside iron errs so: by the direction it faces, as no wheel does (an IMU's "
+        "heading may come from one). A gyro's yaw rate, or a compass far from motors, tells."
+    ]
+
+
 def or_its_metre(diagnosis: Diagnosis) -> list[str]:
     """That one number explains base and radii that are off by one factor within their deviations.
 

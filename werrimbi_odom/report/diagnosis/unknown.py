@@ -69,6 +69,7 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
                 f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
                 "the one may go with the other because of how it was driven."
             )
+        lines += reference_remarks.or_a_compass(diagnosis, cells[0].variable.name)
     lines += reference_remarks.floor_not_asked(diagnosis)
     lines += remarks.nearest(diagnosis, bool(cells))
     lines += remarks.at_bounds_told(diagnosis)
