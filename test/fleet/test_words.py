@@ -253,6 +253,12 @@ def test_what_comes_at_each_start_is_to_be_driven_and_no_law_is_drafted() -> Non
     assert next_words(kicked) == "drive start stop (8 min)"
 
 
+def test_what_a_floor_does_by_scans_is_measured_otherwise_and_no_law_is_drafted() -> None:
+    wave = [{"words": "how far it slides sideways goes with its heading"}]
+    tilted = row("robot_9", "unknown", 0.012, 0.012, depends_on=wave, as_a_floor=True)
+    assert next_words(tilted) == "record with motion capture"
+
+
 def test_of_a_robot_that_changed_the_drives_since_are_asked_and_no_law_is_drafted() -> None:
     place = [{"words": "how far both wheels roll goes with the place on the floor"}]
     loaded = row(

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ import pytest
 from test.evidence import in_evidence
 from test.inference.driven import COMMON, common, run_of
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.api.draft import _known
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -35,7 +38,10 @@ from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
+from werrimbi_odom.report.diagnosis.unknown import unknown_words
 
 TRUE = WhiteNoiseRobot()
 ROBOT = TRUE.entered(0.05)
@@ -389,6 +395,12 @@ def test_axes_that_begin_anew_have_no_common_direction() -> None:
     strongest = found.depends_on[0]
     assert (strongest.channel, strongest.variable.name) == ("sideways", "heading")
     assert strongest.variable.per_run
+    told = " ".join(unknown_words(AdvisedDiagnosis(found, None, ()), NextSteps()))
+    assert "Motion capture or a localiser's map shows it." in told
+    assert "werrimbi draft" not in told, "its law was worth 12.2 to 11.5 mm"
+    given: Any = SimpleNamespace()
+    assert "goes most with the heading, in each drive by a wave" in _known(found, given, "--force")
+    assert json_of(found, None)["as_a_floor"]
     limits = {limit.effect: limit for limit in detection_limits(found, effects)}
     assert limits["floor_slope"].minimum_detectable == np.inf
     assert limits["lateral_slip"].minimum_detectable < 1.0

@@ -21,7 +21,7 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
-from werrimbi_odom.inference.drafting.draft import Draft
+from werrimbi_odom.inference.drafting.draft import Draft, as_a_floor
 from werrimbi_odom.inference.drafting.package import package_of
 from werrimbi_odom.inference.drafting.two_variables import best_draft
 from werrimbi_odom.progress import Show, silent
@@ -102,7 +102,7 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         show=show,
     )
     given = as_judged(given, diagnosis)
-    by_no_law = diagnosis.one_sided is not None or diagnosis.by_events
+    by_no_law = diagnosis.one_sided is not None or diagnosis.by_events or as_a_floor(diagnosis)
     if insist and (diagnosis.verdict != "unknown" or by_no_law):
         raise InputError(_known(diagnosis, given, insist))
 
@@ -140,6 +140,12 @@ def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
         return (
             "what is missing comes at once, with reversals or with starts and stops, and goes with "
             f"nothing that lasts{force}"
+        )
+    if diagnosis.verdict == "unknown":
+        return (
+            "what is missing goes most with the heading, in each drive by a wave of its own, as "
+            "a slope or a carpet does by scans: no law of it holds in another drive. Motion "
+            f"capture or a localiser's map shows it{force}"
         )
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)

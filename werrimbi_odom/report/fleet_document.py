@@ -257,6 +257,8 @@ def next_words(row: Row) -> str:
         return "diagnose the drives since the change"
     if wheel := _one_wheel(row):
         return "look at the wheels" if wheel == "both" else f"look at the {wheel} wheel"
+    if row.told.get("as_a_floor"):
+        return "record with motion capture"
     if row.verdict == "unknown" and not _by_events(row):
         return "draft"
     if row.verdict == "none" and row.told["outdated"]:

@@ -164,6 +164,15 @@ def worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:
     return strong[: rules.MOST_DRAFTED]
 
 
+def as_a_floor(diagnosis: Diagnosis) -> bool:
+    """Whether the strongest is of a heading whose zero each drive has anew, as a slope by scans.
+
+    No law of it holds in another drive, and one of the next strongest would be wrong.
+    """
+    seen = [cell.variable for cell in worth_drafting(diagnosis)[:1]]
+    return any(variable.name == "heading" and variable.per_run for variable in seen)
+
+
 def _has_a_form(cell: Dependence) -> bool:
     """A spot on the floor is a law of travel alone; an effect may read no other place."""
     if cell.variable.form == "place":

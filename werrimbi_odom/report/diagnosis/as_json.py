@@ -17,6 +17,7 @@ from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.what_is_left import WhatIsLeft
+from werrimbi_odom.inference.drafting.draft import as_a_floor
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
@@ -95,6 +96,7 @@ def json_of(
         "events": events_json(diagnosis.happened, diagnosis.robot.track),
         "events_alike": alike_json(diagnosis.happened, diagnosis.left_by),
         "by_events": diagnosis.by_events,
+        "as_a_floor": diagnosis.verdict == "unknown" and as_a_floor(diagnosis),
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 

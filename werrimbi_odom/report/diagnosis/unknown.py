@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from werrimbi_odom.inference.diagnosis.one_sided_noise import OneSidedNoise
-from werrimbi_odom.inference.drafting.draft import worth_drafting
+from werrimbi_odom.inference.drafting.draft import as_a_floor, worth_drafting
 from werrimbi_odom.inference.events.events import Channel, Events
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, significant
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
@@ -74,6 +74,12 @@ def unknown_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines += remarks.nearest(diagnosis, bool(cells))
     lines += remarks.at_bounds_told(diagnosis)
     lines += remarks.left_is_noise(advised)
+    if as_a_floor(diagnosis):
+        return [
+            *lines,
+            "No law of that heading holds in another drive, so none is drafted. Next: record a "
+            "drive with motion capture or a localiser's map.",
+        ]
     if worth_drafting(diagnosis):
         lines.append("Next: write it as an effect of your own, from what these drives show:")
         lines.append(f"    {steps.draft}")
