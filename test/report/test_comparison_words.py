@@ -10,6 +10,7 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from scipy import stats
 from test.evidence import in_evidence
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run
@@ -30,12 +32,13 @@ from werrimbi_odom.inference.comparison.consistency import (
     judged_lengths,
     of_all,
 )
+from werrimbi_odom.inference.comparison.reference_noise_source import ReferenceNoise
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict, verdict_of
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.document import document_of
-from werrimbi_odom.report.comparison.phrases import covariance_words
+from werrimbi_odom.report.comparison.phrases import covariance_words, reference_words
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.number_format import from_start
 from werrimbi_odom.report.phrases import left_out_words
@@ -272,3 +275,16 @@ def test_no_motion_is_as_promised_that_errs_more_at_any_length(
             assert "times what is promised" in line or " ± " in line
         elif line:
             assert line.endswith(", as promised.")
+
+
+def test_of_headings_alone_the_option_that_states_their_noise_is_told() -> None:
+    """It was `--reference-sigma-xy`, which says nothing of a gyro."""
+    noise = ReferenceNoise(2e-3, 5e-3, "assumed", "assumed")
+    prepared = SimpleNamespace(
+        options=EvaluationOptions(reference_kind="incremental"), noises=[("heading", noise)]
+    )
+    figures = SimpleNamespace(all=SimpleNamespace(outliers=0))
+    comparison: Any = SimpleNamespace(prepared=prepared, main=figures, remarks=(), left_out=())
+    (words,) = reference_words(comparison)
+    assert "0.29° each interval, is assumed" in words
+    assert "--reference-sigma-yaw says it" in words

@@ -39,6 +39,9 @@ _LOWEST = np.log(1e-14)
 _HIGHEST = np.log([rules.STRANGE_NOISE**2] * 2 + [10.0] * 6)
 """Bounds of the log variances; the wheels' one is physical."""
 
+LARGEST_NOISE = dict(zip(_ALL, np.exp(0.5 * _HIGHEST).tolist(), strict=True))
+"""The largest standard deviation of each that a fit allows: to be below it says nothing."""
+
 
 @dataclass(frozen=True, slots=True)
 class NoiseEstimate:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from werrimbi_odom.inference.calibration.any_driving import Calibration
+from werrimbi_odom.inference.fitting.noise import LARGEST_NOISE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
@@ -43,7 +44,7 @@ def fit_in_words(result: Calibration) -> list[Part]:
             f"{capital(listed(unwritten))} {stays} in the robot file: a noise that no wheel has "
             "is not written."
         )
-    if result.misfit:
+    if result.misfit and any(name.endswith("wheel_noise") for name in result.changes):
         said.append(
             "What is missing is part of the wheels' noise that is written, so that the covariance "
             "holds it: fit that noise again when a model explains the drives."
@@ -100,7 +101,10 @@ def _values(result: Calibration) -> Table:
     for name, noise in result.noises.items():
         unit = _UNITS[name]
         before = getattr(result.fit.robot, name, None)
-        value = f"not determined (below {noise.interval[1]:.1e} {unit})"
+        high = noise.interval[1]
+        value = "not determined"
+        if high < LARGEST_NOISE[name]:
+            value += f" (below {high:.1e} {unit})"
         if noise.determined and result.trusted:
             value = scaled_with_std(noise.value, noise.std, unit)
         elif noise.determined:

@@ -197,7 +197,8 @@ def reference_words(comparison: Comparison) -> list[str]:
             "estimated": "fitted with the calibration"
             if wanders
             else "estimated from its own small differences",
-            "assumed": "assumed, for its poses are too few to tell; --reference-sigma-xy says it",
+            "assumed": "assumed, for its poses are too few to tell; "
+            f"--reference-sigma-{'yaw' if measure == 'heading' else 'xy'} says it",
             "stated": "as the record states it",
             "given": "as given",
         }.get(told, told)

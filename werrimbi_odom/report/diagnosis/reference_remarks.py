@@ -165,7 +165,7 @@ def rare_counts(diagnosis: Diagnosis) -> list[str]:
     return [
         f"Counts come every {two_digits(max(rare))} s: how the wheels changed their speed from one "
         "message to the next is not in them. Where a wheel was between two is uncertain by up to "
-        f"{error_words(unseen, 'm')} (standard deviation), which the fits allow for."
+        f"{two_digits(1e3 * unseen)} mm (standard deviation), which the fits allow for."
     ]
 
 

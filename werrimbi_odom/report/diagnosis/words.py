@@ -53,7 +53,10 @@ def _shorter(advised: AdvisedDiagnosis) -> list[str]:
     """Why the legs are shorter than was asked for, or that they are too few."""
     if advised.open_at is None:
         few = noise_assumed(advised.diagnosis)
-        return ["The legs are so few that their noise is assumed: they do not tell it."] * few
+        return [
+            "The legs are so few that their noise is assumed: they do not tell it, nor from which "
+            "size on an effect would have been seen."
+        ] * few
     if advised.too_few:
         return [
             f"Legs of {advised.open_at:g} m are so few here that they do not tell the noise; all "
