@@ -180,7 +180,8 @@ def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:
         SimpleNamespace(effect=name, hidden=True, shown_by="arcs", needs_more=False)
         for name in ("track_width", "tyre_squash")
     )
-    told: Any = SimpleNamespace(diagnosis=SimpleNamespace(found=("track_width",)), sights=sights)
+    diagnosis = SimpleNamespace(found=("track_width",), runs=SimpleNamespace(data=100))
+    told: Any = SimpleNamespace(diagnosis=diagnosis, sights=sights)
     (said,) = not_shown(told)
     assert "tyre_squash (arcs would show it)" in said
     assert "track_width" not in said

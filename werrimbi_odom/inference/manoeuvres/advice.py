@@ -133,8 +133,7 @@ def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosi
     show(0.97, "the next step")
     effects = given.collection.effects
     changes = changes_between(diagnosis, effects)
-    # By a noise that is assumed, a base that is found would be told as one that stays hidden.
-    sights = () if noise_assumed(diagnosis) else detection_limits(diagnosis, effects)
+    sights = detection_limits(diagnosis, effects)
     told = AdvisedDiagnosis(
         diagnosis, None, sights, leg, bool(given.holdout), changes, open_at, too_few
     )

@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, noise_assumed
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
 from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.report.number_format import (
@@ -107,8 +107,11 @@ def not_shown(advised: AdvisedDiagnosis) -> list[str]:
     hidden = [sight for sight in advised.sights if sight.hidden and sight.effect not in found]
     if not hidden:
         return []
+    # By a noise that is assumed, a base that would be found passes for one that stays hidden.
     by_drive = [
-        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
+        f"{sight.effect} ({sight.shown_by} would show it)"
+        for sight in hidden
+        if sight.shown_by and not noise_assumed(advised.diagnosis)
     ]
     lines = []
     if by_drive:

@@ -12,6 +12,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import Value, values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
+from werrimbi_odom.inference.manoeuvres.advice import noise_assumed
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
@@ -24,7 +25,8 @@ _MAPPED = 10
 def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> list[Part]:
     """Parameters, ranking, evidence map, and detection limits."""
     parts = [*_parameters(diagnosis), _ranking(diagnosis), *_map(diagnosis)]
-    return [*parts, *_sights(sights)] if diagnosis.verdict == "none" else parts
+    known = diagnosis.verdict == "none" and not noise_assumed(diagnosis)
+    return [*parts, *_sights(sights)] if known else parts
 
 
 def _parameters(diagnosis: Diagnosis) -> list[Part]:

@@ -148,7 +148,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
             "the drives do not agree on what they go with. So errs a reference that wanders (a "
             "camera, a map that is matched); what is smaller than that is not seen."
         )
-    if not all(sight.hidden for sight in advised.sights):
+    if not (noise_assumed(diagnosis) or all(sight.hidden for sight in advised.sights)):
         lines.append(
             "How well that is known: the table says from which size on each effect would have been "
             "seen."
