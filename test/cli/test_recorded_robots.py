@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from test.command_line import Werrimbi
-from test.recorded_robots import ROBOTS, with_recordings
+from test.recorded_robots import MISSING, ROBOTS, TURTLEBOT3_BAGS, with_recordings
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.model.covariance import path_noise
 
@@ -83,6 +83,16 @@ def test_every_recorded_drive(run: Path, tmp_path: Path, werrimbi: Werrimbi) -> 
     assert found["rows"]["messages"] == ticks["t_s"].size
     assert (found["end_error_m"] is not None) == np.isfinite(reference["x_m"]).any()
     assert found["distance_m"] > 0.0
+
+
+@pytest.mark.skipif(not TURTLEBOT3_BAGS.is_dir(), reason=MISSING)
+@pytest.mark.parametrize("at", ["16_53_28", "17_00_32"])
+def test_of_a_turtlebots_bag_is_told_what_it_is_good_for(at: str, werrimbi: Werrimbi) -> None:
+    """What docs/turtlebot3.md says of `info`, and of the order of its lidar's beams."""
+    said = werrimbi("info", TURTLEBOT3_BAGS / f"rosbag2_2025_11_06-{at}").words
+    assert "Reference /imu: headings alone" in said
+    assert "No reference: /odom, odom -> base_footprint is the robot's own odometry" in said
+    assert "its driver states them the other way round" in said
 
 
 @with_recordings

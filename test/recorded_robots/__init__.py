@@ -20,5 +20,7 @@ RECORDINGS = Path(
 )
 ROBOTS = RECORDINGS / "robots"
 MISSING = "no recordings of real robots: `make recordings` gets them (WERRIMBI_DATA: another place)"
+TURTLEBOT3_BAGS = RECORDINGS / "bags" / "turtlebot3"
+"""As they were published (docs/turtlebot3.md)."""
 
 with_recordings = pytest.mark.skipif(not ROBOTS.is_dir(), reason=MISSING)

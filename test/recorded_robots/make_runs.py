@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes run folders of real robots from public repositories: `make recordings`.
+"""Makes run folders of real robots from public repositories, and gets bags: `make recordings`.
 
     python -m test.recorded_robots.make_runs [--out recordings] [--clones FOLDER]
 
@@ -13,10 +13,11 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
-from test.recorded_robots.robots import ROBOTS, Repository, Robot
+from test.recorded_robots.robots import BAGS, ROBOTS, TURTLEBOT3, Repository, Robot
 from test.recorded_robots.runs import Read, write
 
 ROOT = Path(__file__).parents[2]
@@ -45,6 +46,15 @@ def make(robot: Robot, read: Read, folder: Path) -> int:
     return len(drives)
 
 
+def get_bags(read: Read, folder: Path) -> int:
+    """Write the bags of the TurtleBot3 as they are; how many files there are."""
+    for file in BAGS:
+        place = folder / file
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_bytes(read(f"lab03_pkg/recordings/{file}"))
+    return len(BAGS)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make every robot; 1 where a repository could not be had."""
     parser = argparse.ArgumentParser(description="run folders of real robots, from public data")
@@ -54,15 +64,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     clones = given.clones or given.out / "clones"
     clones.mkdir(parents=True, exist_ok=True)
     failed: dict[str, str] = {}
-    for robot in ROBOTS:
+    wanted: list[tuple[str, Repository, str, Callable[[Read], int]]] = [
+        (robot.folder, robot.source, "drives", partial(_made, robot, given.out)) for robot in ROBOTS
+    ]
+    bags = given.out / "bags" / "turtlebot3"
+    wanted.append(("bags/turtlebot3", TURTLEBOT3, "files", lambda read: get_bags(read, bags)))
+    for name, source, what, got in wanted:
         try:
-            count = make(robot, reader(robot.source, clones), given.out / "robots" / robot.folder)
+            count = got(reader(source, clones))
         except subprocess.CalledProcessError as error:
-            failed[robot.source.url] = robot.source.name.rpartition("/")[2]
+            failed[source.url] = source.name.rpartition("/")[2]
             words = " ".join(error.stderr.decode(errors="replace").split())
-            print(f"{robot.folder}: not made: {robot.source.url}: {words}", file=sys.stderr)
+            print(f"{name}: not made: {source.url}: {words}", file=sys.stderr)
         else:
-            print(f"{robot.folder}: {count} drives ({robot.source.licence})")
+            print(f"{name}: {count} {what} ({source.licence})")
     if failed:
         print(
             "Without a network, clone these where there is one, bring them here, and run it again:",
@@ -71,6 +86,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             file=sys.stderr,
         )
     return 1 if failed else 0
+
+
+def _made(robot: Robot, out: Path, read: Read) -> int:
+    return make(robot, read, out / "robots" / robot.folder)
 
 
 def _git(*arguments: str) -> bytes:

@@ -203,3 +203,15 @@ ROBOTS = (
         drives=lambda read: converters.upenn_icp(read, {20: 0.008702, 21: 0.025194}),
     ),
 )
+
+TURTLEBOT3 = Repository(
+    name="Jacopo-oranneZ/SESASR-LAB",
+    commit="54b12daff6f29715fa7ca275666e6ecb0b065006",
+    licence="none stated: use it, do not pass it on",
+)
+BAGS = tuple(
+    f"rosbag2_2025_11_06-{at}/{file}"
+    for at in ("16_53_28", "17_00_32", "17_25_46")
+    for file in ("metadata.yaml", f"rosbag2_2025_11_06-{at}_0.db3")
+)
+"""Files of its bags in lab03_pkg/recordings, which are judged as they are (docs/turtlebot3.md)."""

@@ -80,13 +80,18 @@ def test_a_repository_that_cannot_be_had_is_said(
 ) -> None:
     for robot in robots.ROBOTS:
         (tmp_path / "clones" / robot.source.name.split("/")[1]).mkdir(parents=True, exist_ok=True)
+    (tmp_path / "clones" / robots.TURTLEBOT3.name.split("/")[1]).mkdir()
     assert main(["--out", str(tmp_path)]) == 1
     said = capsys.readouterr().err.splitlines()
     assert [line.split(":")[0] for line in said if "not made" in line] == [
-        robot.folder for robot in robots.ROBOTS
+        *(robot.folder for robot in robots.ROBOTS),
+        "bags/turtlebot3",
     ]
     clones = [line.split()[-2:] for line in said if line.strip().startswith("git clone ")]
-    assert [url for url, _ in clones] == list(dict.fromkeys(r.source.url for r in robots.ROBOTS))
+    assert [url for url, _ in clones] == [
+        *dict.fromkeys(r.source.url for r in robots.ROBOTS),
+        robots.TURTLEBOT3.url,
+    ]
     assert all(Path(place).parent == tmp_path / "clones" for _, place in clones)
 
 

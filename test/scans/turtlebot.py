@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -70,11 +69,9 @@ def recorded(
     folder: Path,
     lidar: Lidar = LIDAR,
     entered: sim.AxlePose | None = None,
-    hidden: Sequence[sim.Peculiarity] = (),
 ) -> Recorded:
     """A drive of nobody's hands, in a room of its own; `entered`: what a transform says."""
-    start = sim.AxlePose(0.0, 0.0, 0.0)
-    path = sim.record(ROBOT, manoeuvre, seed=seed, start=start, hidden=hidden).true_path
+    path = sim.record(ROBOT, manoeuvre, seed=seed, start=sim.AxlePose(0.0, 0.0, 0.0)).true_path
     at = np.arange(0.01, path.t_s[-1], 0.05)
     step = 2.0 * math.pi / 4096.0
     left, right = (
