@@ -93,6 +93,7 @@ bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/node_cost.py
 	$(BIN)/python benchmark/diagnosis_hour.py
 	$(BIN)/python benchmark/diagnosis_four_hours.py
+	$(BIN)/python benchmark/draft.py
 	$(BIN)/python benchmark/page_hour.py
 
 evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; ALL=1: all of them), many seeds, soaks

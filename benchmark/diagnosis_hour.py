@@ -60,14 +60,14 @@ LIMIT = 15.0
 ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
 
 
-def drive(folder: Path, number: int, wish: str) -> Path:
+def drive(folder: Path, number: int, wish: str, seconds: float = DRIVE) -> Path:
     """One drive, written as a run folder."""
     name, _, strength = wish.partition("=")
     odd = []
     if name:
         odd.append(hide(name, float(strength) if strength else None, seed=1).peculiarity)
     speed = 0.4 if number % 2 else 0.8
-    manoeuvre = free(DRIVE, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
+    manoeuvre = free(seconds, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
     recording = record(ROBOT, manoeuvre, seed=100 + number, hidden=odd)
     return write_run(recording, folder / f"drive_{number:02}")
 

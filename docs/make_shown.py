@@ -53,6 +53,11 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
             "cost grows in proportion to the length.",
             "python benchmark/diagnosis_hour.py",
         ),
+        Shown(
+            "A draft, where no effect of the library explains the errors, beside the diagnosis "
+            "that it begins with.",
+            "python benchmark/draft.py",
+        ),
         by_tests(
             "test/hidden/test_live_node.py",
             "The live node with the added effect errs less on held-out drives, whose ticks are "
