@@ -30,6 +30,10 @@ _CLOSED = 0.125
 square; of a bend that is open it is more."""
 
 
+_NOTHING = 1e-5
+"""Uncertainty of a wheel's place that no reference sees [m]."""
+
+
 def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
     """That effects of the floor have no name here, where axes begin anew."""
     if not diagnosis.runs.own_axes:
@@ -165,6 +169,8 @@ def rare_counts(diagnosis: Diagnosis) -> list[str]:
     if not rare:
         return []
     unseen = float(runs.unseen.max(initial=0.0)) * max(robot.left_tick, robot.right_tick)
+    if unseen < _NOTHING:  # a reference with the stamps of the counts asks for none between them
+        return []
     return [
         f"Counts come every {two_digits(max(rare))} s: how the wheels changed their speed from one "
         "message to the next is not in them. Where a wheel was between two is uncertain by up to "
