@@ -155,7 +155,7 @@ def events_among(sides: Sequence[EventSide], kind: ReferenceKind) -> Events:
     count = sum(not side.held_out for side in sides)
     common = alike(legs[:count], looked[:count], jumped[:count], places=places)
     in_all = common or alike(legs, looked, jumped, places=places)
-    if in_all is not common and in_all is not None and in_all.what not in PLACES:
+    if common is None and in_all is not None and in_all.what not in PLACES:
         in_all = None  # a law of the robot: that is for the fitted drives to say
     events = [
         event

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +77,7 @@ class Counters:
         weight = share * share * (3.0 - 2.0 * share)
         return np.asarray(1.0 - 2.0 * rules.ROUNDING_SHARED * weight * (1.0 - weight))
 
-    @property
+    @cached_property
     def interval(self) -> float:
         """Usual time between two messages [s]."""
         return float(np.median(np.diff(self.time)))

@@ -125,17 +125,14 @@ def windows_of(
     way[np.diff(grid) > 2 * step] = 0.0  # all that was gone in a silence is no way of a window
     rolled = np.concatenate([[0.0], np.cumsum(way)])
     by_wheels = rolled if ways else (right - left) / robot.track
-    if ways:
-        place = reference.x[known][new] + 1j * reference.y[known][new]
-        told = np.diff(place)
-    else:
-        place = None
-        told = wrap_all(np.diff(reference.yaw[known][new])) + 0j
     often = usual[0] < rules.NO_DRIVING_LEAP_WITHIN
-    steps_seen = told
+    if ways:
+        places = reference.x[known][new] + 1j * reference.y[known][new]
+        told = np.diff(places)
+        steps_seen = np.diff(_without_outliers(places)) if often else told
+    else:
+        steps_seen = told = wrap_all(np.diff(reference.yaw[known][new])) + 0j
     if often:
-        if place is not None:
-            steps_seen = np.diff(_without_outliers(place))
         steps_seen = _without_leaps(steps_seen, np.abs(np.diff(np.interp(time, grid, by_wheels))))
     gone = np.concatenate([[0j], np.cumsum(steps_seen)])
     over = _over(np.interp(grid, time, gone.real), steps)
