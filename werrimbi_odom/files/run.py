@@ -221,9 +221,10 @@ class Run:
     """Number of reference poses removed by `held_poses.without_held_poses`."""
     no_driving: tuple[NoDriving, ...] | None = None
     """Stretches that are not driving; None if not yet determined."""
-    at_rest: tuple[float, float] | None = None
-    """Of a gyro: how its heading turns while the wheels stand, and the standard deviation [rad/s],
-    by all rests of the drive that this may be a part of; None if there are none."""
+    at_rest: tuple[float, float, float] | None = None
+    """Of a gyro: how its heading turns while the wheels stand, the standard deviation of that, and
+    what was taken off already [rad/s], by all rests of the drive that this may be a part of; None
+    if there are none."""
     clock_rate: float = 0.0
     """What the reference's clock gains on the wheels', where that is much, in a second."""
     taken_out: tuple[tuple[float, float], ...] = ()

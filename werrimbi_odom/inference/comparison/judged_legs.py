@@ -171,7 +171,7 @@ def _with_drifts(model: Model, runs: Concatenated) -> Model:
         drift += mine.get(YAW_DRIFT, 0.0)
         at_rest = runs.runs[index].record.at_rest
         if at_rest is not None:
-            rate, unsure = at_rest
+            rate, unsure, _ = at_rest
             drift = AtRest(-rate if view.mirrored else rate, unsure).limited(drift)
         own.append({**mine, YAW_DRIFT: drift})
     return Model(model.robot, tuple(own))

@@ -20,6 +20,7 @@ from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
 from werrimbi_odom.inference.fitting.drives_of_runs import counts_of, drive_of_runs, messages_of
+from werrimbi_odom.inference.legs.gyro_bias import drifts_known
 from werrimbi_odom.inference.legs.matched_run import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import DriveOfRun
@@ -168,6 +169,11 @@ class Concatenated:
         stated = [(run.sigma_xy, run.sigma_yaw) for run in self.runs]
         usual = np.array(stated, dtype=np.float64).max(axis=0)
         return np.where(np.isfinite(usual), growth / np.square(usual), 0.0)
+
+    @property
+    def drifts_known(self) -> Floats:
+        """Drift of each run's gyro by its rests, and its standard deviation, (2, runs) [rad/s]."""
+        return drifts_known([run.record.at_rest for run in self.runs])
 
     @property
     def run_of_step(self) -> NDArray[np.intp]:

@@ -83,12 +83,16 @@ class Innovations:
     None where legs are independent."""
     known: NDArray[np.bool_]
     """Coordinates that were measured and count, shape (m, 3)."""
+    prior: Floats | float = 0.0
+    """Whitened deviations of nuisances from what is known of them; (m, 3), in slots of coordinates
+    that were not measured."""
     _roots: list[Floats] = field(default_factory=list)
 
     def cost_of_legs(self) -> Floats:
         """Minus two log-likelihood of each leg, constants left out; (g, m), zero where unseen."""
         misfit, volume = square_and_volume(self.covariance, self.value)
-        return np.where(self.known.any(axis=-1), misfit + volume, 0.0)
+        seen = np.where(self.known.any(axis=-1), misfit + volume, 0.0)
+        return seen + np.sum(np.square(self.prior), axis=-1)
 
     def minus_two_log_likelihood(self) -> Floats:
         """Minus two log-likelihood of each set of variances without constants, shape (g,)."""
@@ -96,7 +100,7 @@ class Innovations:
 
     def whitened(self) -> Floats:
         """Whitened innovations (unit covariance), (m, 3); first set."""
-        return np.asarray((self._root() @ self.value[0][..., None])[..., 0])
+        return np.asarray((self._root() @ self.value[0][..., None])[..., 0] + self.prior)
 
     def marks(self, slopes: Floats) -> Floats:
         """Jacobian of the whitened innovations from that of the relative poses; see `_change`."""

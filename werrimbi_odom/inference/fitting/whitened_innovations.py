@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -28,6 +28,7 @@ from werrimbi_odom.inference.fitting.prediction import (
     predict_all,
     predicted_legs,
 )
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 
 
@@ -93,7 +94,7 @@ class Costs:
     def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
         """Innovations for each set of variances."""
         model = self.point.model
-        return innovations(
+        found = innovations(
             model.robot,
             self.runs,
             prediction,
@@ -102,11 +103,23 @@ class Costs:
             excluded=self.point.skip,
             start_yaws=model.start_yaws,
         )
+        if not self.runs.headings_alone:
+            return found
+        rate, unsure = self.runs.drifts_known
+        side = -1.0 if view_of(model.robot.effects).mirrored else 1.0
+        prior = np.zeros((self.runs.count, 3))
+        prior[_slots_of_drifts(self.runs)] = (side * rate - model.drifts) / unsure
+        return replace(found, prior=prior)
 
     def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
         """Minus two log-likelihood of each set."""
         found = self.innovations(sets, prediction or self.prediction())
         return found.minus_two_log_likelihood()
+
+
+def _slots_of_drifts(runs: Concatenated) -> tuple[NDArray[np.intp], int]:
+    """Where the prior of each gyro's drift stands: a position, which headings alone leave empty."""
+    return runs.legs[:-1], 0
 
 
 def jacobian_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParameter]) -> Floats:
@@ -163,6 +176,8 @@ def with_columns_per_run(
     columns: list[tuple[FreeParameter, int]] = []
     parts = []
     for column, number in zip(np.moveaxis(slopes, -1, 0), [*local, HEADING_AT_START], strict=True):
+        if number.name == YAW_DRIFT:
+            column[_slots_of_drifts(runs)] = -1.0 / runs.drifts_known[1]
         if not number.per_run:
             columns.append((number, -1))
             parts.append(column)

@@ -14,7 +14,7 @@ from werrimbi_odom.files.run import Reference
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.legs.count_interpolation import Counters
 from werrimbi_odom.inference.legs.motion_states import TimeSpan
-from werrimbi_odom.model.pose import wrap_all
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -25,6 +25,8 @@ class AtRest(NamedTuple):
     """[rad/s]"""
     unsure: float
     """Its standard deviation, as of a random walk: the larger one."""
+    taken_off: float = 0.0
+    """What was taken off the headings, of which nothing is in `rate` [rad/s]."""
 
     def limited(self, drift: float) -> float:
         """The nearest drift [rad/s] that a gyro of such a rest may have while the robot drives."""
@@ -48,7 +50,26 @@ def without_bias(
     if told is None or abs(told.rate) < rules.BIAS_SURE * told.unsure:
         return reference, told
     lapsed = reference.time - reference.time[0]
-    return replace(reference, yaw=reference.yaw - told.rate * lapsed), told._replace(rate=0.0)
+    seen = replace(reference, yaw=reference.yaw - told.rate * lapsed)
+    return seen, AtRest(0.0, told.unsure, told.rate)
+
+
+def drifts_known(rests: Sequence[tuple[float, float, float] | None]) -> Floats:
+    """What rests tell of each gyro's drift while the robot drives, and its standard deviation.
+
+    `rests`: `Run.at_rest` of each run. A drive without a rest has the bias of the others, as they
+    were recorded; without any, the deviation is infinite. Shape (2, runs) [rad/s].
+    """
+    seen = [AtRest(*rest) for rest in rests if rest is not None]
+    recorded = np.array([rest.rate + rest.taken_off for rest in seen])
+    other = (0.0, np.inf)
+    if seen:
+        other = (float(recorded.mean()), float(np.hypot(rules.BIAS_OF_A_DRIVE, recorded.std())))
+    each = [
+        other if rest is None else (rest[0], float(np.hypot(rest[1], rules.LAID_DRIFT)))
+        for rest in rests
+    ]
+    return np.array(each).T
 
 
 def _crept(span: TimeSpan, counters: Counters, robot: Robot) -> bool:

@@ -47,7 +47,7 @@ class AlignedRun:
     """Stated standard deviation of their heading [rad]."""
     happened: tuple[tuple[float, float], ...] = ()
     """See `Run.happened`; free of the delay, as `measured`."""
-    at_rest: tuple[float, float] | None = None
+    at_rest: tuple[float, float, float] | None = None
     """See `Run.at_rest`."""
 
 

@@ -124,13 +124,20 @@ to its earlier error. Chosen: it follows the robot by what it sees, and lags by 
 its map (5 cm) and some degrees until it has converged; a larger error ends in a jump back, which
 is found."""
 
+BIAS_OF_A_DRIVE = 3e-3
+"""Standard deviation of a gyro's bias in a drive without a rest from what rests of other drives
+tell [rad/s]: 0.2 degrees a second, as data sheets of gyros for robots state from one time of
+switching on to the next."""
+
 LAID_YAW, LAID_SCALE, LAID_DRIFT = 0.03, 0.03, 1e-3
 """Standard deviations of the alignment of a gyro's headings with a localiser's, drive by drive:
 angle [rad], the gyro's scale, and a constant drift [rad/s]. Chosen: a localiser errs by a degree
 for a quarter of a minute, and after a jump by five, so the mean of a minute is good to a degree
 or two, and its slope to that over half a minute. Gyros of robots are made to 1 to 3 %. The prior
 holds for each drive by itself, as what some drives of one robot have in common is not each
-drive's own."""
+drive's own. By headings alone the drift is how a gyro's bias while the robot drives differs from
+that at rest: 0.06 degrees a second, above the 0.01 or less by which a bias wanders in minutes, as
+the motors shake it and it warms up."""
 
 FAR_ABOVE_NOISE = 2.5
 """Errors of legs relative to those by the noise of the softest wheels, above which a model is wrong
