@@ -92,7 +92,7 @@ class Innovations:
         """Minus two log-likelihood of each leg, constants left out; (g, m), zero where unseen."""
         misfit, volume = square_and_volume(self.covariance, self.value)
         seen = np.where(self.known.any(axis=-1), misfit + volume, 0.0)
-        return seen + np.sum(np.square(self.prior), axis=-1)
+        return np.asarray(seen + np.sum(np.square(self.prior), axis=-1))
 
     def minus_two_log_likelihood(self) -> Floats:
         """Minus two log-likelihood of each set of variances without constants, shape (g,)."""
