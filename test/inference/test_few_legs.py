@@ -13,9 +13,13 @@ import pytest
 import werrimbi_odom as wo
 from test.inference.driven import common
 from test.inference.test_gyro_bias import by_gyro
+from test.model.drives import ROBOT
 from test.robot_file import BARE
 from werrimbi_odom.api.result import Result
+from werrimbi_odom.errors import TooFewLegsError
+from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.terminal import as_text
 
@@ -41,6 +45,14 @@ def told(base: float, folder: Path) -> Result[AdvisedDiagnosis]:
     return wo.diagnose(
         wo.read_robot(path), [slow(base, 1), slow(base, 2)], reference_kind="incremental"
     )
+
+
+def held(run: Run, since: float) -> Run:
+    """The drive with a hand that holds the robot from a time [s] on, while its wheels go on."""
+    assert run.reference is not None
+    time = run.reference.time
+    yaw = np.interp(np.minimum(time, time[0] + since), time, run.reference.yaw)
+    return replace(run, reference=replace(run.reference, yaw=yaw))
 
 
 @pytest.fixture(autouse=True)
@@ -70,3 +82,10 @@ def test_where_nothing_is_seen_it_says_that_the_noise_is_assumed(tmp_path: Path)
     # It printed "track_width seen from 1" beside the base of a quarter that is found above.
     assert "seen from" not in as_text(found.document().tables)
     assert "usual size" not in words
+
+
+def test_what_was_held_is_no_leg() -> None:
+    """Each pose in a held stretch ends a gap: with 20 a second three legs were enough."""
+    drives = [held(slow(1.0, seed), 8.0) for seed in (1, 2)]
+    with pytest.raises(TooFewLegsError, match=r"have \d legs? to fit, and 6 are the least"):
+        diagnose(drives, ROBOT, common(), EvaluationOptions(reference_kind="incremental"))

@@ -20,6 +20,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from werrimbi_odom.errors import TooFewLegsError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Run
@@ -186,9 +188,10 @@ def _searched(
 
 def _refuse_few(laid: Concatenated, set_up: SetUp, judge: Judge) -> None:
     """Raise where legs are so few that no cause but a set-up mistake could ever be significant."""
-    if laid.begin.size >= rules.LEGS_OF_A_PART or set_up.findings:
+    count = int(np.count_nonzero(~laid.gap))
+    if count >= rules.LEGS_OF_A_PART or set_up.findings:
         return
-    legs = f"{laid.begin.size} leg{'' if laid.begin.size == 1 else 's'}"
+    legs = f"{count} leg{'' if count == 1 else 's'}"
     raise TooFewLegsError(
         f"{', '.join(str(run.path) for run in judge.fitted_on)}: too little to diagnose: from pose "
         f"to pose the drives have {legs} to fit, and {rules.LEGS_OF_A_PART} are "
