@@ -109,12 +109,12 @@ def test_one_leg_on_which_the_reference_jumped_is_told_as_one() -> None:
     assert "1 leg on which the reference jumped was left out." in said
     # A sound reference that is 60 ms late was said to have jumped where the robot drove hard.
     late = replace(found, excluded=(one,), strange=("no wheel is so noisy",))
-    said = as_text(fit_in_words(late))
+    said = " ".join(as_text(fit_in_words(late)).split())
     assert "on which the reference jumped" not in said
     assert "1 leg was left out: either the reference jumped there, or what is missing" in said
     assert "(give --reference-kind local_map here too)." in said
     play = replace(found.robot, effects=(find("left_backlash").using(travel=0.002),))
-    said = as_text(fit_in_words(replace(late, robot=play)))
+    said = " ".join(as_text(fit_in_words(replace(late, robot=play))).split())
     # Where `diagnose` finds nothing more, and sent here, it is this.
     assert "here too), or the law of left_backlash does not quite fit." in said
 
