@@ -15,6 +15,7 @@ from test.cli.commands import RECORDING, written_by
 from test.command_line import Werrimbi
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.report.calibration.fit_words import fit_in_words
@@ -106,6 +107,16 @@ def test_one_leg_on_which_the_reference_jumped_is_told_as_one() -> None:
     one = np.arange(found.excluded[0].size) == 3
     said = [getattr(part, "text", "") for part in fit_in_words(replace(found, excluded=(one,)))]
     assert "1 leg on which the reference jumped was left out." in said
+    # A sound reference that is 60 ms late was said to have jumped where the robot drove hard.
+    late = replace(found, excluded=(one,), strange=("no wheel is so noisy",))
+    said = " ".join(as_text(fit_in_words(late)).split())
+    assert "on which the reference jumped" not in said
+    assert "1 leg was left out: either the reference jumped there, or what is missing" in said
+    assert "(give --reference-kind local_map here too)." in said
+    play = replace(found.robot, effects=(find("left_backlash").using(travel=0.002),))
+    said = " ".join(as_text(fit_in_words(replace(late, robot=play))).split())
+    # Where `diagnose` finds nothing more, and sent here, it is this.
+    assert "here too), or the law of left_backlash does not quite fit." in said
 
 
 def test_a_noise_that_is_not_determined_is_below_the_end_of_its_interval() -> None:

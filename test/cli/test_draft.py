@@ -20,7 +20,7 @@ from test.soft_tyres import soft_tyres
 from werrimbi_odom.api.drives import recordings_of
 from werrimbi_odom.cli import draft
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.effects import load_file
+from werrimbi_odom.effects import find, load_file
 from werrimbi_odom.effects.contract import check_effect
 
 
@@ -78,6 +78,20 @@ def test_where_nothing_is_missing_nothing_is_drafted(tmp_path: Path, complaint: 
     told = complaint("draft", *runs(folder), "--out", tmp_path / "package")
     assert "the verdict is" in told
     assert not (tmp_path / "package").exists()
+
+
+@pytest.mark.usefixtures("few_effects")
+def test_no_draft_is_promised_of_what_an_effect_of_the_library_explains(
+    tmp_path: Path, complaint: Complaint
+) -> None:
+    """`--force drafts the strongest dependence all the same` ended with: there is none."""
+    slips = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.02),))
+    folder = written(tmp_path, [slips] * 4)
+    words = ["draft", *runs(folder), "--out", tmp_path / "package"]
+    told = complaint(*words)
+    assert "lateral_slip, which the library holds" in told
+    assert "--force drafts" not in told
+    assert "with lateral_slip put in, the errors go with no" in complaint(*words, "--force")
 
 
 @pytest.mark.parametrize(

@@ -410,6 +410,24 @@ def test_silences_between_tests_in_one_file_are_no_driving(
     assert "In 72.0 s the robot drove for 12.0 s and moved unrecorded for 60.0 s." in printed
 
 
+def test_how_far_a_robot_drove_in_a_gap_is_told_by_sizes_that_were_given(
+    tmp_path: Path, werrimbi: Werrimbi
+) -> None:
+    """Without them it was told by placeholders: 0.3 m, and by the robot file 0.5 m."""
+    run = run_of(PLAIN, 1, 60)
+    assert run.reference is not None
+    time = run.reference.time
+    heard = run.reference.chosen(np.flatnonzero((time < 30.0) | (time > 33.0)))
+    write_run(tmp_path / "drive", replace(run, reference=heard))
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(ROBOT_FILE)
+    printed = werrimbi("info", tmp_path / "drive").words
+    assert "the reference is silent while the robot moved: left out." in printed
+    printed = werrimbi("info", tmp_path / "drive", "--robot", robot).words
+    assert "the reference is silent while the robot moved" not in printed
+    assert "the reference is silent while the robot" in printed
+
+
 def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> None:
     """A drive without a turn; by a size that nobody gave it would be any number of turns."""
     ros = Messages()

@@ -38,7 +38,11 @@ from werrimbi_odom.inference.comparison.verdict import Noise, Verdict, verdict_o
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.document import document_of
-from werrimbi_odom.report.comparison.phrases import covariance_words, reference_words
+from werrimbi_odom.report.comparison.phrases import (
+    covariance_words,
+    reference_words,
+    systematic_told,
+)
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.number_format import from_start
 from werrimbi_odom.report.phrases import left_out_words
@@ -200,6 +204,12 @@ def test_where_two_poses_are_all_no_shorter_leg_is_advised() -> None:
     assert "measure the robot more often" in words
     assert "Errors of legs of 2 m (rms)" in words
     assert "shorter --leg" not in words
+
+
+def test_a_thousandfold_way_is_told_without_an_exponent() -> None:
+    """Of a reference in millimetres the robot went "1e+03 times as far"."""
+    part = Systematic("line", "along", "travel", 998.6, 0.3, 0.0, 500.0, 0.003, common=True)
+    assert systematic_told(part) == "the robot goes 1000 times as far as the model says"
 
 
 def test_what_lasts_no_time_was_at_a_time() -> None:

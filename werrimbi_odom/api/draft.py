@@ -21,7 +21,7 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
-from werrimbi_odom.inference.drafting.draft import Draft, as_a_floor
+from werrimbi_odom.inference.drafting.draft import Draft, as_a_floor, worth_drafting
 from werrimbi_odom.inference.drafting.package import package_of
 from werrimbi_odom.inference.drafting.two_variables import best_draft
 from werrimbi_odom.progress import Show, silent
@@ -127,7 +127,7 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
 
 def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
     """Why nothing is drafted, and what to do instead."""
-    force = f"; {insist} the strongest dependence all the same"
+    force = f"; {insist} the strongest dependence that is left" if worth_drafting(diagnosis) else ""
     if diagnosis.verdict == "none":
         return f"the verdict is none: the model explains these drives to their noise{force}"
     if diagnosis.one_sided is not None:

@@ -31,12 +31,12 @@ def judged_stretches(held: Held, source: RobotFile | None, first: FirstRobot) ->
     """When the robot stood, drove, was held and carried, and what will be excluded."""
     assert held.run is not None
     (recorded,) = as_of_a_gyro([without_zeros(held.run)])
-    robot_file = source or first.file
+    robot_file, sizes = source or first.file, source is not None or first.tells_distances
     robot, limits = robot_file.robot, robot_file.limits
     try:
         if recorded.reference is not None:
             refuse_unjudgeable(recorded, robot)
-            if source is not None or first.tells_distances:
+            if sizes:
                 if words := words_about_ways(recorded, robot):
                     return replace(held, problem=f"{recorded.path}: {words}")
                 require_independent(recorded, robot, limits)
@@ -50,7 +50,8 @@ def judged_stretches(held: Held, source: RobotFile | None, first: FirstRobot) ->
         confirmed = without_names and not mistakes and knows_left(run, robot, how)
         wired, _ = with_findings(robot, mistakes, None)
         found = driven(counters, wired, run.no_driving or ())
-        record = record_of(run, robot, limits) if run.reference is not None else None
+        measured = run.reference is not None
+        record = record_of(run, robot, limits, sizes=sizes) if measured else None
     except InputError as error:
         return replace(held, problem=str(error))
     seen = None

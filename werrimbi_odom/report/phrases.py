@@ -14,7 +14,7 @@ from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.number_format import from_start, picked, with_std
+from werrimbi_odom.report.number_format import from_start, listed, picked, with_std
 
 _MOST = 5  # stretches that are reported one by one
 _TOLD = 3  # the same, for a suspect reference
@@ -66,6 +66,12 @@ def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
         return []
     legs, they = ("1 leg", "it is") if count == 1 else (f"{count} legs", "they are")
     return [f"On {legs} the reference jumped; {they} left out."]
+
+
+def held_law_words(robot: Robot, where: str = "") -> str:
+    """That the form of a law in the model may differ slightly from the true one; empty for none."""
+    laws = [each.name for each in robot.effects if not each.effect.is_mistake]
+    return f", or the law of {listed(laws, 'or')} does not quite fit{where}" if laws else ""
 
 
 def rarer_than_asked(length: float, asked: float) -> bool:

@@ -80,9 +80,10 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
     """
     cells = worth_drafting(diagnosis)
     if not cells:
+        beside = f"with {' and '.join(diagnosis.found)} put in, " if diagnosis.found else ""
         raise InputError(
-            "there is nothing to draft: the errors go with no measured variable beyond chance that "
-            "a law can be written of"
+            f"there is nothing to draft: {beside}the errors go with no measured variable beyond "
+            "chance that a law can be written of"
         )
     final = diagnosis.final
     drives = FitDrives(diagnosis.runs, final.point.excluded, final.point.options)

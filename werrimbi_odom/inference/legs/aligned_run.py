@@ -32,12 +32,14 @@ def record_of(
     limits: EncoderLimits | None = None,
     leg: float = 1.0,
     turn: float = rules.QUARTER_TURN,
+    sizes: bool = True,
 ) -> AlignedRun:
     """Put ticks and reference on one clock, and list the stretches to exclude.
 
     The clocks differ by the reference's delay of the robot file, if it has one. `run`, `robot`,
     `limits`: as for `match`. `leg`, `turn`: travel that makes a leg [m, rad]; gaps are measured in
-    legs. InputError as `match`.
+    legs. `sizes`: whether those of `robot` are known, and with them how far it went in a gap.
+    InputError as `match`.
     """
     run = with_no_driving(run, robot, limits)
     reference = run.reference
@@ -64,7 +66,7 @@ def record_of(
     usable = reference.chosen(rows)
     # Scans state their noise per match; a localiser states its absolute error.
     measured = usable if usable.own_axes else replace(usable, sigma_xy=None, sigma_yaw=None)
-    found = _silences(run, robot, counters, measured, taken_out, leg, turn)
+    found = _silences(run, robot, counters, measured, taken_out, leg, turn, sizes)
     gap = touched(measured.time, [*map(_surely_around, found), *taken_out])
     return AlignedRun(
         run.name,
@@ -102,6 +104,7 @@ def _silences(
     taken_out: Sequence[tuple[float, float]],
     leg: float,
     turn: float,
+    sizes: bool,
 ) -> tuple[LeftOut, ...]:
     """Exclusions of a run: no driving, counter jumps, and gaps of ticks or reference."""
     way, seen = counters.way(robot, leg, turn), measured.time
@@ -124,7 +127,7 @@ def _silences(
             run.path,
             *ends,
             "gap",
-            f"{who} silent while {_driven(robot, counters, *ends)}",
+            f"{who} silent while the robot {_driven(robot, counters, *ends) if sizes else 'moved'}",
             started,
         )
         for who, ends in gaps
@@ -179,7 +182,7 @@ def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
     words = [f"drove {path:.1f} m"] if path >= rules.WAY_WORTH_SAYING else []
     words += [f"turned {turned:.0f}°"] if turned >= rules.TURN_WORTH_SAYING or not words else []
-    return f"the robot {' and '.join(words)}"
+    return " and ".join(words)
 
 
 def usable_rows(

@@ -237,8 +237,8 @@ def _more_than_errors(added: Added) -> list[str]:
         return [f"{what}, for it is too large."]
     few, legs = next(iter(more.values())).of_few_legs
     return [
-        f"{what}: by chance (half of what it promises, squared, is for {few} of {legs} legs), or "
-        "because the noise is stated too large."
+        f"{what}: by chance ({few} of the {legs} legs hold half of the squared error that it "
+        "promises), or because the noise is stated too large."
     ]
 
 

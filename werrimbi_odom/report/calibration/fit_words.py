@@ -12,6 +12,7 @@ from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
 from werrimbi_odom.report.number_format import capital, counted, listed, picked, scaled_with_std
+from werrimbi_odom.report.phrases import held_law_words
 
 _MOST = 3  # dependences that are reported
 _UNITS = {
@@ -24,11 +25,6 @@ _UNITS = {
     "reference_walk_yaw": "rad/s^0.5",
     "reference_reversion": "1/s",
 }
-
-_ABSOLUTE = (
-    " If it names nothing, it may be the reference that wanders, as a camera does: give "
-    "--reference-kind local_map here too."
-)
 
 
 def fit_in_words(result: Calibration) -> list[Part]:
@@ -51,15 +47,27 @@ def fit_in_words(result: Calibration) -> list[Part]:
         )
     if left_out := _left_out(result):
         legs, were = counted(left_out, "leg"), "was" if left_out == 1 else "were"
-        said.append(f"{legs} on which the reference jumped {were} left out.")
+        said.append(
+            f"{legs} on which the reference jumped {were} left out."
+            if result.trusted
+            else f"{legs} {were} left out: either the reference jumped there, or what is missing "
+            "shows most there."
+        )
     if not result.trusted:
         said.append(
             "These values are the best of a model that does not fit, so they have no error bars. "
             "`werrimbi diagnose` says which physical effect explains the drives, or what is set up "
             "wrongly: how the reference is mounted, its axes, its clock."
-            + (_ABSOLUTE if result.fit.point.options.reference_kind == "absolute" else "")
+            + (_absolute(result) if result.fit.point.options.reference_kind == "absolute" else "")
         )
     return [*_verdict(result), _values(result), *paragraphs(said, apart=True)]
+
+
+def _absolute(result: Calibration) -> str:
+    return (
+        " If it names nothing, it may be the reference that wanders, as a camera does (give "
+        f"--reference-kind local_map here too){held_law_words(result.robot)}."
+    )
 
 
 def _twin_words(result: Calibration) -> str:

@@ -62,7 +62,7 @@ def _share(verb: str, otherwise: str, value: float, std: float) -> str:
     if value < -1.0:
         return f"the robot {verb} {otherwise}"
     if value > 1.0:
-        return f"the robot {verb} {1.0 + value:.3g} times as far as the model says"
+        return f"the robot {verb} {two_digits(1.0 + value)} times as far as the model says"
     word = "more" if value > 0.0 else "less"
     return (
         f"the robot {verb} {_rounded(100.0 * abs(value), 100.0 * std)} % {word} than the model says"

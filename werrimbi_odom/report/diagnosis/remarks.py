@@ -25,6 +25,7 @@ from werrimbi_odom.report.number_format import (
     quantity,
     two_digits,
 )
+from werrimbi_odom.report.phrases import held_law_words
 
 
 def remainder(advised: AdvisedDiagnosis) -> list[str]:
@@ -51,7 +52,7 @@ def law(advised: AdvisedDiagnosis) -> list[str]:
             "hold as much driving that would show it, and do not. So no law of the robot is seen "
             "in it: "
             "something happened on that drive, its reference erred, or it was recorded otherwise"
-            f"{_or_a_held_law(advised)}."
+            f"{held_law_words(advised.diagnosis.robot, ' there')}."
         ]
     if misfit.effect is None:
         return [
@@ -116,13 +117,6 @@ def scatter(advised: AdvisedDiagnosis) -> list[str]:
         "the mean of something that is still missing: a law that the library lacks, a reference "
         f"that wanders, or a robot that was changed.{most}"
     ]
-
-
-def _or_a_held_law(advised: AdvisedDiagnosis) -> str:
-    """Laws in the model; their form may differ slightly from the true one."""
-    applied = advised.diagnosis.robot.effects
-    laws = [each.name for each in applied if not each.effect.is_mistake]
-    return f", or the law of {listed(laws, 'or')} does not quite fit there" if laws else ""
 
 
 def without_events(advised: AdvisedDiagnosis) -> list[str]:

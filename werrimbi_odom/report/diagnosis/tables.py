@@ -77,7 +77,7 @@ def _fall(sides: Sides | None) -> tuple[str, str]:
 
 def _map(diagnosis: Diagnosis) -> Sequence[Part]:
     """Explained chi-squared of each error channel by each variable."""
-    title = "What the errors go with, before anything is put in"
+    title = "What the errors go with, base and radii alone put in"
     cells = list(diagnosis.depends_on)
     sure = list(dict.fromkeys(short_words(cell) for cell in cells if cell.p_value < rules.SURE))
     if not sure:
