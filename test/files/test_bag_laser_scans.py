@@ -186,6 +186,14 @@ def test_a_lidar_that_is_tilted_is_refused(tmp_path: Path, ros: Any, robot: Any)
         read_run(bag, robot())
 
 
+def test_of_a_lidar_that_is_a_little_tilted_it_is_said_what_it_may_see(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    bag = ros.write(tmp_path / "run", entries(ros, sweeps(), turn=(0.0, 0.05)))
+    told = " ".join(read_run(bag, robot()).notes)
+    assert "tilted by 2.9°: where it looks down, the floor may look like a wall that goes" in told
+
+
 @pytest.mark.parametrize("ranges", [np.inf, np.nan, 0.0, 0.1])
 def test_without_an_echo_it_says_so(ranges: float, tmp_path: Path, ros: Any, robot: Any) -> None:
     """All infinite, or all nearer than the lidar measures: a wall at 10 cm, a box over it."""

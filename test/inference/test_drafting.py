@@ -78,12 +78,16 @@ ACCELERATION = Seen(
     smooth="steady(0.5 * (drive.left_acceleration + drive.right_acceleration))",
 )
 
+SENSES = np.array([-1.0, 1.0, 1.0])
+DIRECTION = seen_as(Variable("direction", "", SENSES, SENSES, looks_at=("speed", "direction")))
+assert DIRECTION is not None
+
 
 @pytest.mark.parametrize(
     ("seen", "amount"),
     [
         pytest.param(seen, amount, marks=[pytest.mark.evidence] * ((row + column) % 4 > 0))
-        for row, seen in enumerate((SPEED, HEADING, TIME, PAYLOAD, ACCELERATION))
+        for row, seen in enumerate((SPEED, HEADING, TIME, PAYLOAD, ACCELERATION, DIRECTION))
         for column, amount in enumerate(AMOUNTS)
     ],
     ids=lambda item: item.name if isinstance(item, Seen) else f"{item.channel}-{item.per}",

@@ -196,13 +196,24 @@ def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: D
     assert _happened(silent, robot).events == ()
 
 
-@pytest.mark.parametrize(("scans", "lost"), [(True, 18.0), (True, 40.0), (False, 18.0)])
+@pytest.mark.parametrize(
+    ("scans", "at", "lost"),
+    [
+        (True, 17.0, 18.0),
+        (True, 17.0, 40.0),
+        (False, 17.0, 18.0),
+        pytest.param(True, 11.0, 40.0, id="beside a part that is put aside"),
+    ],
+)
 def test_where_scans_were_lost_a_push_may_be_theirs(
-    sound: Drives, scans: bool, lost: float
+    sound: Drives, scans: bool, at: float, lost: float
 ) -> None:
-    """Before a lidar is lost its matches slide: it was told as a slip of the robot."""
+    """Before a lidar is lost its matches slide: it was told as a slip of the robot.
+
+    What is put aside for judging was said to be such a stretch.
+    """
     runs, robot = sound
-    pushed = stepped(runs[0], 17.0, 8.0 * NOISE_XY)
+    pushed = stepped(runs[0], at, 8.0 * NOISE_XY)
     assert pushed.reference is not None
     kept = np.abs(pushed.reference.time - lost - 1.0) > 1.0
     seen = replace(pushed.reference.chosen(kept), own_axes=scans)

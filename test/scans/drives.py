@@ -39,6 +39,12 @@ def hops(duration: float) -> TruePath:
     return _path(t, 0.4 * np.clip(3.0 * np.sin(np.pi * t), -1.0, 1.0), 0.0 * t)
 
 
+def at_rest(duration: float) -> TruePath:
+    """Nothing moves."""
+    t = np.arange(0.0, duration, PERIOD)
+    return _path(t, 0.0 * t, 0.0 * t)
+
+
 def brisk(duration: float, seed: int) -> TruePath:
     """By joystick, at up to 0.8 m/s and 2 rad/s, with starts and stops of up to 6 rad/s^2."""
     knots = np.array(free(duration, seed=seed, speed=0.8, yaw_rate=2.0, acceleration=1.5).knots)

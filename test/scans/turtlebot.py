@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -69,9 +70,12 @@ def recorded(
     folder: Path,
     lidar: Lidar = LIDAR,
     entered: sim.AxlePose | None = None,
+    robot: sim.TrueRobot = ROBOT,
+    hidden: Sequence[sim.Peculiarity] = (),
 ) -> Recorded:
     """A drive of nobody's hands, in a room of its own; `entered`: what a transform says."""
-    path = sim.record(ROBOT, manoeuvre, seed=seed, start=sim.AxlePose(0.0, 0.0, 0.0)).true_path
+    start = sim.AxlePose(0.0, 0.0, 0.0)
+    path = sim.record(robot, manoeuvre, seed=seed, start=start, hidden=hidden).true_path
     at = np.arange(0.01, path.t_s[-1], 0.05)
     step = 2.0 * math.pi / 4096.0
     left, right = (
@@ -100,7 +104,7 @@ def recorded(
     ):
         table = np.column_stack(columns)
         np.savetxt(run / f"{name}.csv", table, "%.7g", ",", header=head, comments="")
-    return Recorded(sim.write_field_bag(drive, ROBOT, folder, mounting=entered is not None), run)
+    return Recorded(sim.write_field_bag(drive, robot, folder, mounting=entered is not None), run)
 
 
 def short(seed: int) -> sim.Manoeuvre:

@@ -21,6 +21,8 @@ class Mount(NamedTuple):
     """Frame of the base."""
     sensor: str = ""
     """Frame of the sensor."""
+    tilt: float = 0.0
+    """Angle by which it is not level [rad]; the pose is that of its projection."""
 
     def with_base_at(self, x: float, y: float, yaw: float) -> Mount:
         """The same pose, told from where its base sits at x, y [m] and is turned by yaw [rad].

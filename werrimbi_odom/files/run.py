@@ -230,6 +230,8 @@ class Run:
     taken_out: tuple[tuple[float, float], ...] = ()
     """Stretches of the reference that are excluded on purpose, start and end in its stamps [s]:
     legs end there, and start again."""
+    put_aside: tuple[tuple[float, float], ...] = ()
+    """Those of them that another part of the run has, for judging."""
     of_bag: bool = False
     """Whether it was read from the messages of a bag, and not from columns."""
     happened: tuple[tuple[float, float], ...] = ()

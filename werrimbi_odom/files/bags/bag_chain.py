@@ -132,14 +132,15 @@ class ChainCollector:
         steps = ((each.where[-1:], each.turn[-1:]) for each in moved)
         (where,), turn, (yaw,) = _composed(steps, self.chain.backwards)
         up = float(turn.apply([0.0, 0.0, 1.0])[0, 2])
+        tilt = float(np.arccos(min(abs(up), 1.0)))
         if abs(up) < LEVEL:
             raise InputError(
                 f"{self._place}: by its transforms ({self.chain.in_words()}) the lidar is tilted "
-                f"by {np.degrees(np.arccos(abs(up))):.0f}°: its scans are no plan of the floor; "
+                f"by {np.degrees(tilt):.0f}°: its scans are no plan of the floor; "
                 "give one that lies level, or mend the transforms"
             )
         ends = self.chain.parent, self.chain.child
-        return Mount(float(where[0]), float(where[1]), float(yaw), up < 0.0, *ends)
+        return Mount(float(where[0]), float(where[1]), float(yaw), up < 0.0, *ends, tilt)
 
     def _ahead_of_wheels(self, moved: list[_Moved]) -> float:
         """By how much what is measured is stamped ahead of the wheels' transforms [s].

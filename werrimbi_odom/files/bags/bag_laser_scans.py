@@ -37,6 +37,9 @@ around one and a half times in a scan, and 10 degrees are more."""
 _FAR = 200.0
 """Usual range above which ranges are in millimetres [m]: 0.2 m, or farther than lidars reach."""
 
+_LEVEL = np.radians(1.0)
+"""Tilt above which the floor may be seen [rad]: from 17 cm above it, 10 m ahead."""
+
 _ORDERS: dict[Order, str] = {
     "first to last": "from the first to the last",
     "last to first": "from the last to the first",
@@ -135,6 +138,11 @@ class LidarCollector:
                 "its own path is compared (reference_lever_arm, reference_yaw_offset)"
             )
         down = ", upside down" if mount.inverted else ""
+        if mount.tilt > _LEVEL:
+            down += (
+                f", tilted by {np.degrees(mount.tilt):.1f}°: where it looks down, the floor may "
+                "look like a wall that goes with the robot"
+            )
         topics = dict.fromkeys(edge.topic for edge in self._mounting.chain.steps)
         sits = _beside(mount.x, "ahead of", "behind"), _beside(mount.y, "left of", "right of")
         return (

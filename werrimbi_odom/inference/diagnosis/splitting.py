@@ -101,7 +101,8 @@ def _without(run: Run, reference: Reference, kept: np.ndarray) -> Run:
         for first, last in itertools.pairwise(ends)
         if not kept[first]
     )
-    return replace(run, reference=reference.chosen(kept), taken_out=(*run.taken_out, *gone))
+    taken_out = (*run.taken_out, *gone)
+    return replace(run, reference=reference.chosen(kept), taken_out=taken_out, put_aside=gone)
 
 
 def _between(run: Run, begin: float, end: float) -> Run:

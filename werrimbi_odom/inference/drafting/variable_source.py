@@ -21,12 +21,15 @@ from werrimbi_odom.model.pose import Floats
 STEADY = {
     "speed": ("abs(drive.speed.end)",) * 2,
     "wheel_speed": ("abs(drive.left_speed.end)", "abs(drive.right_speed.end)"),
-    "direction": ("drive.direction",) * 2,
+    "direction": ("1.0 - 2.0 * (drive.speed.end < 0.0)",) * 2,
     "yaw_rate": ("drive.yaw_rate.end",) * 2,
     "yaw_rate_size": ("abs(drive.yaw_rate.end)",) * 2,
     "acceleration": ("drive.speed.change / drive.duration",) * 2,
 }
-"""Variables that are constant during a step, as Python code for the left and right wheel."""
+"""Variables that are constant during a step, as Python code for the left and right wheel.
+
+`Drive.direction` turns only after some counts, within a step too: no law of it keeps the contract.
+"""
 
 _SMOOTH = "steady(0.5 * (drive.left_acceleration + drive.right_acceleration))"
 

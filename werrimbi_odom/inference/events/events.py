@@ -277,9 +277,8 @@ def _event(steps: Steps, group: list[int], side: EventSide, fitted: Floats) -> E
 
 
 def _is_beside_lost(record: AlignedRun, seen: float) -> bool:
-    rows = np.flatnonzero(record.gap)
-    edges = record.measured.time[np.concatenate([rows, rows + 1])]
-    return record.measured.own_axes and bool((np.abs(edges - seen) < rules.BESIDE_LOST).any())
+    apart = np.abs(np.array(record.lost) - seen)
+    return record.measured.own_axes and bool((apart < rules.BESIDE_LOST).any())
 
 
 def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:

@@ -50,9 +50,10 @@ def record_of(
         )
     delay = clock_offset(robot)
     reference = reference.earlier(delay)
-    happened, taken_out = (
+    own = tuple(part for part in run.taken_out if part not in run.put_aside)
+    happened, taken_out, lost = (
         tuple((begin - delay, end - delay) for begin, end in parts)
-        for parts in (run.happened, run.taken_out)
+        for parts in (run.happened, run.taken_out, own)
     )
     counters = counters_of(run, robot, limits)
     first, last = float(counters.time[0]), float(counters.time[-1])
@@ -80,6 +81,7 @@ def record_of(
         typical_sigma(usable.sigma_yaw),
         happened,
         run.at_rest,
+        lost,
     )
 
 

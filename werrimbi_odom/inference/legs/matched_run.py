@@ -49,6 +49,9 @@ class AlignedRun:
     """See `Run.happened`; free of the delay, as `measured`."""
     at_rest: tuple[float, float, float] | None = None
     """See `Run.at_rest`."""
+    lost: tuple[tuple[float, float], ...] = ()
+    """Stretches in which the reference was lost, free of the delay: `Run.taken_out` but for what
+    is put aside."""
 
 
 @dataclass(frozen=True, slots=True)
