@@ -15,15 +15,18 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.effects.effect_docstring import page_of
 from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.result import Diagnosis
 from werrimbi_odom.inference.diagnosis.step_jacobians import AMOUNTS, Amount
 from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells
 from werrimbi_odom.inference.drafting.candidate_law import (
     Claim,
     LawForm,
+    Option,
     keeps_laws,
     loaded,
     planned,
+    with_values,
     worth_fitting,
 )
 from werrimbi_odom.inference.drafting.draft import worth_drafting
@@ -33,6 +36,7 @@ from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.drafting.spot import spot_form
 from werrimbi_odom.inference.drafting.variable_source import seen_as
 from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 
 SPEED = Seen(
@@ -252,3 +256,21 @@ def test_a_draft_beside_an_earlier_one_has_a_name_of_its_own() -> None:
     assert named() == "left_by_speed"
     assert named("left_by_speed") == "left_by_speed_2"
     assert named("left_by_speed", "left_by_speed_2") == "left_by_speed_3"
+
+
+def test_a_spot_too_slippery_for_the_contract_keeps_its_fitted_place() -> None:
+    """Else whoever adds it fits each trial place anew: ten times as long as the draft."""
+    form = spot_form([(1.0, 0.5), (1.2, 0.5)], (0.2, 0.4), -0.1, 0.175)
+    nothing = SimpleNamespace(point=SimpleNamespace(model=_robot_with()))
+    diagnosis = cast(Diagnosis, SimpleNamespace(final=nothing, runs=SimpleNamespace(runs=[None])))
+    seen = Seen("position", "m", lambda side: "")
+    plan = planned(diagnosis, Claim(Amount("along", "travel"), "position", 1e-9), seen, form)
+    applied = plan.effect.using(share=-0.25, x=0.9, y=0.6, radius=0.45)
+    fit = SimpleNamespace(point=SimpleNamespace(model=_robot_with(applied)))
+    found = with_values(diagnosis, Option(plan, cast(Fitted, fit))).effect.parameters
+    assert [found[name].tries for name in ("x", "y", "radius")] == [(0.9,), (0.6,), (0.45,)]
+    assert found["share"].typical == -0.1
+
+
+def _robot_with(*effects: AppliedEffect) -> SimpleNamespace:
+    return SimpleNamespace(robot=SimpleNamespace(effects=effects))

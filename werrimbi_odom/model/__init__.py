@@ -6,5 +6,6 @@ Reading order: `motion` (travel to displacement), `covariance` (one piece in clo
 `uncertainty` and `exact_moments` (along a path), `encoder_online` (counters to travel),
 `end_of_piece` (where a piece ends), `odometer` (all of it, message by message). `encoder_recorded`,
 `pieces_recorded` and `trajectory` do the same for a whole run at once. `robot` holds the parameters
-of a robot. `effect` defines an effect, `drive` the quantities that it may read.
+of a robot. `effect` defines an effect, `drive` the quantities that it may read; `effects_over_run`
+and `measured_poses` give effects the poses that result.
 """

@@ -14,10 +14,12 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, Some
 from werrimbi_odom.model.effect import after_stage
+from werrimbi_odom.model.measured_poses import MeasuredPoses
 from werrimbi_odom.model.motion import BodyMotion, Number, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
@@ -26,7 +28,7 @@ PLACE = frozenset({"x", "y"})
 POSE = PLACE | {"heading"}
 
 _PASSES = 30
-_SAME = 1e-10  # m, rad
+_SAME = 1e-11  # m, rad
 _BLOCK = 256
 _SETTLED = 1e-13  # m, rad
 
@@ -166,7 +168,10 @@ def _settled(
     )
 
 
-def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
+Rows = slice | NDArray[np.intp]
+
+
+def _rows_of(drive: Drive[Floats], steps: Rows) -> Drive[Floats]:
     """Slice of some steps of a drive."""
 
     def some(value: Any) -> Any:
@@ -182,44 +187,69 @@ def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
     return DriveOfRun.by({name: partial(of, name) for name in QUANTITIES})
 
 
-Headings = Callable[[AfterEffects], Floats]
-"""Heading at the start of each step [rad], from the motion of the steps."""
-
-Places = Callable[[AfterEffects, Floats], tuple[Floats, Floats]]
-"""Position at the start of each step [m], from the motion of the steps and the headings."""
-
-
 def driven_from_measured(
-    robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], headings: Headings, places: Places
+    robot: Robot,
+    raw: WheelTravel[Floats],
+    drive: Drive[Floats],
+    measured: Callable[[], MeasuredPoses],
 ) -> AfterEffects:
-    """As `driven`, where the pose is measured at times, so that errors do not accumulate.
+    """As `driven`, where poses are `measured` at times, so that errors do not accumulate.
 
-    `headings`, `places`: give the poses for the next pass from the motion of the last one and the
-    measurements; called only where an effect reads them.
+    A pass evaluates only the steps whose poses the last one moved. After the first two these are
+    few: those up to the next measured pose from where the pose changes what an effect does.
     """
     seen = watched(drive)
     found = AfterEffects(*after_effects(robot, raw, seen))
     if not seen.asked & POSE:
         return found
-    plain, placed = wheels_to_body(raw, robot.track), False
-    for _ in range(_PASSES):
-        if seen.asked & PLACE and not placed:
-            found, placed = AfterEffects(raw, plain), True
-        heading = headings(found)
-        here = drive.with_heading(heading, drive.heading.change)
-        if placed:
-            here = here.with_place(*places(found, heading), displacement(plain, heading))
-        seen = watched(here)
-        before, found = found, AfterEffects(*after_effects(robot, raw, seen))
-        if _same(before, found, placed) and (placed or not seen.asked & PLACE):
-            break
+    plain, whole = wheels_to_body(raw, robot.track), measured()
+    if not seen.asked & PLACE:
+        found, seen = _settled_at(robot, raw, drive, found, plain, whole, placed=False)
+    if seen.asked & PLACE:
+        start = AfterEffects(raw, plain)
+        found, _ = _settled_at(robot, raw, drive, start, plain, whole, placed=True)
     return found
 
 
-def _same(before: AfterEffects, after: AfterEffects, placed: bool) -> bool:
-    """Whether another pass would give the same poses."""
-    olds, parts = (each.motion if placed else (each.motion.turn,) for each in (before, after))
-    return all(
-        not np.max(np.abs(new - old), initial=0.0) > _SAME
-        for new, old in zip(parts, olds, strict=True)
-    )
+def _settled_at(
+    robot: Robot,
+    raw: WheelTravel[Floats],
+    drive: Drive[Floats],
+    start: AfterEffects,
+    plain: BodyMotion[Floats],
+    measured: MeasuredPoses,
+    *,
+    placed: bool,
+) -> tuple[AfterEffects, WatchedDrive]:
+    """Fixed-point iteration from the motion `start`; also what the effects looked at.
+
+    `plain`: motion without effects. `placed`: whether positions are given as well as headings.
+    """
+    travel = WheelTravel(*map(np.array, start.travel))
+    motion = BodyMotion(*map(np.array, start.motion))
+    every = np.arange(raw.left.size)
+    steps: Rows = slice(None)  # whose poses may move
+    poses = np.full((3 if placed else 1, every.size), np.inf)  # at which they were evaluated
+    for _ in range(_PASSES):
+        own = BodyMotion(*(part[steps] for part in motion))
+        heading = measured.headings(own.turn)
+        now = np.stack([heading, *(measured.places(own, heading) if placed else ())])
+        moved = (np.abs(now - poses) > _SAME).any(axis=0)
+        if not moved.any():
+            break
+        some: Rows = slice(None) if moved.all() else np.flatnonzero(moved)
+        rows = steps if moved.all() else every[steps][some]
+        poses[:, some] = now[:, some]
+        here = _rows_of(drive, rows)
+        here = here.with_heading(heading[some], here.heading.change)
+        if placed:
+            way = displacement(BodyMotion(*(part[rows] for part in plain)), heading[some])
+            here = here.with_place(now[1, some], now[2, some], way)
+        seen = watched(here)
+        after = after_effects(robot, WheelTravel(raw.left[rows], raw.right[rows]), seen)
+        for whole, part in zip((*travel, *motion), (*after[0], *after[1]), strict=True):
+            whole[rows] = part
+        if not moved.all():
+            reached = measured.reached_from(moved, placed)
+            steps, poses, measured = every[steps][reached], poses[:, reached], measured.of(reached)
+    return AfterEffects(travel, motion), seen

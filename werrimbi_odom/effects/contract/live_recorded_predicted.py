@@ -9,19 +9,16 @@ effect reads are recorded while it runs (`werrimbi_odom.model.effects_over_run`)
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from werrimbi_odom.effects.contract.demands import demand, in_words, settings
 from werrimbi_odom.effects.contract.sample_drive import RADIUS, TRACK, Rehearsal
 from werrimbi_odom.model.driven_motion import Driving, features
 from werrimbi_odom.model.effect import AppliedEffect, Effect
-from werrimbi_odom.model.effects_over_run import (
-    AfterEffects,
-    Headings,
-    Places,
-    driven,
-    driven_from_measured,
-)
+from werrimbi_odom.model.effects_over_run import driven, driven_from_measured
+from werrimbi_odom.model.measured_poses import MeasuredPoses
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
@@ -44,7 +41,7 @@ def drives_alike(effect: Effect, rehearsal: Rehearsal) -> None:
             robot, rehearsal.duration, rehearsal.travel, (0.0, 0.0), rehearsal.measured
         )
         recorded = driven(robot, rehearsal.travel, drive, _START)
-        predicted = driven_from_measured(robot, rehearsal.travel, drive, *_measured(poses))
+        predicted = driven_from_measured(robot, rehearsal.travel, drive, partial(_measured, poses))
         for way, found in (("recorded", recorded), ("predicted", predicted)):
             apart = float(np.max(np.abs(np.array(found.motion) - live)))
             demand(
@@ -56,19 +53,11 @@ def drives_alike(effect: Effect, rehearsal: Rehearsal) -> None:
             )
 
 
-def _measured(poses: Floats) -> tuple[Headings, Places]:
-    """Headings and places for the passes, if the `poses` (3, n) of some steps were measured."""
+def _measured(poses: Floats) -> MeasuredPoses:
+    """The `poses` (3, n) of some steps, as if they were measured."""
     first = np.arange(poses.shape[1]) // _EVERY * _EVERY
-
-    def headings(found: AfterEffects) -> Floats:
-        gone = np.cumsum(found.motion.turn) - found.motion.turn
-        return np.asarray(poses[2, first] + gone - gone[first])
-
-    def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
-        x, y = (np.cumsum(part) - part for part in displacement(found.motion, heading))
-        return poses[0, first] + x - x[first], poses[1, first] + y - y[first]
-
-    return headings, places
+    x, y, yaw = poses[:, first]
+    return MeasuredPoses(yaw, first, x + 1j * y, first)
 
 
 def _live(robot: Robot, rehearsal: Rehearsal) -> tuple[Floats, Floats]:

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.adding.start_values import FitDrives, scored, start
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
-from werrimbi_odom.inference.drafting.law_forms import Form, Seen
+from werrimbi_odom.inference.drafting.law_forms import Declared, Form, Seen
 from werrimbi_odom.inference.drafting.source import name_of, source_of
 from werrimbi_odom.inference.drafting.variable_source import rounded
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
@@ -117,30 +117,42 @@ def _written(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> str:
 
 
 def with_values(diagnosis: Diagnosis, option: Option) -> LawForm:
-    """The draft with the fitted values as typical values, so that fits begin there."""
+    """The draft with the fitted values as typical values, so that fits begin there.
+
+    Where its fitted size is so large that the contract of effects takes it for a mistake (a spot
+    that turns the robot by a quarter of a wheel's travel), with the fitted shape alone: a score
+    finds the size, but a fit of each shape that is tried takes as long as the draft's.
+    """
     plan, robot = option.plan, option.fit.point.model.robot
     applied = next(item for item in robot.effects if item.name == plan.effect.name)
-    parameters = []
-    for item in plan.form.parameters:
-        value = applied.values[item.name]
-        low, high = item.bounds
-        if item.tries and item.name in ("x", "y", "radius"):
-            parameters.append(replace(item, tries=(round(value, 3),)))
-        elif item.tries:
-            at = rounded(value, item.digits)
-            typical = at if abs(at) > 1e-3 * (high - low) else item.typical
-            parameters.append(replace(item, null=at, typical=typical, tries=(at,)))
-        elif item.per_run or abs(value) < 1e-3 * abs(item.typical):
-            parameters.append(item)
-        else:
-            typical = abs(rounded(value)) if low == 0.0 else rounded(value)
-            wider = max(high, rules.WIDER_THAN_FITTED * abs(typical))
-            if item.name == "share":
-                wider = high
-            parameters.append(replace(item, typical=typical, bounds=(low and -wider, wider)))
-    form = replace(plan.form, parameters=tuple(parameters))
-    last = planned(diagnosis, plan.claim, plan.seen, form)
-    return last if last.lawful() else plan
+    fitted = [_at(item, applied.values[item.name]) for item in plan.form.parameters]
+    shaped = [
+        new if old.tries else old for old, new in zip(plan.form.parameters, fitted, strict=True)
+    ]
+    for parameters in (fitted, shaped):
+        form = replace(plan.form, parameters=tuple(parameters))
+        last = planned(diagnosis, plan.claim, plan.seen, form)
+        if last.lawful():
+            return last
+    return plan
+
+
+def _at(item: Declared, value: float) -> Declared:
+    """A parameter whose typical value, or only trial shape, is a fitted one."""
+    low, high = item.bounds
+    if item.tries and item.name in ("x", "y", "radius"):
+        return replace(item, tries=(round(value, 3),))
+    if item.tries:
+        at = rounded(value, item.digits)
+        typical = at if abs(at) > 1e-3 * (high - low) else item.typical
+        return replace(item, null=at, typical=typical, tries=(at,))
+    if item.per_run or abs(value) < 1e-3 * abs(item.typical):
+        return item
+    typical = abs(rounded(value)) if low == 0.0 else rounded(value)
+    wider = max(high, rules.WIDER_THAN_FITTED * abs(typical))
+    if item.name == "share":
+        wider = high
+    return replace(item, typical=typical, bounds=(low and -wider, wider))
 
 
 def value_of(fit: Fitted, plan: LawForm, name: str) -> float:

@@ -107,7 +107,7 @@ def draft_effect(diagnosis: Diagnosis, show: Show = silent) -> Draft:
             break
         show((number + 1) / (rules.MOST_FITTED + 2), f"{plan.claim.variable}: {plan.form.kind}")
         options.append(fitted_plan(diagnosis, drives, plan))
-        if number == 0:
+        if number == 0 and len(drafted) > 1:
             # Without the law its errors inflated the wheels' noise, which hid differences between
             # forms.
             ordered = by_score(diagnosis, drives, drafted, options[0].fit.point.variances)

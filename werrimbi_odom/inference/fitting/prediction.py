@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,8 @@ from werrimbi_odom.inference.legs.count_interpolation import summed
 from werrimbi_odom.inference.legs.matched_run import MatchedRun
 from werrimbi_odom.model.driven_motion import acts
 from werrimbi_odom.model.effect import view_of, wiring_of
-from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
+from werrimbi_odom.model.effects_over_run import driven_from_measured
+from werrimbi_odom.model.measured_poses import MeasuredPoses
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.recorded_propagation import followed
@@ -155,16 +155,21 @@ def headings_of(
     Every leg starts from the measured heading if there is one, as its prediction does; otherwise
     the path is followed from the run's start.
     """
+    yaw, leg = _measured_headings(runs, view, start_yaws)
+    return np.asarray(yaw[leg] + path.yaw[:-1] - path.yaw[runs.begin][leg])
+
+
+def _measured_headings(
+    runs: Concatenated, view: View, start_yaws: Sequence[float | None]
+) -> tuple[Floats, NDArray[np.intp]]:
+    """Heading at each leg's start (m,), 0 if not measured; and the leg of each step's `anchors`."""
     measured = right_handed(runs.start, view)[:, 2] - view.yaw
     if np.any(view.wander):
         measured = measured - view.drifted(_since_start(runs, runs.begin))
     for index, given in enumerate(start_yaws):
         if given is not None:
             measured[runs.legs[index]] = given - view.yaw
-    anchor = anchors(runs, np.isfinite(measured))
-    return np.asarray(
-        np.nan_to_num(measured)[anchor] + path.yaw[:-1] - path.yaw[runs.begin][anchor]
-    )
+    return np.nan_to_num(measured), anchors(runs, np.isfinite(measured))
 
 
 def anchors(runs: Concatenated, known: NDArray[np.bool_]) -> NDArray[np.intp]:
@@ -194,42 +199,28 @@ def _path(
         return _from_motion(raw, wheels_to_body(raw, robot.track))
     drive = runs.drive(looked_at or robot)
 
-    latest: list[Any] = [None, None]
+    def measured() -> MeasuredPoses:
+        return _measured_poses(runs, view, start_yaws)
 
-    def led_to(found: AfterEffects) -> DrivenPath:
-        """Path of one pass, cached, so that its headings and places agree."""
-        if latest[0] is not found:
-            latest[:] = found, _from_motion(*found)
-        path: DrivenPath = latest[1]
-        return path
-
-    def headings(found: AfterEffects) -> Floats:
-        return headings_of(led_to(found), runs, view, start_yaws)
-
-    def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
-        return places_of(led_to(found), heading, runs, view)
-
-    return _from_motion(*driven_from_measured(robot, raw, drive, headings, places))
+    return _from_motion(*driven_from_measured(robot, raw, drive, measured))
 
 
-def places_of(
-    path: DrivenPath, heading: Floats, runs: Concatenated, view: View
-) -> tuple[Floats, Floats]:
-    """Position at the start of each step, in the reference's frame; arrays of shape (n,) [m].
+def _measured_poses(
+    runs: Concatenated, view: View, start_yaws: Sequence[float | None]
+) -> MeasuredPoses:
+    """Poses in the reference's frame, from which those of the steps are followed.
 
-    Every leg starts from the measured position if there is one; otherwise the path is followed from
-    the last measured one, or from zero.
+    Every leg starts from the measured pose if there is one; otherwise the path is followed from the
+    last measured one, or from zero.
     """
-    start = right_handed(runs.start, view)
-    known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
-    anchor = anchors(runs, known)
-    begin = np.minimum(runs.begin, heading.size - 1)
-    frame = heading - path.yaw[:-1]
-    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin][anchor])
-    arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
-    first = np.nan_to_num(start[:, 0] + 1j * start[:, 1]) / view.scale - arm
-    placed = first[anchor] + moved
-    return np.asarray(placed.real), np.asarray(placed.imag)
+    yaw, leg = _measured_headings(runs, view, start_yaws)
+    start = right_handed(runs.start, view)[:, :2]
+    at = anchors(runs, np.isfinite(start[:, 0]) & np.isfinite(start[:, 1]))
+    x, y = np.nan_to_num(start).T / view.scale
+    place = x + 1j * y
+    begin = np.minimum(runs.begin, runs.step_count - 1)
+    arm = complex(view.ahead, view.left)
+    return MeasuredPoses(yaw[leg], begin[leg], place[at], begin[at], arm)
 
 
 def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:
