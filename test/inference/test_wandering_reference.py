@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from test.inference.driven import parts
@@ -64,6 +66,31 @@ def test_an_antenna_has_no_heading_that_wanders() -> None:
     assert "mm in a second" in said
     assert "°" not in said
     assert "rad" not in said
+
+
+def satellites(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """A metre and a half that is alike for half a minute."""
+    keeps = np.exp(-np.diff(time, prepend=time[0]) / 30.0)
+    new = random.normal(size=(time.size, 3)) * np.sqrt(1.0 - keeps**2)[:, None]
+    new[0] = random.normal(size=3)
+    error = np.zeros((time.size, 3))
+    for row in range(time.size):
+        error[row] = keeps[row] * error[row - 1] + new[row]
+    return 1.5 * error
+
+
+def test_positions_of_satellites_are_no_law_of_the_floor() -> None:
+    """No typical localiser wanders by decimetres in a second, and what was left was *unknown*."""
+    drives = []
+    for seed in range(60, 63):
+        run = parts(driven(seed, satellites, f"drive_{seed}", seconds=200.0), "positions")
+        assert run.reference is not None
+        once = run.reference.chosen(np.arange(run.reference.time.size) % 12 == 0)
+        drives.append(replace(run, reference=once))
+    found = diagnose(drives, ROBOT, EFFECTS)
+    assert (found.verdict, found.found) == ("none", ())
+    assert found.wander is not None
+    assert found.wander.place_in_a_second == pytest.approx(1.5 * math.sqrt(2.0 / 30.0), rel=0.3)
 
 
 def test_what_is_really_wrong_is_named_beside_it() -> None:

@@ -157,7 +157,7 @@ def _typical(fitted: Variances) -> Variances:
     noises = ((fitted.xy[0], fitted.yaw[0]), np.square(rules.TYPICAL_MATCH))
     wheels = np.full(2, rules.TYPICAL_WHEEL_NOISE**2)
     rows = []
-    for noise, size, rate in product(noises, sides, sides):
+    for noise, size, rate in product(noises, rules.WANDERS_TRIED, sides):
         walk = np.array(rules.TYPICAL_WALK) * np.exp(rules.WALK_SPREAD * [size, size, rate])
         rows.append(np.concatenate([wheels, noise, fitted.stamp, np.square(walk)]))
     return Variances(*np.stack(rows, axis=-1))

@@ -65,6 +65,10 @@ beside it. Chosen: an effect of two variables that the library does not hold sho
 itself over either, and the wander of a reference takes up some of what is left. References that
 wander by centimetres explain 2.2 to 12 times as much."""
 
+WANDERS_TRIED = (-1.0, 0.0, 1.0, 3.0)
+"""Random walks of typical localisers that are tried, in deviations of their prior from its middle:
+0.1 to 2 cm in a second, and the decimetres of satellites, which somebody may give as positions."""
+
 SMALL_WANDER = 5e-3
 """Wander in the long run [m, rad] up to which neighbouring legs that are alike tell it, though
 every typical localiser is worse. Chosen: the camera systems recorded wander by 0.7 mm and 3.4 mrad;
