@@ -51,7 +51,7 @@ class Precision:
         point = replace(self.point, variances=variances)
         found = unexpected(self.runs, point)
         marks = found.marks(self.slopes)
-        return with_columns_per_run(self.runs, point.model, found.whitened(), marks, self.local)
+        return with_columns_per_run(self.runs, point, found.whitened(), marks, self.local)
 
     def information(self, variances: Variances) -> float:
         """Log determinant of the information matrix of the free directions."""

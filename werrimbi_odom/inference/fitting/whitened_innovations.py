@@ -103,7 +103,7 @@ class Costs:
             excluded=self.point.skip,
             start_yaws=model.start_yaws,
         )
-        if not self.runs.headings_alone:
+        if not _knows_drifts(self.runs, self.point):
             return found
         rate, unsure = self.runs.drifts_known
         side = -1.0 if view_of(model.robot.effects).mirrored else 1.0
@@ -115,6 +115,14 @@ class Costs:
         """Minus two log-likelihood of each set."""
         found = self.innovations(sets, prediction or self.prediction())
         return found.minus_two_log_likelihood()
+
+
+def _knows_drifts(runs: Concatenated, point: Point) -> bool:
+    """Whether rests tell how headings drift while the robot drives: those of a gyro do.
+
+    Headings that are taken as absolute may be another sensor's, or corrected on the way.
+    """
+    return runs.headings_alone and point.options.reference_kind == "incremental"
 
 
 def _slots_of_drifts(runs: Concatenated) -> tuple[NDArray[np.intp], int]:
@@ -163,11 +171,11 @@ def stacked(
     local = [number for number in numbers if number.name != START_YAW]
     found = unexpected(runs, point, prediction)
     marks = found.marks(jacobian_of(runs, point.model, local))
-    return with_columns_per_run(runs, point.model, found.whitened(), marks, local)
+    return with_columns_per_run(runs, point, found.whitened(), marks, local)
 
 
 def with_columns_per_run(
-    runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[FreeParameter]
+    runs: Concatenated, point: Point, white: Floats, slopes: Floats, local: Sequence[FreeParameter]
 ) -> Design:
     """Design with the columns of per-run parameters expanded to one for each run.
 
@@ -176,17 +184,19 @@ def with_columns_per_run(
     columns: list[tuple[FreeParameter, int]] = []
     parts = []
     for column, number in zip(np.moveaxis(slopes, -1, 0), [*local, HEADING_AT_START], strict=True):
-        if number.name == YAW_DRIFT:
+        if number.name == YAW_DRIFT and _knows_drifts(runs, point):
             column[_slots_of_drifts(runs)] = -1.0 / runs.drifts_known[1]
         if not number.per_run:
             columns.append((number, -1))
             parts.append(column)
             continue
-        for index, own in enumerate(model.own):
+        for index, own in enumerate(point.model.own):
             if number.name in own:
                 columns.append((number, index))
                 parts.append(column * (runs.run_of_leg == index)[:, None])
     wide = np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
     # Once for these runs: a step of a fit does without a whole prediction.
-    sized = runs.cache.known("sized", lambda: measures_lengths(runs, predict_all(model, runs)))
+    sized = runs.cache.known(
+        "sized", lambda: measures_lengths(runs, predict_all(point.model, runs))
+    )
     return Design(white, wide, tuple(columns), sized)
