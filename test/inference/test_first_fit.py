@@ -36,10 +36,14 @@ def test_what_happened_once_does_not_lead_away_from_a_file_that_is_right() -> No
     runs = [read_run_folder(taped / f"part_{number}") for number in (1, 2, 3, 4)]
     laid = concatenated(match_for_fit(runs, robot, leg=1.0))
     fit = fit_calibration(laid, robot, EvaluationOptions(reference_kind="incremental"))
-    delay, bump = fit.point.model.robot.effects
+    fitted = fit.point.model.robot
+    delay, bump = fitted.effects
     assert delay.values["delay"] == pytest.approx(0.0824, abs=0.01)
     assert bump.values["height"] == pytest.approx(1.02e-3, abs=3e-4)
-    assert not fit.calibrated, "no size is news"
+    assert fitted.wheel_separation_multiplier == pytest.approx(1.0635, abs=0.003)
+    assert set(fit.calibrated) <= {"unequal_wheel_radii"}
+    ratio = fitted.left_wheel_radius_multiplier / fitted.right_wheel_radius_multiplier
+    assert 0.0 <= ratio - 1.0 < 0.34e-2 + 1.96 * 0.19e-2, "the tape, by plain least squares"
 
 
 @pytest.mark.evidence
