@@ -21,6 +21,11 @@ from werrimbi_odom.inference.diagnosis import estimated_values
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import Value
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.diagnosis.what_is_left import (
+    LeftOfLegs,
+    NeighbourCorrelation,
+    WhatIsLeft,
+)
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.for_unexplained_errors import ProposedManoeuvre
 from werrimbi_odom.inference.set_up.search import _late
@@ -33,6 +38,7 @@ from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.phrases import hang_together
 from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
 from werrimbi_odom.report.diagnosis.remarks import (
+    alike,
     at_bounds_told,
     drowned,
     instead_of_held,
@@ -100,6 +106,22 @@ def test_nothing_is_missing_beside_errors_of_a_third_of_the_way(sides: Sides, sa
     told: Any = SimpleNamespace(diagnosis=SimpleNamespace(holdout=sides), leg=1.0)
     words = " ".join(drowned(told))
     assert said in words if said else not words
+
+
+@pytest.mark.parametrize(
+    ("correlation", "reference", "said"),
+    [(0.32, 0.001, True), (0.32, 0.01, False), (-0.32, 0.001, False)],
+)
+def test_what_skids_is_not_said_to_be_noise(
+    correlation: float, reference: float, said: bool
+) -> None:
+    """A skid steer's headings: 0.9 degrees on a leg were "explained to their noise"."""
+    sides = LeftOfLegs(0.016, reference)
+    heading = NeighbourCorrelation(correlation, 2e-11)
+    left = WhatIsLeft(sides, sides, "rad", {"heading": heading})
+    told = alike(SimpleNamespace(left=left))  # type: ignore[arg-type]
+    assert bool(told) is said
+    assert not said or "correlation +0.32), by 16 times what" in told[0]
 
 
 def test_what_was_put_aside_and_errs_far_more_is_not_noise_alone() -> None:

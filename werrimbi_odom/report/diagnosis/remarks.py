@@ -249,6 +249,24 @@ def drowned(advised: AdvisedDiagnosis) -> list[str]:
     ]
 
 
+def alike(diagnosis: Diagnosis) -> list[str]:
+    """Of a *none* whose errors are alike from leg to leg, and far above the reference's noise."""
+    left = diagnosis.left
+    if left is None:
+        return []
+    found = [
+        each.correlation for each in left.neighbours.values() if each.p_value < rules.VERY_SURE
+    ]
+    times = min(side.error / max(side.reference, 1e-9) for side in (left.train, left.holdout))
+    if not max(found, default=0.0) > 0.0 or times < rules.FAR_ABOVE_NOISE:
+        return []
+    return [
+        f"But: neighbouring legs err alike (correlation {max(found):+.2g}), by {two_digits(times)} "
+        "times what the reference's own noise makes. Noise of wheels that roll is not alike: "
+        "something is missing that goes with nothing measured here, as where wheels skid."
+    ]
+
+
 def nearest(diagnosis: Diagnosis, law_told: bool) -> list[str]:
     """The effect that lowers the error most, beside base and radii; held against the law told."""
     calibrated = diagnosis.holdout

@@ -125,7 +125,7 @@ _HEADS += ["Next", "But", "Why"]
 def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     diagnosis = advised.diagnosis
     wanders = reference_wanders(diagnosis)
-    large = remarks.drowned(advised)
+    large = [*remarks.drowned(advised), *remarks.alike(diagnosis)]
     old = remarks.outdated_told(advised)
     noise = not (diagnosis.misfit or wanders or large or old or diagnosis.happened.systematic)
     ending = ": the model explains them to their noise." if noise else "."
