@@ -138,13 +138,18 @@ def compared(case: Case, robot: Path, folder: Path) -> dict[str, Any]:
     return dict(json.loads(said.read_text()))
 
 
-def whole_drive(run: Path, robot: Path, folder: Path) -> float:
-    """Root mean square of the position over a drive, its start pose fitted [m]."""
+def predicted(run: Path, robot: Path, folder: Path) -> np.ndarray:
+    """What a robot file says that the reference shows of a drive; columns t_s, x_m, y_m, ..."""
     out = folder / "odom.csv"
     out.unlink(missing_ok=True)
     done = werrimbi("odom", "--robot", str(robot), str(run), "--as-reference", "--out", str(out))
     assert done.returncode == 0, done.stderr
-    path = np.genfromtxt(out, delimiter=",", names=True)
+    return np.genfromtxt(out, delimiter=",", names=True)
+
+
+def whole_drive(run: Path, robot: Path, folder: Path) -> float:
+    """Root mean square of the position over a drive, its start pose fitted [m]."""
+    path = predicted(run, robot, folder)
     reference = read_run(run, read_robot_file(robot)).reference
     assert reference is not None
     known = (reference.time >= path["t_s"][0]) & (reference.time <= path["t_s"][-1])

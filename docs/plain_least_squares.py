@@ -12,8 +12,6 @@ delay of the reference. Some minutes a robot.
 
 from __future__ import annotations
 
-import contextlib
-import io
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -22,10 +20,9 @@ from pathlib import Path
 
 import numpy as np
 from case_book import BOOK
-from follow_advice import Case, drives_of, followed
+from follow_advice import ROBOTS, Case, drives_of, followed, predicted, werrimbi
 from scipy.optimize import least_squares
 
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.inference import rules
@@ -128,20 +125,9 @@ def plain(drives: Sequence[Legs], robot: Robot) -> tuple[float, float, float, fl
     return left, right, base[0] if base else 1.0, delay
 
 
-def werrimbi(*words: object) -> None:
-    """Run a command."""
-    said = io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        code = main([*map(str, words)])
-    assert code == 0, said.getvalue()
-
-
 def told_by(file: Path, legs: Legs, folder: Path) -> Path3:
     """The path that a robot file predicts for the reference."""
-    out = folder / "odom.csv"
-    out.unlink(missing_ok=True)
-    werrimbi("odom", "--robot", file, legs.drive, "--as-reference", "--out", out)
-    rows = np.genfromtxt(out, delimiter=",", names=True)
+    rows = predicted(legs.drive, file, folder)
     return rows["t_s"], rows["x_m"] + 1j * rows["y_m"], np.unwrap(rows["yaw_rad"])
 
 
@@ -170,18 +156,15 @@ def fitted(case: Case, folder: Path) -> tuple[Path, Path]:
     """The robot files of `calibrate fit`, and of the last of the commands that are printed."""
     fit = folder / "fit.yaml"
     drives = (*drives_of(case, case.fitted), *case.options)
-    werrimbi("calibrate", "fit", "--robot", drives_file(case), *drives, "--out", fit)
+    given = str(ROBOTS / case.robot / "robot.yaml")
+    done = werrimbi("calibrate", "fit", "--robot", given, *drives, "--out", str(fit))
+    assert done.returncode == 0, done.stderr
     return fit, followed(case, folder)[-1].robot
-
-
-def drives_file(case: Case) -> Path:
-    """The robot file as it was given."""
-    return Path(drives_of(case, case.judged)[0]).parent / "robot.yaml"
 
 
 def row(case: Case) -> str:
     """One line of the table."""
-    given = drives_file(case)
+    given = ROBOTS / case.robot / "robot.yaml"
     robot = read_robot_file(given).robot
     train = [legs_of(Path(each), robot, SHORT) for each in drives_of(case, case.fitted)]
     judged = [legs_of(Path(each), robot, 1.0) for each in drives_of(case, case.judged)]

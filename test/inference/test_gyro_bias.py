@@ -111,7 +111,7 @@ def test_coming_to_rest_in_short_pauses_is_no_bias() -> None:
 
 def test_a_slow_spin_amid_a_fast_drive_is_no_rest() -> None:
     """Seven degrees a second of it were a gyro's bias, and all legs of that drive erred by 5°/m."""
-    fast, slow = np.ones(70), np.ones(70)
+    fast, slow = np.ones(400), np.ones(40)
     speed = np.concatenate([0.8 * fast, 0.0 * slow, 0.8 * fast])
     turning = np.concatenate([0.4 * fast, -0.12 * slow, -0.3 * fast])
     run = by_gyro(speed, turning, 1.0, 0.0, 1)
@@ -168,7 +168,7 @@ def test_legs_at_the_ends_stay_if_the_record_begins_and_ends_at_rest() -> None:
 
 
 def veering_drive(seed: int, rest: int) -> Run:
-    """A metre at one speed by a robot that veers, and 1.5 rad on the spot; rests at the ends."""
+    """0.7 m at one speed by a robot that veers, and a radian on the spot; rests at the ends."""
     still, ahead, spin = np.zeros(rest), np.ones(70), np.ones(70)
     speed = np.concatenate([still, 0.2 * ahead, 0.0 * spin, still])
     turning = np.concatenate([still, 0.0 * ahead, -0.27 * spin, still])

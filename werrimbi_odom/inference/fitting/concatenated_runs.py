@@ -173,7 +173,8 @@ class Concatenated:
     @property
     def drifts_known(self) -> Floats:
         """Drift of each run's gyro by its rests, and its standard deviation, (2, runs) [rad/s]."""
-        return drifts_known([run.record.at_rest for run in self.runs])
+        rests = (run.record.at_rest for run in self.runs)
+        return self.cache.known("drifts", lambda: drifts_known(list(rests)))
 
     @property
     def run_of_step(self) -> NDArray[np.intp]:
