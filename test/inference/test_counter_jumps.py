@@ -125,3 +125,19 @@ def test_a_reset_is_left_out_and_no_travel_is_lost(side: int | slice) -> None:
     np.testing.assert_allclose(found.left[-1], counts[-1, 0] - counts[0, 0])
     np.testing.assert_allclose(found.right[-1], counts[-1, 1] - counts[0, 1])
     assert [each.why for each in record_of(run, ROBOT).left_out] == ["counter"]
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_a_board_that_starts_anew_in_a_silence_is_told_once(both: bool) -> None:
+    """It was told as silent ticks, with a way that nobody counted, and as a counter at zero."""
+    counts = np.rint(np.cumsum(np.full((400, 2), [60.0, 90.0]), axis=0))
+    counts[250:] -= counts[250]
+    heard = np.r_[0:220, 250:400]
+    run = run_of(counts[heard], TIME[heard])
+    if not both:
+        run = replace(run, reference=of_headings(TIME, np.zeros(TIME.size)))
+    (only,) = record_of(run, ROBOT).left_out
+    who = "reference and ticks are" if both else "the ticks are"
+    told = f"{who} silent, and a counter fell to zero, as where a driver starts anew"
+    assert (only.why, only.words) == ("gap", told)
+    assert (only.begin, only.end) == (pytest.approx(10.95), pytest.approx(12.5))

@@ -124,18 +124,17 @@ def _silences(
         unheard(seen, np.interp(seen, counters.time, way), _caught_up(measured, leg, turn)),
         unheard(counters.time[inside], way[inside]),
     )
-    found = [
-        LeftOut(
-            run.path,
-            *ends,
-            "gap",
-            f"{who} silent while the robot {_driven(robot, counters, *ends) if sizes else 'moved'}",
-            started,
-        )
-        for who, ends in gaps
-    ]
+    leaps, found = set(counters.leaps), []
+    for who, (begin, end) in gaps:
+        anew = [leap for leap in leaps if begin <= leap[0] and leap[1] <= end]
+        # What went unheard as a driver started anew is one event, and nobody counted the way.
+        leaps.difference_update(anew)
+        silent = f"{who} silent{' while the robot ' if not anew else ', and '}"
+        way_there = _driven(robot, counters, begin, end) if sizes else "moved"
+        words = silent + (" and ".join(leap[2] for leap in anew) or way_there)
+        found.append(LeftOut(run.path, begin, end, "gap", words, started))
     others = [
-        *(NoDriving(begin, end, "counter", words) for begin, end, words in counters.leaps),
+        *(NoDriving(begin, end, "counter", words) for begin, end, words in leaps),
         *(run.no_driving or ()),
     ]
     found += [
