@@ -17,7 +17,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.tables import mislabelled_columns
 from werrimbi_odom.files.tables.compared_ways import ends_of_chords, words_about_ways
-from werrimbi_odom.files.tables.mislabelled_columns import words_about_one_clock_unit
+from werrimbi_odom.files.tables.units_of_time import words_about_one_clock_unit
 from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -407,3 +407,22 @@ def test_a_path_of_hours_is_cut_into_chords_in_no_time() -> None:
     assert np.diff(ends) == pytest.approx(2.0 * np.arcsin(0.05) / 0.0005, abs=1.0)
     lone = np.abs(place - place[ends[-1]])[ends[-1] :]
     assert lone.max() < 1.0, "the rest of the path is shorter than a chord"
+
+
+@pytest.mark.parametrize("which", ["both", "ticks", "reference"])
+def test_times_that_were_divided_once_too_often(which: str) -> None:
+    """It drove at 300 m/s, and `info` said that it had hardly moved."""
+    run = driven(3)
+    assert run.reference is not None
+    refuse_unjudgeable(run, ROBOT)
+    fast = timed(run, 1e-3)
+    assert fast.reference is not None
+    if which == "ticks":
+        fast = replace(fast, reference=run.reference)
+    elif which == "reference":
+        fast = replace(fast, ticks=run.ticks)
+    where = "in both files" if which == "both" else f"the times of the {which}, whose rows"
+    with pytest.raises(InputError, match=where) as told:
+        refuse_unjudgeable(fast, ROBOT)
+    assert "multiply that column" in str(told.value)
+    assert "by 10^3" in str(told.value)

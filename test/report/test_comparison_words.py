@@ -24,7 +24,7 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.comparison.consistency import (
     AtLength,
     consistency,
@@ -32,9 +32,11 @@ from werrimbi_odom.inference.comparison.consistency import (
     judged_lengths,
     of_all,
 )
+from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.comparison.reference_noise_source import ReferenceNoise
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict, verdict_of
+from werrimbi_odom.inference.diagnosis.outlying_drives import recorded_otherwise
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.document import document_of
@@ -44,6 +46,7 @@ from werrimbi_odom.report.comparison.phrases import (
     systematic_told,
 )
 from werrimbi_odom.report.comparison.words import words_of
+from werrimbi_odom.report.diagnosis import remarks
 from werrimbi_odom.report.number_format import from_start
 from werrimbi_odom.report.phrases import left_out_words
 from werrimbi_odom.report.terminal import printed
@@ -298,3 +301,40 @@ def test_of_headings_alone_the_option_that_states_their_noise_is_told() -> None:
     (words,) = reference_words(comparison)
     assert "0.29° each interval, is assumed" in words
     assert "--reference-sigma-yaw says it" in words
+
+
+def test_the_drive_that_errs_grossly_is_the_one_that_diagnose_names() -> None:
+    """Of four drives one with exchanged counters: all of the model was "grossly wrong"."""
+    random, options = np.random.default_rng(3), EvaluationOptions()
+    runs = []
+    for number in range(4):
+        turning = np.repeat(random.uniform(-0.8, 0.8, 12), 100)
+        runs.append(run_by(ROBOT, np.full(1200, 0.4), turning, number, f"drive_{number}"))
+    ticks = runs[2].ticks
+    runs[2] = replace(runs[2], ticks=replace(ticks, left=ticks.right, right=ticks.left))
+    compared = compare(runs, ROBOT, options)
+    verdict = verdict_of(compared)
+    assert (verdict.gross, verdict.runs) == (True, (2,))
+    assert "The model is grossly wrong in drive drive_2 alone" in said(compared)
+    fitted = prepare(runs, ROBOT, options)
+    (odd,) = recorded_otherwise(fitted, prepare(runs[:1], ROBOT, options), ROBOT, options)
+    assert odd.run == "drive_2"
+    every = [replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
+             for run in runs]  # fmt: skip
+    assert "alone" not in said(compare([*every[:2], runs[2], every[3]], ROBOT, options))
+
+
+def test_one_drive_by_the_size_of_its_errors_another_by_what_they_go_with(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Compare named one drive and diagnose another, as if both had been asked the same."""
+    monkeypatch.setattr(remarks, "dependence_words", lambda _: "the error goes with the speed")
+    misfit = SimpleNamespace(cell=SimpleNamespace(p_value=1e-9), only_in="arcs")
+    (told,) = remarks.law(
+        SimpleNamespace(diagnosis=SimpleNamespace(misfit=misfit, robot=ROBOT))  # type: ignore[arg-type]
+    )
+    assert "It stands out by what its errors go with. By their size" in told
+
+
+def said(compared: Comparison) -> str:
+    return " ".join(paragraph.text for paragraph in words_of(compared))

@@ -11,11 +11,9 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.references.held_poses import these_runs, words_about_held
 from werrimbi_odom.files.run import WORKED_OUT, Reference, Run, Ticks
-from werrimbi_odom.files.tables.mislabelled_columns import (
-    refuse_wrong_columns,
-    words_about_one_clock_unit,
-)
+from werrimbi_odom.files.tables.mislabelled_columns import refuse_wrong_columns
 from werrimbi_odom.files.tables.row_order import FEW_STEPS_BACK, began_anew, clock_was_set_back
+from werrimbi_odom.files.tables.units_of_time import words_about_one_clock_unit
 from werrimbi_odom.model.encoder_online import CLOCK_JUMP
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

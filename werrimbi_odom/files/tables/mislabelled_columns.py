@@ -29,27 +29,10 @@ from werrimbi_odom.files.tables.counter_columns import (
     what_counters_hold,
     wraps_words,
 )
+from werrimbi_odom.files.tables.standing_reference import no_turn, stands_still
+from werrimbi_odom.files.tables.units_of_time import other_unit_of_time, rounded_times
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-
-LONG_INTERVAL = 0.9
-"""Interval of rows from which their times may be in another unit [s]: 1 kHz in milliseconds."""
-SLOWEST, SLOWEST_TURN = 0.005, 0.005
-"""Mean speed [m/s] and turn rate [rad/s] while the wheels roll, below which the times are in
-another unit. Chosen: ten times below a robot that creeps; in milliseconds 1 m/s is 0.001."""
-UNITS = ((2e6, "nanoseconds", 9), (2e3, "microseconds", 6), (0.0, "milliseconds", 3))
-"""Units of time by the median interval of the rows: messages come at 0.5 Hz to 1 kHz."""
-
-SPANS_ALIKE = 2.0
-"""Factor within which the spans of both files are alike once one's times are divided."""
-
-SHARED, WHOLE = 0.5, 0.001
-"""Share of rows at the time of the row before above which times are rounded, if they come in whole
-multiples of their smallest step, to within this share of it. Bursts of messages do not, or skip
-most of these multiples."""
-PACKETS = 1.5
-"""Smallest steps that times are apart, in the median, from which on messages were sent together: of
-rounded times every next one is there."""
 
 FOLLOWS, CONTRADICTS = 0.8, 0.7
 """Mean resultant length of the angle between path and yaw, above which they belong together and
@@ -68,9 +51,6 @@ YAW_IN_DEGREES = (
     "pi/180; of a gyro, its rates)"
 )
 
-LEAST_TURNED = 0.5
-"""Turn by the wheels that any heading must show [rad]; straight on, they differ by some degrees."""
-
 FAR, FAR_STEPS = 0.05, 20.0
 """Distance [m], and in typical steps of the reference, beyond which a pose of zeros is none."""
 
@@ -78,21 +58,23 @@ FAR, FAR_STEPS = 0.05, 20.0
 def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     """Check the meaning of a run's columns by its data.
 
-    InputError if the times are not in seconds or are rounded, the counters are no running, signed
-    totals, the yaw is in degrees or no heading, or it turns the other way round than the path.
+    InputError if the times are not in seconds or are rounded, the reference stands still while the
+    wheels drive, the counters are no running, signed totals, the yaw is in degrees or no heading,
+    or it turns the other way round than the path.
     """
     assert run.reference is not None
     ticks, reference = run.ticks.unwrapped(robot.encoder_bits), run.reference
     words = (
-        _other_unit_of_time(ticks, reference)
-        or _rounded_times(ticks, reference)
+        other_unit_of_time(ticks, reference, robot)
+        or rounded_times(ticks, reference)
         or words_about_metres(ticks, reference, robot)
+        or stands_still(ticks, reference, robot)
         # The leap of a 32-bit counter is as many counts as degrees would make.
         or ("" if wraps_words(ticks) else words_about_globe(ticks, reference, robot))
         or what_counters_hold(ticks, reference)
         or _degrees(ticks, reference)
         or _no_heading(ticks, reference)
-        or _no_turn(ticks, reference, robot)
+        or no_turn(ticks, reference, robot)
     )
     if words and run.of_bag and "robot file" not in words:
         words += (
@@ -126,72 +108,6 @@ def without_zeros(run: Run) -> Run:
         "tracker saw nothing there; they are left out"
     )
     return replace(run, reference=reference.chosen(~none), damage=(*run.damage, words))
-
-
-def _other_unit_of_time(ticks: Ticks, reference: Reference) -> str:
-    if min(ticks.rows, reference.time.size) < FEWEST:
-        return ""
-    interval = float(np.median(np.diff(ticks.time)))
-    rolls = np.diff(ticks.left, prepend=ticks.left[0]) != 0
-    rolls |= np.diff(ticks.right, prepend=ticks.right[0]) != 0
-    rolling = float(np.diff(ticks.time, prepend=ticks.time[0])[rolls].sum())
-    if interval < LONG_INTERVAL or rolling <= 0.0:
-        return ""
-    places = reference.has_position
-    if places.any():
-        way = float(np.hypot(np.diff(reference.x[places]), np.diff(reference.y[places])).sum())
-        slow, told = way / rolling < SLOWEST, f"{1e3 * way / rolling:.2g} mm/s"
-    else:
-        turn = float(np.abs(wrap_all(np.diff(reference.yaw[reference.has_yaw]))).sum())
-        slow, told = turn / rolling < SLOWEST_TURN, f"{np.degrees(turn / rolling):.2g}°/s"
-    if not slow:
-        return ""
-    if all((np.diff(each.time) == 1.0).all() for each in (ticks, reference)):
-        return f"t_s counts the rows, and the robot goes at {told}: write the time of each [s]"
-    name, power = next((name, power) for above, name, power in UNITS if interval >= above)
-    return (
-        f"rows of ticks are {interval:.6g} s apart and the robot goes at {told}: the times are in "
-        f"{name}, and t_s means seconds: divide that column by 10^{power}, in both files"
-    )
-
-
-def words_about_one_clock_unit(ticks: Ticks, reference: Reference) -> str:
-    """Which file has its times in another unit than the other; "" if none does."""
-    if min(ticks.rows, reference.time.size) < FEWEST:
-        return ""
-    spans = [float(np.ptp(each.time)) for each in (ticks, reference)]
-    if not min(spans) > 0.0:
-        return ""
-    long, times = ("ticks", ticks.time) if spans[0] > spans[1] else ("reference", reference.time)
-    if float(np.median(np.abs(np.diff(times)))) < LONG_INTERVAL:
-        return ""
-    for _, name, power in UNITS:
-        if 1.0 / SPANS_ALIKE < max(spans) / min(spans) / 10.0**power < SPANS_ALIKE:
-            return (
-                f"the ticks last {spans[0]:.6g} s and the reference {spans[1]:.6g} s: the times "
-                f"of the {long} are in {name}, and t_s means seconds: divide that column there "
-                f"by 10^{power}"
-            )
-    return ""
-
-
-def _rounded_times(ticks: Ticks, reference: Reference) -> str:
-    for name, time in (("ticks", ticks.time), ("the reference", reference.time)):
-        steps = np.diff(time)
-        new = steps[steps > 0.0]
-        shared = int((steps == 0.0).sum())
-        if new.size < FEWEST or shared <= SHARED * steps.size:
-            continue
-        unit = float(new.min())
-        if float(np.median(new)) > PACKETS * unit:  # several messages at one time, sent together
-            continue
-        if (np.abs(new / unit - np.rint(new / unit)) < WHOLE).all():
-            return (
-                f"{shared} of {time.size} rows of {name} share their time with the row before: "
-                f"t_s is rounded to {unit:.6g} s; write all its digits, or keep the first row of "
-                "each time"
-            )
-    return ""
 
 
 def _degrees(ticks: Ticks, reference: Reference) -> str:
@@ -237,22 +153,6 @@ def _no_heading(ticks: Ticks, reference: Reference) -> str:
         "clockwise, and must count anticlockwise from the x axis (minus that column; of a compass, "
         "pi/2 minus it), or x_m and y_m are not of one right-handed frame (exchanged: east is x, "
         "north is y; or one with the wrong sign: y points down)"
-    )
-
-
-def _no_turn(ticks: Ticks, reference: Reference, robot: Robot) -> str:
-    """Headings alone that never change: no gyro that measures is without noise."""
-    known = reference.yaw[reference.has_yaw]
-    if reference.has_position.any() or known.size < FEWEST or np.ptp(known) > 0.0:
-        return ""
-    turn = (ticks.right * robot.right_tick - ticks.left * robot.left_tick) / robot.track
-    turned = float(np.nanmax(turn) - np.nanmin(turn)) if np.isfinite(turn).any() else 0.0
-    if turned < LEAST_TURNED:
-        return ""
-    return (
-        f"the reference's heading is {known[0]:g} in all rows, while the wheels turn the robot by "
-        f"{np.degrees(turned):.0f}°: no turn was measured (an IMU that gives its orientation alone "
-        "has yaw rates of 0, and is no gyro); take another reference"
     )
 
 

@@ -23,6 +23,11 @@ from werrimbi_odom.inference.comparison.consistency import (
 from werrimbi_odom.inference.comparison.dependence import Cell
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS, NoiseFactor, Systematic
+from werrimbi_odom.inference.comparison.typical_errors import (
+    far_beyond,
+    typical_errors,
+    usual_error,
+)
 from werrimbi_odom.inference.distributions import chi2_survival
 
 Noise = Literal["honest", "too small", "too large", "grows", "comes and goes", "unknown"]
@@ -69,7 +74,8 @@ class Verdict:
     lengths: tuple[AtLength, ...] = ()
     """Consistency at each length with enough legs, ascending."""
     runs: tuple[int, ...] = ()
-    """Runs whose own legs show a covariance that is too small, where all legs together do not."""
+    """Runs whose own legs show a covariance that is too small, where all legs together do not; of a
+    gross error those that hold it, where it is not in all."""
 
     @property
     def covariance(self) -> Consistency:
@@ -112,11 +118,6 @@ def verdict_of(comparison: Comparison) -> Verdict:
     few = _held_by_few(comparison)
     bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
     lengths = judged_lengths([item.consistency for item in comparison.lengths])
-    runs = tuple(
-        index
-        for index, item in enumerate(comparison.runs)
-        if item.legs.figures.count >= rules.FEWEST_LEGS and _too_small(item.legs.figures)
-    )
     return Verdict(
         enough=True,
         systematic=systematic,
@@ -130,7 +131,25 @@ def verdict_of(comparison: Comparison) -> Verdict:
         few_and_bad=bad,
         off=off,
         lengths=lengths,
-        runs=() if _too_small(main.all.figures) else runs,
+        runs=_standing_out(comparison, gross),
+    )
+
+
+def _standing_out(comparison: Comparison, gross: bool) -> tuple[int, ...]:
+    """Runs that are unlike the others, by `Verdict.runs`."""
+    main = comparison.main
+    if gross:
+        errors = typical_errors(comparison.legs, len(comparison.runs))
+        wrong = rules.WRONG_OF_A_LEG * _length(main)
+        if set(comparison.prepared.measures) == {"heading"}:
+            wrong = rules.WRONG_SHARE * rules.QUARTER_TURN
+        return far_beyond(errors, errors) if usual_error(errors) <= wrong else ()
+    if _too_small(main.all.figures):
+        return ()
+    return tuple(
+        index
+        for index, item in enumerate(comparison.runs)
+        if item.legs.figures.count >= rules.FEWEST_LEGS and _too_small(item.legs.figures)
     )
 
 

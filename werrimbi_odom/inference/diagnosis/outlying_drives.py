@@ -9,12 +9,9 @@ other drives.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
@@ -22,6 +19,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import judged_legs
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
+from werrimbi_odom.inference.comparison.typical_errors import far_beyond, typical_errors
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
@@ -51,18 +49,20 @@ def recorded_otherwise(
 
     `mended`: Robot with the set-up mistakes common to the fitted drives corrected.
     """
-    own = typical_errors(fitted, mended)
-    known = [error for error in own if math.isfinite(error)]  # headings alone have none of position
-    usual = float(np.median(known)) if known else math.inf
+    own, others = (_typical(some, mended) for some in (fitted, held_out))
     found = []
-    for prepared, errors in ((fitted, own), (held_out, typical_errors(held_out, mended))):
-        for run, error in zip(prepared.runs, errors, strict=True):
-            if not error > rules.GROSS * usual:
-                continue
+    for prepared, errors in ((fitted, own), (held_out, others)):
+        for index in far_beyond(errors, own):
+            run = prepared.runs[index]
             findings = _differing(run, mended, options)
             if findings:
                 found.append(RecordedOtherwise(run.name, run.path, prepared is held_out, findings))
     return tuple(found)
+
+
+def _typical(prepared: PreparedRuns, robot: Robot) -> Sequence[float]:
+    model = Model(robot, tuple({} for _ in prepared.runs))
+    return typical_errors(judged_legs(prepared, model, prepared.options.leg), len(prepared.runs))
 
 
 def _differing(run: Run, mended: Robot, options: EvaluationOptions) -> tuple[SetUpFinding, ...]:
@@ -72,16 +72,3 @@ def _differing(run: Run, mended: Robot, options: EvaluationOptions) -> tuple[Set
         return ()
     clear = max((finding.gain for finding in findings), default=0.0)
     return findings if clear > rules.OWN_GAIN else ()
-
-
-def typical_errors(prepared: PreparedRuns, robot: Robot) -> Sequence[float]:
-    """Median error of each drive's legs, of position [m], or of heading [rad] where that is all."""
-    model = Model(robot, tuple({} for _ in prepared.runs))
-    legs = judged_legs(prepared, model, prepared.options.leg)
-    by_position = np.isfinite(legs.errors.distance).any()
-    size = legs.errors.distance if by_position else np.abs(legs.errors.error[:, 2])
-    medians = []
-    for index in range(len(prepared.runs)):
-        own = size[(legs.run == index) & np.isfinite(size)]
-        medians.append(float(np.median(own)) if own.size else float("nan"))
-    return medians

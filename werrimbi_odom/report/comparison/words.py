@@ -108,6 +108,14 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
             "The model is grossly wrong: that is not calibration. This robot's driven wheels skid "
             "in turns, and how much is to be found first; or something is set up wrongly."
         )
+    if verdict.gross and verdict.runs:
+        names = listed([comparison.runs[index].run.name for index in verdict.runs])
+        one = len(verdict.runs) == 1
+        return (
+            f"The model is grossly wrong in {'drive' if one else 'drives'} {names} alone: look for "
+            f"what was otherwise {'on it' if one else 'on them'} (a plug, a wheel, the reference's "
+            f"mounting), or for what {'it' if one else 'they'} alone drove."
+        )
     if verdict.gross:
         return (
             "The model is grossly wrong: that is not calibration, but something set up wrongly "
@@ -254,8 +262,8 @@ def _run_told(comparison: Comparison, index: int) -> str:
     item = comparison.runs[index]
     figures = item.legs.figures
     return (
-        f"- Run {item.run.name} stands out: NEES {figures.nees:.3g} over its "
-        f"{counted(figures.count, 'leg')}."
+        f"- Drive {item.run.name} stands out by the size of its errors: NEES {figures.nees:.3g} "
+        f"over its {counted(figures.count, 'leg')}."
     )
 
 

@@ -48,7 +48,9 @@ def law(advised: AdvisedDiagnosis) -> list[str]:
     cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
     if misfit.only_in is not None:
         return [
-            f"But: drive {misfit.only_in} alone shows something more: in it {cell}. The others "
+            f"But: drive {misfit.only_in} alone shows something more: in it {cell}. (It stands out "
+            "by what its errors go with. By their size, which `werrimbi compare` tells, another "
+            "may.) The others "
             "hold as much driving that would show it, and do not. So no law of the robot is seen "
             "in it: "
             "something happened on that drive, its reference erred, or it was recorded otherwise"
