@@ -426,3 +426,18 @@ def test_times_that_were_divided_once_too_often(which: str) -> None:
         refuse_unjudgeable(fast, ROBOT)
     assert "multiply that column" in str(told.value)
     assert "by 10^3" in str(told.value)
+
+
+def test_all_wrong_columns_are_told_at_once() -> None:
+    """Speeds under the counters' names, with a yaw in degrees, all on a clock in milliseconds."""
+    run = driven(2)
+    ticks = run.ticks
+    speeds = [np.gradient(each.astype(float), ticks.time) for each in (ticks.left, ticks.right)]
+    wrong = seen(
+        timed(replace(run, ticks=Ticks(ticks.time, *speeds)), 1e3),
+        yaw=lambda it: np.degrees(it.yaw),
+    )
+    with pytest.raises(InputError) as told:
+        refuse_unjudgeable(wrong, ROBOT)
+    for each in ("the times are in milliseconds", "not running totals", "yaw is in degrees"):
+        assert each in str(told.value)

@@ -465,3 +465,15 @@ def test_the_mark_of_a_bag_needs_no_memory_for_it(tmp_path: Path) -> None:
     with (tmp_path / "drive.BAG").open("ab") as file:
         file.write(b"more")
     assert mark_of([tmp_path]) not in marks, "another content, another mark"
+
+
+def test_what_is_wrong_with_both_files_is_told_at_once(tmp_path: Path) -> None:
+    """Of a log of speeds in rpm each run of the command found the next mistake."""
+    said = complaint(
+        folder(
+            tmp_path, "time_ms,left_rpm,right_rpm\n1,2,3\n", "time_ms,x_cm,y_cm,yaw_deg\n1,2,3,4\n"
+        )
+    )
+    assert "right_ticks for right_rpm, a speed: the running sum of it / 60" in said
+    assert "; and " in said
+    assert "x_m for x_cm, y_m for y_cm, divided by 100" in said

@@ -32,7 +32,8 @@ def standing(run: Run, noise: float, *, headings: bool = True) -> Run:
 def test_one_pose_while_the_wheels_drive(noise: float, headings: bool) -> None:
     run = standing(driven(1), noise, headings=headings)
     with pytest.raises(InputError, match=f": {STANDS} ") as told:
-        refuse_unjudgeable(run, ROBOT)
+        refuse_unjudgeable(replace(run, of_bag=True), ROBOT)
+    assert str(told.value).endswith("leave the drive out"), "no column is to be converted"
     assert ("one pose" in str(told.value)) == (noise == 0.0)
 
 

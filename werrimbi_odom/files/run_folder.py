@@ -48,15 +48,23 @@ OF_PART = (
 def read_run_folder(path: str | Path) -> Run:
     """Read a run folder.
 
-    InputError if a file is not usable; the message names file, line and column.
+    InputError if a file is not usable; the message names file, line and column, of both files.
     """
     path = Path(path)
-    ticks, damage = _ticks(path / TICKS)
     file = path / REFERENCE
-    reference = None
-    if file.exists() or file.is_symlink():
-        reference, more = read_reference(file)
-        damage += more
+    reference, more, wrong = None, tuple[str, ...](), list[str]()
+    try:
+        ticks, damage = _ticks(path / TICKS)
+    except InputError as error:
+        wrong.append(str(error))
+    try:
+        if file.exists() or file.is_symlink():
+            reference, more = read_reference(file)
+    except InputError as error:
+        wrong.append(str(error))
+    if wrong:
+        raise InputError("; and ".join(wrong))
+    damage += more
     return Run(
         readable(path.resolve().name),
         path,

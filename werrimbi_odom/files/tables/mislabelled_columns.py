@@ -64,18 +64,9 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
     """
     assert run.reference is not None
     ticks, reference = run.ticks.unwrapped(robot.encoder_bits), run.reference
-    words = (
-        other_unit_of_time(ticks, reference, robot)
-        or rounded_times(ticks, reference)
-        or words_about_metres(ticks, reference, robot)
-        or stands_still(ticks, reference, robot)
-        # The leap of a 32-bit counter is as many counts as degrees would make.
-        or ("" if wraps_words(ticks) else words_about_globe(ticks, reference, robot))
-        or what_counters_hold(ticks, reference)
-        or _degrees(ticks, reference)
-        or _no_heading(ticks, reference)
-        or no_turn(ticks, reference, robot)
-    )
+    if words := stands_still(ticks, reference, robot) or no_turn(ticks, reference, robot):
+        raise InputError(f"{run.path}: {words}")
+    words = "; and ".join(filter(None, _wrong(ticks, reference, robot)))
     if words and run.of_bag and "robot file" not in words:
         words += (
             "; a bag has no such columns: mend what its driver sends, or write the converted "
@@ -83,6 +74,30 @@ def refuse_wrong_columns(run: Run, robot: Robot) -> None:
         )
     if words:
         raise InputError(f"{run.path}: {words}")
+
+
+def _wrong(ticks: Ticks, reference: Reference, robot: Robot) -> tuple[str, str, str]:
+    """What is wrong with the times, with counters or places, and with the yaw; "" for each not."""
+    counts = (
+        words_about_metres(ticks, reference, robot)
+        # The leap of a 32-bit counter is as many counts as degrees would make.
+        or ("" if wraps_words(ticks) else words_about_globe(ticks, reference, robot))
+        or what_counters_hold(ticks, reference)
+    )
+    headings = (
+        # Of speeds the sums turn as the reference does.
+        _degrees(ticks, reference)
+        or (_degrees(_summed(ticks), reference) if counts else "")
+        or _no_heading(ticks, reference)
+    )
+    times = other_unit_of_time(ticks, reference, robot) or rounded_times(ticks, reference)
+    return times, counts, headings
+
+
+def _summed(ticks: Ticks) -> Ticks:
+    duration = np.diff(ticks.time, prepend=ticks.time[:1])
+    left, right = (np.cumsum(np.nan_to_num(side) * duration) for side in (ticks.left, ticks.right))
+    return Ticks(ticks.time, left, right)
 
 
 def without_zeros(run: Run) -> Run:
