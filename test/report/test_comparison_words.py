@@ -19,6 +19,7 @@ from scipy import stats
 from test.evidence import in_evidence
 from test.inference.driven import run_by
 from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
@@ -334,6 +335,13 @@ def test_one_drive_by_the_size_of_its_errors_another_by_what_they_go_with(
         SimpleNamespace(diagnosis=SimpleNamespace(misfit=misfit, robot=ROBOT))  # type: ignore[arg-type]
     )
     assert "It stands out by what its errors go with. By their size" in told
+
+
+def test_what_is_alike_for_seconds_may_be_the_law_that_the_file_holds() -> None:
+    """Motion capture of white noise "wandered"; it was the form of a backlash that did not fit."""
+    backlash = find("left_backlash").using(travel=0.002)
+    assert "the law of left_backlash" in remarks.wanders_words(replace(ROBOT, effects=(backlash,)))
+    assert "law" not in remarks.wanders_words(ROBOT)
 
 
 def said(compared: Comparison) -> str:

@@ -15,6 +15,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, beyond_chance
 from werrimbi_odom.model.effect import applied_of
+from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.costs import error_kind, judged
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import sizes
@@ -249,6 +250,15 @@ def drowned(advised: AdvisedDiagnosis) -> list[str]:
         "does not, something is wrong that looks like noise: see where both paths part, by "
         "`werrimbi compare` with --report."
     ]
+
+
+def wanders_words(robot: Robot) -> str:
+    """That errors are alike for seconds and go with nothing in all parts of the drives."""
+    return (
+        "But: for seconds together the errors are alike, more than noise is, and the parts of the "
+        "drives do not agree on what they go with. So errs a reference that wanders (a camera, a "
+        f"map that is matched){held_law_words(robot)}; what is smaller than that is not seen."
+    )
 
 
 def alike(diagnosis: Diagnosis) -> list[str]:

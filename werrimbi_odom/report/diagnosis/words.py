@@ -143,11 +143,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         lines += large
     lines += remarks.instead_of_held(diagnosis)
     if wanders:
-        lines.append(
-            "But: for seconds together the errors are alike, more than noise is, and the parts of "
-            "the drives do not agree on what they go with. So errs a reference that wanders (a "
-            "camera, a map that is matched); what is smaller than that is not seen."
-        )
+        lines.append(remarks.wanders_words(diagnosis.robot))
     if not (noise_assumed(diagnosis) or all(sight.hidden for sight in advised.sights)):
         lines.append(
             "How well that is known: the table says from which size on each effect would have been "
