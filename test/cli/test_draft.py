@@ -80,6 +80,7 @@ def test_where_nothing_is_missing_nothing_is_drafted(tmp_path: Path, complaint: 
     assert not (tmp_path / "package").exists()
 
 
+@pytest.mark.evidence
 @pytest.mark.usefixtures("few_effects")
 def test_no_draft_is_promised_of_what_an_effect_of_the_library_explains(
     tmp_path: Path, complaint: Complaint

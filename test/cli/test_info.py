@@ -103,6 +103,7 @@ def test_from_python_it_is_the_same(recording: tuple[Path, float], tmp_path: Pat
     assert str(bag) in result.summary()
 
 
+@pytest.mark.evidence
 def test_the_commands_keep_the_wheels_that_were_asked_for(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:
@@ -120,6 +121,7 @@ def test_the_commands_keep_the_wheels_that_were_asked_for(
         assert words[words.index("--ticks-topic") + 1] == other
 
 
+@pytest.mark.evidence
 def test_without_sizes_it_says_what_to_measure(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

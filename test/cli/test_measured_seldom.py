@@ -44,6 +44,7 @@ def fit_command(words: str) -> list[str]:
     return ["calibrate", "fit", *shlex.split(command.partition(".yaml Errors")[0])]
 
 
+@pytest.mark.evidence
 def test_by_tape_the_printed_calibration_finds_the_base(
     six: list[Path],
     werrimbi: Werrimbi,

@@ -144,6 +144,7 @@ def test_what_refines_a_law_pays_by_its_own_deviation_too(
     assert (found is not fit) is kept
 
 
+@pytest.mark.evidence
 def test_a_radius_in_degrees_is_found_as_well_as_one_that_is_right() -> None:
     """Legs of 57 m, of the file's metre, would be a handful of a drive of 40 m."""
     runs = runs_of(PLAIN, (1, 2))
@@ -280,6 +281,7 @@ def test_a_base_is_written_as_the_files_multiplier() -> None:
     assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)
 
 
+@pytest.mark.evidence
 def test_a_ratio_is_known_by_headings_however_coarse_the_positions_are() -> None:
     """Positions of 10 cm leave both radii open by as much, together: their ratio is not."""
     truth = replace(PLAIN, left_wheel_radius_multiplier=0.995, right_wheel_radius_multiplier=1.005)

@@ -82,6 +82,7 @@ def test_add_tells_that_the_side_is_open() -> None:
     assert added_json(added)["ahead_or_behind"] is True
 
 
+@pytest.mark.evidence
 def test_a_line_and_a_curve_in_one_drive_tell_the_side() -> None:
     found = diagnosed(WITH_A_LINE)
     assert found.found == ("reference_lever_arm",)

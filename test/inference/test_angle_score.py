@@ -157,6 +157,7 @@ def test_each_drive_has_its_own_rate_from_its_score() -> None:
     np.testing.assert_allclose(rates, RATES, atol=1e-5)
 
 
+@pytest.mark.evidence
 def test_it_is_named_and_lasts() -> None:
     runs = drifting()
     told = diagnose(runs, PLAIN, common("reference_gyro_drift"))

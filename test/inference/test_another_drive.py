@@ -117,6 +117,7 @@ def test_that_of_this_drive_is_not(keep: Callable[[Reference], Reference]) -> No
     assert not diagnosed(*runs, holdout=(driven(4),)).diagnosis.of_another_drive
 
 
+@pytest.mark.evidence
 def test_where_only_the_turns_are_right_it_is_said_of_the_places() -> None:
     """A tracker that is lost and a lidar that slides still turn with the robot."""
 
@@ -161,6 +162,7 @@ def straight(seed: int) -> Run:
     return Run(f"line_{seed}", Path(f"line_{seed}"), ticks, reference)
 
 
+@pytest.mark.evidence
 def test_a_radius_nine_times_off_on_a_line_is_not_the_reference_of_another_drive() -> None:
     words = " ".join(spoken(diagnosed(*(straight(seed) for seed in (1, 2, 3)))).split())
     assert "nothing in common" not in words

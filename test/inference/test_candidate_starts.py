@@ -123,7 +123,8 @@ def test_what_drives_do_not_determine_does_not_stay_where_its_score_sent_it() ->
     assert fit.point.model.robot.wheel_separation_multiplier == pytest.approx(1.0, abs=0.01)
 
 
-@pytest.mark.parametrize("point", [in_evidence(0.063 - 0.04j), -0.02 + 0.06j])
+@pytest.mark.evidence
+@pytest.mark.parametrize("point", [0.063 - 0.04j, -0.02 + 0.06j])
 def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: complex) -> None:
     circle = positions_of_a_point("circle", [0.3] * 5, [0.3] * 5, point)
     found = diagnose([circle], ROBOT, COMMON)

@@ -57,6 +57,7 @@ def test_where_the_model_holds_nothing_is_widened() -> None:
     assert rms([deviations(fit)[0] for fit in fits]) < 1.4
 
 
+@pytest.mark.evidence
 def test_sizes_are_known_as_well_as_the_parts_agree_on_them() -> None:
     """Of wheels that shrink by 5 % with something that nobody put in, to and fro in a minute."""
     fits = [calibrated(seed, nothing, hotter=0.05) for seed in range(200, 216)]

@@ -104,6 +104,7 @@ def test_slip_is_no_late_clock(tmp_path: Path, counts: int) -> None:
     assert abs(share.value - 0.04) < 3.0 * share.std < 0.02
 
 
+@pytest.mark.evidence
 def test_nothing_is_nothing_and_what_is_not_asked_is_said(tmp_path: Path) -> None:
     robot, drives = driven(tmp_path, 40, drives=2, seconds=40.0)
     found = wo.diagnose(robot, drives[:1], holdout=drives[1:])

@@ -50,6 +50,7 @@ def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> Diagnosis:
     return diagnose(runs_of(truth, [1], 60), ROBOT, library, holdout=[run_of(truth, 2, 60)])
 
 
+@pytest.mark.evidence
 def test_an_even_law_of_the_acceleration_is_drafted_as_a_square(diagnosis: Diagnosis) -> None:
     """Only a line was tried: a slope of -0.0003 ± 0.0035, where radii fell by 0.05 a^2."""
     found = draft_effect(diagnosis)

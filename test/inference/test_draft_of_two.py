@@ -174,7 +174,10 @@ def test_where_nothing_is_hidden_no_law_of_two_is_found(seed: int) -> None:
 CHANNELS = ("load_kg", "motor_c")
 
 
-@pytest.mark.parametrize("number", range(len(AMOUNTS)))
+@pytest.mark.parametrize(
+    "number",
+    [each if each % 3 == 0 else in_evidence(each) for each in range(len(AMOUNTS))],
+)
 def test_every_term_keeps_the_laws_of_effects(number: int) -> None:
     """Of each amount some of the terms, three at once; of all amounts all terms."""
     amount = AMOUNTS[number]

@@ -77,6 +77,7 @@ def test_a_mount_a_clock_and_a_drift_are_found_in_one_short_drive(tmp_path: Path
     assert values["reference_heading_delay"]["delay"] == pytest.approx(-EARLY, abs=0.01)
 
 
+@pytest.mark.evidence
 def test_the_more_important_is_told_first_though_half_of_its_law_is_not_determined() -> None:
     """A payload that stays the same tells nothing; beside it the temperature counted for none."""
     by_channel = find("radius_by_channel").using(temperature=-2e-3)

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import COMMON, parts, run_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects.lookup import find
@@ -182,6 +183,7 @@ def test_where_nothing_happened_nothing_is_told(undisturbed: Diagnosis) -> None:
     assert events_words(found.happened, found.robot.track) == []
 
 
+@pytest.mark.evidence
 def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: Drives) -> None:
     """Wheels that speed up and slow down in between are off the line that is laid across it."""
     runs, robot = sound
@@ -200,9 +202,9 @@ def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: D
     ("scans", "at", "lost"),
     [
         (True, 17.0, 18.0),
-        (True, 17.0, 40.0),
+        in_evidence(True, 17.0, 40.0),
         (False, 17.0, 18.0),
-        pytest.param(True, 11.0, 40.0, id="beside a part that is put aside"),
+        in_evidence(True, 11.0, 40.0, id="beside a part that is put aside"),
     ],
 )
 def test_where_scans_were_lost_a_push_may_be_theirs(
@@ -316,6 +318,7 @@ def test_a_reference_that_is_wrong_in_one_pose_jumped_and_came_back(sound: Drive
     assert event.size == pytest.approx(0.05, abs=4.0 * event.std)
 
 
+@pytest.mark.evidence
 def test_a_pose_with_a_wrong_heading_is_no_push_of_the_robot_that_drives_on(sound: Drives) -> None:
     """The robot does not go on along it: what it would have gone aside is no motion of its own."""
     runs, robot = sound
@@ -341,6 +344,7 @@ def test_what_creeps_in_over_seconds_is_no_event(sound: Drives) -> None:
     assert _happened([_measured(runs[0], creeping), *runs[1:]], robot).events == ()
 
 
+@pytest.mark.evidence
 def test_events_of_the_engine_are_found_and_no_verdict_is_made_of_them(tmp_path: Path) -> None:
     runs, robot = _driven(tmp_path, (Knock("wheel_slip", 0.015, every=12.0),))
     found = _diagnosed((runs, robot))

@@ -74,6 +74,7 @@ def test_a_base_that_is_off_by_a_quarter_is_found_in_two_drives_of_a_metre(tmp_p
     assert "--leg 0.25" in words
 
 
+@pytest.mark.evidence
 def test_where_nothing_is_seen_it_says_that_the_noise_is_assumed(tmp_path: Path) -> None:
     found = told(1.0, tmp_path)
     words = " ".join(as_text(found.document().words).split())

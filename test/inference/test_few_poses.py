@@ -74,7 +74,9 @@ def by_tape(run: Run) -> Run:
     return replace(run, reference=replace(run.reference.chosen(ends)))
 
 
-@pytest.mark.parametrize(("base", "side"), [(0.9, 1.0), (0.97, 2.0), (1.03, 2.0), (1.15, 1.0)])
+@pytest.mark.parametrize(
+    ("base", "side"), [in_evidence(0.9, 1.0), (0.97, 2.0), in_evidence(1.03, 2.0), (1.15, 1.0)]
+)
 def test_squares_that_close_give_the_base_that_closes_them_and_no_multiple_of_it(
     base: float, side: float
 ) -> None:
@@ -110,8 +112,8 @@ def test_a_base_by_squares_that_close_may_be_the_wheels() -> None:
     ("entered", "told"),
     [
         ({"wheel_radius": 0.1}, ("wheel_radius_scale",)),
-        ({"wheel_separation": 0.15}, ("track_width",)),
-        ({}, ()),
+        in_evidence({"wheel_separation": 0.15}, ("track_width",)),
+        in_evidence({}, ()),
     ],
 )
 def test_how_far_drives_ended_from_their_start_tells_sizes_far_off_and_no_wiring(
@@ -203,6 +205,7 @@ def test_of_four_drives_by_tape_nothing_is_beyond_chance(runs: list[Run]) -> Non
         diagnose(taped, PLAIN, LIBRARY)
 
 
+@pytest.mark.evidence
 def test_a_length_that_they_do_not_hold_is_no_number(first: Diagnosis, kick: Added) -> None:
     """It was printed and written as 0.15 m ± 1e+06 m."""
     found = replace(first, found=("castor_kick",), rivals=())

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 
 
+@pytest.mark.evidence
 @with_recordings
 def test_what_happened_once_does_not_lead_away_from_a_file_that_is_right() -> None:
     """A Kobuki with tape on its left tread, by its gyro; once it was turned by 3.4 degrees."""

@@ -561,6 +561,7 @@ def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
     assert with_no_driving(run, ROBOT).no_driving == ()
 
 
+@pytest.mark.evidence
 def test_arcs_seen_from_beside_the_axle_are_driving(tmp_path: Path) -> None:
     """Outwards it goes farther than its wheels, inwards less far: no one scale is both."""
     mount = hide("reference_lever_arm", seed=3).peculiarity  # 61 mm ahead, 132 mm to the right

@@ -113,6 +113,7 @@ def test_nothing_of_the_held_out_drives_moves_a_fit(runs: list[Run]) -> None:
     assert other.train.sides.after < other.train.sides.before
 
 
+@pytest.mark.evidence
 def test_pushes_in_held_out_drives_move_no_fit() -> None:
     """Whether a push is an accident, and left out, is for the fitted drives to say.
 
@@ -135,6 +136,7 @@ def pushed(run: Run, times: Iterable[float]) -> Run:
     return functools.reduce(lambda so_far, at: stepped(so_far, begin + at, 0.05, 0.05), times, run)
 
 
+@pytest.mark.evidence
 def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
     found = diagnosed([swapped(run) for run in runs[:3]], [swapped(run) for run in runs[3:]])
     (ranked,) = [item for item in found.ranking if item.effect == "wheels_swapped"]

@@ -182,6 +182,7 @@ def test_a_length_that_the_drive_fits_does_not_stand_at_zero_for_the_history() -
         assert abs(each.own[0] - true) < 3.0 * each.own_std[0] < 0.002
 
 
+@pytest.mark.evidence
 def test_a_marker_that_moved_is_seen_though_the_file_does_not_hold_it() -> None:
     """Each drive knew its own to 2 mm, as what the file lacks passed for noise of the wheels."""
     ahead_of_it = [0.020] * 3 + [0.028] * 3

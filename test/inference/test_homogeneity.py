@@ -202,7 +202,8 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     assert _chance(gain, 1, free, free, rest, parts) > 1e-3
 
 
-@pytest.mark.parametrize("degrees", [1, in_evidence(2)])
+@pytest.mark.evidence
+@pytest.mark.parametrize("degrees", [1, 2])
 def test_what_each_part_draws_anew_lasts_as_rarely_as_is_said(degrees: int) -> None:
     """Where three of nine parts know nearly all: once in a hundred was once in thirteen."""
     random = np.random.default_rng(degrees)
@@ -252,6 +253,7 @@ def test_a_wave_of_one_height_lasts_whatever_its_phase_is_in_each_drive() -> Non
     assert max(chance_of_wave(random, 9.0, 0.0) for _ in range(100)) < 1e-3
 
 
+@pytest.mark.evidence
 def test_waves_that_each_part_draws_anew_last_as_rarely_as_is_said() -> None:
     """One case in a hundred was one in five."""
     random = np.random.default_rng(2)

@@ -74,6 +74,7 @@ def test_a_wrong_base_is_found_in_one_short_drive_with_positions_alone() -> None
     assert result.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
 
 
+@pytest.mark.evidence
 def test_a_circle_by_positions_alone_holds_two_numbers() -> None:
     """A marker 60 mm to the left, to which a smaller circle and smaller wheels look the same.
 
@@ -297,6 +298,7 @@ def test_wheels_that_are_smaller_by_scans_may_be_ranges_that_are_short(scans: bo
     assert ("A lidar whose ranges are 4 % too short shows the same" in said) == scans
 
 
+@pytest.mark.evidence
 def test_wheels_that_are_larger_by_a_camera_may_be_its_metre() -> None:
     """Visual odometry, 2 % too long, and a base that was entered too small: no factor of both."""
     runs = []
@@ -312,6 +314,7 @@ def test_wheels_that_are_larger_by_a_camera_may_be_its_metre() -> None:
         assert ("A camera's or a map's metre that is 2 % too long" in said) == (kind != "absolute")
 
 
+@pytest.mark.evidence
 def test_a_lidar_that_is_askew_where_it_sits_is_told_by_its_transform() -> None:
     """200 mm ahead by its transform, and turned by 50 mrad: 10 mm aside, where nothing is."""
     runs = []
@@ -370,6 +373,7 @@ def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     assert found.holdout.after < 0.2 * found.holdout.before
 
 
+@pytest.mark.evidence
 def test_a_gyros_own_scale_is_told_beside_a_base_that_is_found_second() -> None:
     """A base of the file that is 2 % off, and a gyro that is much too late."""
     near = replace(NOMINAL, wheel_separation_multiplier=1.08)
@@ -491,14 +495,9 @@ KOBUKI: list[tuple[ReferenceKind, int, tuple[int, ...]]] = [
 ]
 
 
+@pytest.mark.evidence
 @with_recordings
-@pytest.mark.parametrize(
-    ("kind", "every", "aside"),
-    [
-        pytest.param(*case, marks=[pytest.mark.evidence] * (number != 1))
-        for number, case in enumerate(KOBUKI)
-    ],
-)
+@pytest.mark.parametrize(("kind", "every", "aside"), KOBUKI)
 def test_the_kobuki_has_a_late_gyro_and_a_wide_base_at_any_rate(
     kind: ReferenceKind, every: int, aside: tuple[int, ...]
 ) -> None:

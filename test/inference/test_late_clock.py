@@ -105,7 +105,8 @@ def square(seed: int) -> Run:
     return later(by_gyro(speed, rate, 1.0, 0.0, seed), 0.06)
 
 
-@pytest.mark.parametrize("seed", [1, *(in_evidence(n) for n in (2, 3))])
+@pytest.mark.evidence
+@pytest.mark.parametrize("seed", [1, 2, 3])
 def test_of_one_square_a_late_gyro_is_named(seed: int) -> None:
     """It was *unknown*, with the acceleration.
 
@@ -140,6 +141,7 @@ def test_a_late_clock_that_drifts_is_one_effect() -> None:
     assert diagnose(runs, mended, effects, EvaluationOptions(leg=0.5)).verdict == "none"
 
 
+@pytest.mark.evidence
 def test_a_drifting_clock_takes_the_place_of_a_late_one_behind_another_effect() -> None:
     """First the kick, then the delay, then the drift in its place: two effects of three rounds."""
     truth = replace(ROBOT, effects=(find("castor_kick").using(angle=0.05, length=0.05),))

@@ -72,7 +72,7 @@ def changing(seed: int, left: float, right: float) -> Run:
     ("left", "right", "side", "said"),
     [
         (0.0, 0.015, "right", "look at the right wheel"),
-        (0.01, 0.01, "both", "look at the wheels"),
+        in_evidence(0.01, 0.01, "both", "look at the wheels"),
     ],
 )
 def test_radii_that_come_and_go_are_the_robot_s(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
@@ -64,7 +65,7 @@ def missed(counters: Counters, counts: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return error - np.median(error), counters.unseen_at(time)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, *map(in_evidence, (1, 2, 3))])
 @pytest.mark.parametrize("hertz", [2.0, 5.0, 10.0])
 def test_what_is_missed_between_messages_is_stated(seed: int, hertz: float) -> None:
     run, counts = driven(seed, hertz)
@@ -91,6 +92,7 @@ def test_steps_end_within_rare_messages() -> None:
     assert legs.left.sum() == pytest.approx(np.diff(counted[:, 0])[0])
 
 
+@pytest.mark.evidence
 def test_hard_starts_between_rare_counts_are_no_events_and_no_law() -> None:
     """Something was said to be missing, in others the reference to jump at thirty of them."""
     found = diagnose([driven(20 + each, 5.0)[0] for each in range(3)], ROBOT, LIBRARY)

@@ -60,6 +60,7 @@ def test_a_sound_reference_has_no_remark() -> None:
     assert remarks() == {}
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("name", "strength"),
     [

@@ -134,6 +134,7 @@ def test_one_effect_in_all_drives_is_named() -> None:
     assert (found.verdict, found.effect, found.torn) == ("named", "lateral_slip", ())
 
 
+@pytest.mark.evidence
 def test_an_effect_that_another_beats_in_half_of_the_data_is_not_certain() -> None:
     """In the first half of every drive the robot slips, in the second it crabs, less in all."""
     slipping = runs_of(having("lateral_slip", creep=0.012), range(1, 4), seconds=50)

@@ -313,7 +313,10 @@ def test_once_a_second_is_enough(session: list[Run], name: str) -> None:
     assert is_named(first, mistake), first
 
 
-@pytest.mark.parametrize("name", [*sparse([*WIRED, *THINNED]), "clock 2.0 s late", "millimetres"])
+@pytest.mark.parametrize(
+    "name",
+    [*sparse([*WIRED, *THINNED]), in_evidence("clock 2.0 s late"), in_evidence("millimetres")],
+)
 def test_positions_alone_show_wiring_and_sizes(session: list[Run], name: str) -> None:
     mistake = EVERY[name]
     first = found([without_yaw(run) for run in session], NOMINAL, mistake).findings[0]

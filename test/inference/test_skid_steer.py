@@ -126,6 +126,7 @@ def test_whoever_asks_for_it_gets_it_and_no_other_number_moves() -> None:
     assert added.robot.wheel_separation_multiplier == 1.0
 
 
+@pytest.mark.evidence
 def test_a_file_that_holds_it_is_fitted_again_by_its_own_name() -> None:
     near = find("skid_steer").using(multiplier=1.6)
     runs = [drive(number) for number in (1, 2, 3)]

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.lookup import find
@@ -33,6 +34,7 @@ def scattered(seed: int) -> Run:
     return replace(run, name=f"run_{seed}", ticks=replace(run.ticks, time=time))
 
 
+@pytest.mark.evidence
 def test_stamps_that_scatter_are_no_slip() -> None:
     slip = find("longitudinal_slip")
     robot = replace(TRUE.entered(), effects=(slip.using(coefficient=0.0),))

@@ -79,6 +79,7 @@ def diagnosed(
     return diagnose(runs, ROBOT, effects, EvaluationOptions(reference_kind="incremental"))
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("seed", "effects"),
     [

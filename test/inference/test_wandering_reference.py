@@ -40,6 +40,7 @@ def sound() -> Diagnosis:
     return seen_by_a_localiser(TRUE.entered())
 
 
+@pytest.mark.evidence
 def test_a_localiser_taken_as_absolute_names_nothing_false(sound: Diagnosis) -> None:
     assert (sound.verdict, sound.found) == ("none", ())
     assert sound.wander is not None
@@ -55,6 +56,7 @@ def test_it_is_said_and_what_follows_reckons_with_it(sound: Diagnosis) -> None:
     assert as_judged(given, replace(sound, wander=None)) is given
 
 
+@pytest.mark.evidence
 def test_an_antenna_has_no_heading_that_wanders() -> None:
     """Its size was the prior's: two degrees, said of positions alone."""
     drives = [parts(run, "positions") for run in session(range(50, 53), jumps=0, seconds=45.0)]
@@ -79,6 +81,7 @@ def satellites(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return 1.5 * error
 
 
+@pytest.mark.evidence
 def test_positions_of_satellites_are_no_law_of_the_floor() -> None:
     """No typical localiser wanders by decimetres in a second, and what was left was *unknown*."""
     drives = []

@@ -83,6 +83,7 @@ def test_the_printed_command_keeps_those_legs_and_what_is_left_is_noise(
     assert wo.diagnose(wo.read_robot(better), drive).to_dict()["verdict"] == "none"
 
 
+@pytest.mark.evidence
 def test_legs_that_are_short_enough_already_are_left_alone(found: Result[AdvisedDiagnosis]) -> None:
     open_still = replace(found.found.diagnosis, verdict="ambiguous", rivals=("right_tread_bump",))
     assert shorter_leg(open_still, 1.0) == pytest.approx(0.1)

@@ -115,6 +115,7 @@ def test_a_base_off_is_told_beside_wheels_that_are_exchanged() -> None:
     assert "On the robot, if it is wheels_swapped: wheel base 3.0" in said
 
 
+@pytest.mark.evidence
 def test_that_a_camera_s_metre_may_be_why_is_said_before_anything_is_added() -> None:
     """Base and radii 1.5 % smaller were written for a camera that shows 1.5 % too little."""
     runs = []
@@ -133,6 +134,7 @@ def test_that_a_camera_s_metre_may_be_why_is_said_before_anything_is_added() -> 
     assert diagnose(runs, by_hand, COMMON).verdict == "none"
 
 
+@pytest.mark.evidence
 def test_noise_alone_leaves_no_more_than_there_is_though_the_file_lacks_a_delay() -> None:
     """Noise alone was to make 9.2 mm of errors of 3.3: the late clock was in the wander."""
     drives = [
