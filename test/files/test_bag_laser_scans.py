@@ -198,7 +198,7 @@ def test_of_a_lidar_that_is_a_little_tilted_it_is_said_what_it_may_see(
 def test_a_floor_that_it_sees_is_told_and_left_out(tmp_path: Path, ros: Any, robot: Any) -> None:
     """Of a lidar that no transform tilts."""
     seen, share = pitched(scanned(path(), rooms.arena(7.0), LIDAR, 1), tilted(4.0), aside=-0.7)
-    told = " ".join(read_run(ros.write(tmp_path / "run", entries(ros, seen)), robot()).notes)
+    (told,) = read_run(ros.write(tmp_path / "run", entries(ros, seen)), robot()).damage
     echoes = np.isfinite(seen.ranges).mean()
     assert f"{100 * share / echoes:.0f} % of the echoes stay on a straight line" in told
     assert "2.4 m away at -40° in its scans" in told
@@ -213,7 +213,7 @@ def test_of_a_lidar_that_stands_it_is_said_what_else_it_may_be(
     lidar = Lidar(beams=160, rate_hz=5.0, lost=0.0)
     drive = replace(ahead(9.0), y_m=0.0 * ahead(9.0).t_s, yaw_rad=0.0 * ahead(9.0).t_s)
     seen, _ = pitched(scanned(drive, rooms.corridor(), lidar, 0), tilted(5.0))
-    told = " ".join(read_run(ros.write(tmp_path / "run", entries(ros, seen, lidar)), robot()).notes)
+    (told,) = read_run(ros.write(tmp_path / "run", entries(ros, seen, lidar)), robot()).damage
     assert "the lidar stands all the time. If it was driven" in told
 
 

@@ -103,15 +103,16 @@ class LidarCollector:
                 words = _other_unit(self._around, self._ranges) or (
                     _lost(found) if self._echoes else _blind(found, self._reach)
                 )
-            raise InputError(f"{self._place}: {words}{_fixed(self._matcher)}")
+            raise InputError(f"{self._place}: {'; '.join((words, *_fixed(self._matcher)))}")
         mount = self._mounting.mount() if self._mounting else None
         poses, covariances, walked = of_base(found, mount or Mount(0.0, 0.0, 0.0))
         # One number for both axes is that of the wider: the mean is too sure along a corridor.
         sigma_xy = np.sqrt(np.linalg.eigvalsh(covariances[:, :2, :2])[:, 1])
         sigma_yaw = np.sqrt(covariances[:, 2, 2])
-        damage = f"the path by {self._name} is in pieces: {_unmatched(found)}"
+        damage = [f"{self._name}: {each}" for each in (*_fixed(self._matcher), *_standing(found))]
+        if found.cuts:
+            damage.append(f"the path by {self._name} is in pieces: {_unmatched(found)}")
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
-        told += _fixed(self._matcher) or _standing(found)
         beams = self._matcher.matcher
         if beams.order != "stated":
             told += (
@@ -135,7 +136,7 @@ class LidarCollector:
             walked=walked,
             covariance=covariances,
         )
-        return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
+        return Collected(reference, told, tuple(damage), tuple(found.cuts))
 
     def _mounted(self, mount: Mount | None) -> str:
         if self._mounting is None or mount is None:
@@ -212,9 +213,10 @@ def _because(found: ScanPath) -> str:
     return f", mostly for {WHY[flag]}" if flag == "few" else f", mostly because {WHY[flag]}"
 
 
-def _fixed(matcher: RoomOdometry) -> str:
+def _fixed(matcher: RoomOdometry) -> tuple[str, ...]:
+    """What goes with the robot, if anything does."""
     if not matcher.lines:
-        return ""
+        return ()
     told = []
     for line in matcher.lines:
         tilt = np.degrees(np.arctan2(_USUAL_HEIGHT, line.distance))
@@ -223,24 +225,25 @@ def _fixed(matcher: RoomOdometry) -> str:
             f"it were {_USUAL_HEIGHT:g} m above the floor and tilted by {tilt:.1f}°)"
         )
     words = (
-        f"; {100.0 * matcher.share:.0f} % of the echoes stay on a straight line at one place "
-        f"before the lidar while the room turns, {' and '.join(told)}: it sees the floor there, or "
-        "the robot itself. They are left out"
+        f"{100.0 * matcher.share:.0f} % of the echoes stay on a straight line at one place before "
+        f"the lidar while the room turns, {' and '.join(told)}: it sees the floor there, or the "
+        "robot itself. They are left out"
     )
     if matcher.lost:
         words += f", and so are the first {matcher.lost} scans, which were matched with them"
-    return words
+    return (words,)
 
 
-def _standing(found: ScanPath) -> str:
+def _standing(found: ScanPath) -> tuple[str, ...]:
     """What else a lidar may have seen that stands by its scans."""
     if np.ptp(found.poses[:, :2], axis=0).max() > FIXED_STANDS:
-        return ""
+        return ()
     if np.std(found.poses[:, 2]) > FIXED_TURNED:
-        return ""
+        return ()
     return (
-        "; by them the lidar stands all the time. If it was driven, what it sees ahead goes with "
-        "it, as the floor does if it is tilted: it turned too little for that to be told from walls"
+        "by its scans the lidar stands all the time. If it was driven, what it sees ahead goes "
+        "with it, as the floor does if it is tilted: it turned too little for that to be told from "
+        "walls",
     )
 
 
