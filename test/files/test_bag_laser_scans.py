@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from test.scans.drives import ahead, in_circles
+from test.scans.test_floor_strikes import pitched, tilted
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bags.bag import opened_bag
 from werrimbi_odom.files.bags.bag_contents import contents_of
@@ -192,6 +193,28 @@ def test_of_a_lidar_that_is_a_little_tilted_it_is_said_what_it_may_see(
     bag = ros.write(tmp_path / "run", entries(ros, sweeps(), turn=(0.0, 0.05)))
     told = " ".join(read_run(bag, robot()).notes)
     assert "tilted by 2.9°: where it looks down, the floor may look like a wall that goes" in told
+
+
+def test_a_floor_that_it_sees_is_told_and_left_out(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Of a lidar that no transform tilts."""
+    seen, share = pitched(scanned(path(), rooms.arena(7.0), LIDAR, 1), tilted(4.0), aside=-0.7)
+    (told,) = read_run(ros.write(tmp_path / "run", entries(ros, seen)), robot()).damage
+    echoes = np.isfinite(seen.ranges).mean()
+    assert f"{100 * share / echoes:.0f} % of the echoes stay on a straight line" in told
+    assert "2.4 m away at -40° in its scans" in told
+    assert "0.2 m above the floor and tilted by 4.7°" in told
+    assert "They are left out" in told
+
+
+def test_of_a_lidar_that_stands_it_is_said_what_else_it_may_be(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Straight along a bare corridor, by the floor alone."""
+    lidar = Lidar(beams=160, rate_hz=5.0, lost=0.0)
+    drive = replace(ahead(9.0), y_m=0.0 * ahead(9.0).t_s, yaw_rad=0.0 * ahead(9.0).t_s)
+    seen, _ = pitched(scanned(drive, rooms.corridor(), lidar, 0), tilted(5.0))
+    (told,) = read_run(ros.write(tmp_path / "run", entries(ros, seen, lidar)), robot()).damage
+    assert "the lidar stands all the time. If it was driven" in told
 
 
 @pytest.mark.parametrize("ranges", [np.inf, np.nan, 0.0, 0.1])

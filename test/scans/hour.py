@@ -15,8 +15,8 @@ import numpy as np
 
 from test.memory import resident
 from test.scans.drives import seen
+from werrimbi_odom.scans.room_odometry import RoomOdometry
 from werrimbi_odom.scans.sweep import Sweep
-from werrimbi_odom.scans.three_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar
@@ -59,7 +59,7 @@ def sweeps(minutes: int, lidar: Lidar) -> Iterator[list[Sweep]]:
 
 def hour(minutes: int = 60, rate_hz: float = 10.0) -> Iterator[Point]:
     """Match them, and look at the clock and the memory every ten minutes."""
-    matcher = ScanMatcher()
+    matcher = RoomOdometry()
     scans, spent = 0, 0.0
     for part, given in enumerate(sweeps(minutes, Lidar(rate_hz=rate_hz)), start=1):
         begun = time.process_time()

@@ -18,6 +18,7 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.limits import (
     LONGEST_SWEEP,
     ORDER_FEWEST,
@@ -63,6 +64,10 @@ class AnyOrder:
             other.take(_seen(sweep, order, turn))
         if self._others:
             self._decide(self._others)
+
+    def headings(self, most: int) -> Floats:
+        """Of the last poses so far; see `ScanMatcher.headings`."""
+        return self._matcher.headings(most)
 
     def path(self) -> ScanPath:
         """The path of all scans taken; call it last.

@@ -83,3 +83,35 @@ carry lasts about as long, and lies in two at most."""
 
 ORDER_MOST = 400
 """Scans without a decision after which the stated order is kept."""
+
+FIXED_SCANS, FIXED_ECHOES = 30, 6
+"""Fewest scans that see a line which is said to go with the robot, and echoes of it in each: three
+seconds at 10 Hz, and a sixth of a radian with 218 beams."""
+
+FIXED_SHARP = 0.3
+"""Largest median distance of echoes from such a line, over the width in which they are sought (6 %
+of its distance). Echoes that fill that width have 0.5; the floor has 0.07 by the noise of
+5 mm and 0.5 %, and by that of 15 mm and 2 % it would have 0.25."""
+
+FIXED_BENT = 0.25
+"""Largest bend of such a line, over four standard deviations of its echoes: the wall of a round
+room stays before a lidar that turns, and so does a round pillar that it goes around."""
+
+FIXED_BEHIND = 0.03
+"""Largest number of echoes behind such a line, over those on it. Behind the floor there are none
+(of 4000 and more two at most); behind lines that many scans of a room have in one place, as the
+robot turns, there are 0.1 to 5 times as many as on them. A wall along a corridor hides what is
+behind it as well, while the robot turns a little: that one is told by `FIXED_SURE`."""
+
+FIXED_TURNED = 0.015
+"""Least change of the heading while such a line is seen (rms) [rad]: four times the noise of a
+heading by a poor lidar. To a lidar at rest all lines stay, while its heading scatters."""
+
+FIXED_SURE = 5.0
+"""Standard deviations by which it must be sure that such a line turns less than half as much as a
+wall does. By 10 to 20 s of corridors in which the heading changes by 30 mrad (rms) walls turn by
+0.75 to 1 of what the lidar does, the floor by 0.00 ± 0.02 to ± 0.04."""
+
+FIXED_STANDS = 0.1
+"""Range of all places up to which a lidar stands, by its scans [m]: ten times the noise of the
+poorest match. What goes with a robot is all that lets a drive look so."""

@@ -42,6 +42,8 @@ USUAL = 0.1
 """Time of a turn until two scans are known [s]."""
 INTERVALS = 15
 """Scans whose median tells how long a turn takes."""
+_COLUMNS = 16
+"""Numbers of each pose: time, pose, covariance, walk, piece."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,7 @@ class ScanMatcher:
         self._begun, self._scans = False, 0
         self._flags: Counter[Flag] = Counter()
         self._second, self._third = _PassAgain(self._flags), _PassAgain(self._flags)
-        self._found = array("d")  # of each pose: time, pose, covariance, walk, piece
+        self._found = array("d")
         self.scatter: dict[float, float] = {}
         """By the time of the first scans in which the lidar turned: how far their echoes lie from
         the walls [m]."""
@@ -131,10 +133,15 @@ class ScanMatcher:
         self._begun, self._failed = True, 0
         self._again(self._second.take(_Seen(sweep, self._first.pose, self._clock)))
 
+    def headings(self, most: int) -> Floats:
+        """Time [s], heading [rad] and piece of the last poses so far, at most so many, (n, 3)."""
+        table = np.array(self._found[-_COLUMNS * most :]).reshape(-1, _COLUMNS)
+        return np.asarray(table[:, [0, 3, 15]])
+
     def path(self) -> ScanPath:
         """The path of all scans that were taken; the last call of all."""
         self._cut()
-        table = np.array(self._found).reshape(-1, 16)
+        table = np.array(self._found).reshape(-1, _COLUMNS)
         piece = table[:, 15].astype(np.intp)
         kept = np.bincount(piece, minlength=1)[piece] >= FEWEST_POSES
         poses = table[kept, 1:4]

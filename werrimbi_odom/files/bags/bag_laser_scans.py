@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Poses from a lidar, by matching scans as they are read; no scan is stored."""
+"""Poses from a lidar, by matching scans as they are read."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from werrimbi_odom.files.bags.measured_topic import Measured
 from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.run import Collected, Reference
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.beam_order import AnyOrder, Order
-from werrimbi_odom.scans.limits import LONGEST_SWEEP
+from werrimbi_odom.scans.beam_order import Order
+from werrimbi_odom.scans.limits import FIXED_STANDS, FIXED_TURNED, LONGEST_SWEEP
+from werrimbi_odom.scans.room_odometry import RoomOdometry
 from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.scans.three_pass_odometry import ScanPath
@@ -40,6 +41,9 @@ _FAR = 200.0
 _LEVEL = np.radians(1.0)
 """Tilt above which the floor may be seen [rad]: from 17 cm above it, 10 m ahead."""
 
+_USUAL_HEIGHT = 0.2
+"""Height above the floor for which a tilt is told [m]: of most small robots 0.1 to 0.3 m."""
+
 _ORDERS: dict[Order, str] = {
     "first to last": "from the first to the last",
     "last to first": "from the last to the first",
@@ -55,7 +59,7 @@ class LidarCollector:
         self._name = source.name
         self._frame = source.child
         self._mounting = ChainCollector(self._place, mounting) if mounting else None
-        self._matcher = AnyOrder()
+        self._matcher = RoomOdometry()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self._undirected = 0
         self._around, self._ranges = 0.0, list[float]()
@@ -99,19 +103,22 @@ class LidarCollector:
                 words = _other_unit(self._around, self._ranges) or (
                     _lost(found) if self._echoes else _blind(found, self._reach)
                 )
-            raise InputError(f"{self._place}: {words}")
+            raise InputError(f"{self._place}: {'; '.join((words, *_fixed(self._matcher)))}")
         mount = self._mounting.mount() if self._mounting else None
         poses, covariances, walked = of_base(found, mount or Mount(0.0, 0.0, 0.0))
         # One number for both axes is that of the wider: the mean is too sure along a corridor.
         sigma_xy = np.sqrt(np.linalg.eigvalsh(covariances[:, :2, :2])[:, 1])
         sigma_yaw = np.sqrt(covariances[:, 2, 2])
-        damage = f"the path by {self._name} is in pieces: {_unmatched(found)}"
+        damage = [f"{self._name}: {each}" for each in (*_fixed(self._matcher), *_standing(found))]
+        if found.cuts:
+            damage.append(f"the path by {self._name} is in pieces: {_unmatched(found)}")
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
-        if self._matcher.order != "stated":
+        beams = self._matcher.matcher
+        if beams.order != "stated":
             told += (
-                f"; its beams are deskewed {_ORDERS[self._matcher.order]}, for so the walls are "
+                f"; its beams are deskewed {_ORDERS[beams.order]}, for so the walls are "
                 "sharper while it turns: its driver states them "
-                f"{'all at one instant' if self._matcher.at_once else 'the other way round'}"
+                f"{'all at one instant' if beams.at_once else 'the other way round'}"
             )
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
         # Not local_map: in a room the map drifts by less than the error of a match (docs/scans.md),
@@ -129,7 +136,7 @@ class LidarCollector:
             walked=walked,
             covariance=covariances,
         )
-        return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
+        return Collected(reference, told, tuple(damage), tuple(found.cuts))
 
     def _mounted(self, mount: Mount | None) -> str:
         if self._mounting is None or mount is None:
@@ -204,6 +211,40 @@ def _because(found: ScanPath) -> str:
         return ""
     flag = max(found.flags, key=lambda each: found.flags[each])
     return f", mostly for {WHY[flag]}" if flag == "few" else f", mostly because {WHY[flag]}"
+
+
+def _fixed(matcher: RoomOdometry) -> tuple[str, ...]:
+    """What goes with the robot, if anything does."""
+    if not matcher.lines:
+        return ()
+    told = []
+    for line in matcher.lines:
+        tilt = np.degrees(np.arctan2(_USUAL_HEIGHT, line.distance))
+        told.append(
+            f"{line.distance:.1f} m away at {round(np.degrees(line.bearing))}° in its scans (as if "
+            f"it were {_USUAL_HEIGHT:g} m above the floor and tilted by {tilt:.1f}°)"
+        )
+    words = (
+        f"{100.0 * matcher.share:.0f} % of the echoes stay on a straight line at one place before "
+        f"the lidar while the room turns, {' and '.join(told)}: it sees the floor there, or the "
+        "robot itself. They are left out"
+    )
+    if matcher.lost:
+        words += f", and so are the first {matcher.lost} scans, which were matched with them"
+    return (words,)
+
+
+def _standing(found: ScanPath) -> tuple[str, ...]:
+    """What else a lidar may have seen that stands by its scans."""
+    if np.ptp(found.poses[:, :2], axis=0).max() > FIXED_STANDS:
+        return ()
+    if np.std(found.poses[:, 2]) > FIXED_TURNED:
+        return ()
+    return (
+        "by its scans the lidar stands all the time. If it was driven, what it sees ahead goes "
+        "with it, as the floor does if it is tilted: it turned too little for that to be told from "
+        "walls",
+    )
 
 
 def _undirected(count: int, found: ScanPath) -> str:
