@@ -109,6 +109,8 @@ class GyroTurn(NamedTuple):
     scale: float
     """Turn of the other reference over that of the gyro, estimated from this drive alone."""
     std: float
+    by_course: bool = False
+    """Whether it was aligned with the direction of positions, which hold no headings."""
 
 
 @dataclass(frozen=True, eq=False)

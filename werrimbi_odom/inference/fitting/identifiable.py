@@ -33,6 +33,9 @@ SIZE = "wheel_radius_scale"
 CALIBRATED = ("track_width", "unequal_wheel_radii", SIZE)
 """Effects equivalent to the robot file's multipliers, in order of precedence."""
 
+NOT_BY_COURSE = ("reference_yaw_offset", "sideways_drift")
+"""Effects that nothing tells where headings were laid upon the direction of the path."""
+
 
 @dataclass(frozen=True, slots=True)
 class Directions:
