@@ -111,6 +111,8 @@ class GyroTurn(NamedTuple):
     std: float
     by_course: bool = False
     """Whether it was aligned with the direction of positions, which hold no headings."""
+    mount: float = 0.0
+    """Angle to that direction at which the robot file has it, which `Reference.yaw` holds [rad]."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
 
+ANGLES = {"reference_yaw_offset": 1.0, "sideways_drift": -1.0}
+"""Effects that are an angle between heading and path, which a path does not tell, with its sign."""
 LONG, LEAST = 10.0, 0.1
 """Length of a part of the path, in the noise of a position and at least [m]: its direction is then
 known to 8 degrees, and that of a hundred to one."""
@@ -32,7 +34,7 @@ COHERENT, BY_CHANCE = 0.5, 10.0
 least log of the odds against its being chance."""
 DRIFT_MOST = 0.2
 """Largest drift that is looked for [rad/s]: 11 degrees a second, a gyro without calibration."""
-UNSURE = 0.1
+UNSURE = 0.2
 """Largest standard deviation of the heading anywhere in the drive [rad]: the fits of a model, which
 find it anew by all that they know, are linear so far."""
 TURNED_MOST = 1.0

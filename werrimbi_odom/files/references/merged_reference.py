@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.references.course_alignment import course_fit
+from werrimbi_odom.files.references.course_alignment import ANGLES, course_fit
 from werrimbi_odom.files.run import GyroTurn, Reference
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 FEWEST = 10
 """Least number of common headings: fewer do not separate offset and drift from noise."""
@@ -85,6 +86,20 @@ def merged(
             "whose clock they are put"
         )
     return replace(poses, yaw=laid, sigma_yaw=None, covariance=None, gyro=gyro), words
+
+
+def as_mounted(reference: Reference, robot: Robot) -> Reference:
+    """Turn headings that were laid upon a path to the angle that a robot file has between both.
+
+    It was found with another reference, and the path tells nothing of it.
+    """
+    gyro = reference.gyro
+    if gyro is None or not gyro.by_course:
+        return reference
+    applied = [each for each in robot.effects if each.name in ANGLES]
+    mount = sum(ANGLES[each.name] * each.values["angle"] for each in applied)
+    yaw = reference.yaw + mount - gyro.mount
+    return replace(reference, yaw=yaw, gyro=gyro._replace(mount=mount))
 
 
 def _upon_course(

@@ -142,8 +142,8 @@ the motors shake it and it warms up."""
 COURSE_DRIFT = 1e-2
 """Standard deviation of the drift of a gyro's headings that were laid upon the direction of a path
 [rad/s], so wide that it has no influence: the positions that laid them tell it once more
-(`UNKNOWN_HEADING` is that of their angle). They are refused where both together are off by a tenth
-of a radian at an end of the drive, which in half a minute is a third of this."""
+(`UNKNOWN_HEADING` is that of their angle). They are refused where both together are off by a fifth
+of a radian at an end of the drive, which in half a minute is two thirds of this."""
 
 FAR_ABOVE_NOISE = 2.5
 """Errors of legs relative to those by the noise of the softest wheels, above which a model is wrong
