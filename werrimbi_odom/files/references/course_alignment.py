@@ -37,6 +37,10 @@ DRIFT_MOST = 0.2
 UNSURE = 0.2
 """Largest standard deviation of the heading anywhere in the drive [rad]: the fits of a model, which
 find it anew by all that they know, are linear so far."""
+DISTINCT, APART = 2.0, 0.3
+"""Least way of a part (rms) that a point off the axle would not go by the turning alone: in the
+scatter to the side, and as a share of the whole way. On the spot it is that scatter, and a sixth
+where turns begin and end a tenth of a second beside the gyro's."""
 TURNED_MOST = 1.0
 """Largest turn between positions [rad]; where a robot went meanwhile is not known beyond."""
 _MEDIAN_TO_SIGMA = 1.4826  # of a normal distribution
@@ -113,6 +117,10 @@ def course_fit(
     heading = scatter**2 * _precision_inverse(columns, [0, 1])
     ends_of_drive = np.array([[1.0, 0.0], [1.0, since[-1]]])
     unsure = float(np.sqrt(np.max(np.sum((ends_of_drive @ heading) * ends_of_drive, axis=1))))
+    way, free = columns[:, :1], _free_of(columns[:, 3:], columns[:, :1])
+    usual, apart = (float(np.sqrt(np.mean(each**2))) for each in (way, free))
+    if apart < max(DISTINCT * scatter, APART * usual):
+        unsure = np.pi
     if not unsure < UNSURE:
         return (
             f"the direction of the path tells its heading to ±{np.degrees(min(unsure, np.pi)):.2g}°"
@@ -188,7 +196,11 @@ def _precision_inverse(columns: Floats, wanted: list[int]) -> Floats:
     """Covariance of some coefficients for values of unit noise, with all others free."""
     own, others = columns[:, wanted], np.delete(columns, wanted, axis=1)
     size = np.maximum(np.linalg.norm(own, axis=0), 1e-12)
-    free = own / size
-    free = free - others @ np.linalg.lstsq(others, free, rcond=1e-9)[0]
+    free = _free_of(others, own / size)
     inverse = np.linalg.inv(free.T @ free + 1e-12 * np.eye(len(wanted)))
     return np.asarray(inverse / np.outer(size, size))
+
+
+def _free_of(others: Floats, columns: Floats) -> Floats:
+    """What other columns do not explain of some."""
+    return np.asarray(columns - others @ np.linalg.lstsq(others, columns, rcond=1e-9)[0])
