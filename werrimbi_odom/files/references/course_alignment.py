@@ -44,7 +44,6 @@ where turns begin and end a tenth of a second beside the gyro's."""
 TURNED_MOST = 1.0
 """Largest turn between positions [rad]; where a robot went meanwhile is not known beyond."""
 _MEDIAN_TO_SIGMA = 1.4826  # of a normal distribution
-_MEDIAN_OF_LENGTHS = 1.1774  # of normal vectors in a plane, in their standard deviation
 _HUBER = 1.345
 _ROUNDS = 20
 
@@ -80,7 +79,7 @@ def course_fit(
     turn = np.diff(np.interp(time, *gyro))
     known = np.abs(turn) < TURNED_MOST
     steps = np.where(known, np.diff(place) * np.conj(facing), 0.0)
-    noise = float(np.median(np.abs(np.diff(steps)))) / (_MEDIAN_OF_LENGTHS * np.sqrt(6.0))
+    noise = _scatter(np.diff(steps)) / np.sqrt(6.0)
     begins, last = _parts(steps, max(LONG * noise, LEAST))
     if begins.size < FEWEST:
         return (
@@ -136,6 +135,12 @@ def _middles(values: Floats) -> Floats:
     return np.asarray(0.5 * (values[1:] + values[:-1]))
 
 
+def _scatter(changes: Complex) -> float:
+    """Standard deviation of the changes of steps to the side; ahead a robot speeds up."""
+    ahead = 0.5 * np.angle(np.sum(changes**2 / np.maximum(np.abs(changes), 1e-12)))
+    return _MEDIAN_TO_SIGMA * float(np.median(np.abs((changes * np.exp(-1j * ahead)).imag)))
+
+
 def _mean_direction(gyro: tuple[Floats, Floats], time: Floats) -> Complex:
     """Direction of the way between stamps by a gyro's headings, if the speed is even, (n - 1,)."""
     stamps, yaw = gyro
@@ -174,7 +179,8 @@ def _roughly(ways: Complex, turns: Floats, at: Floats, lasted: float) -> tuple[f
     best = int(np.argmax(np.abs(sums)))
     share = float(np.abs(sums[best]) / weight[few].sum())
     count = float(weight[few].sum() ** 2 / np.sum(weight[few] ** 2))
-    if share < COHERENT or count * share**2 < np.log(drifts.size) + BY_CHANCE:
+    chance = (count - 1.0) * np.log(max(1.0 - share**2, 1e-12))
+    if share < COHERENT or -chance < np.log(drifts.size) + BY_CHANCE:
         return None
     return 0.5 * float(np.angle(sums[best])), float(drifts[best])
 
