@@ -530,3 +530,27 @@ def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(
     told = werrimbi("info", bag).words
     assert "No reference as it is: /velodyne_points, clouds of points" in told
     assert "pointcloud_to_laserscan makes them of it" in told
+
+
+def test_satellites_and_a_gyro_are_taken_together(tmp_path: Path, werrimbi: Werrimbi) -> None:
+    """As they were read to tell it, so the command that it prints reads them."""
+    pytest.importorskip("pyproj")
+    ros, run = Messages(), run_of(ROBOT, 1, 40)
+    seen, random = run.reference, np.random.default_rng(5)
+    assert seen is not None
+    sent = [*gyro(ros, run), *joints(ros, run)]
+    for time, x, y in list(zip(seen.time, seen.x, seen.y, strict=True))[::4]:
+        east, north = np.array([x, y]) + 0.01 * random.standard_normal(2)
+        degrees = float(50.0 + north / 111229.0), float(10.0 + east / 71696.0)
+        sent.append(("/gps/fix", stamp_of(time), ros.fix(stamp_of(time), degrees)))
+    bag = ros.write(tmp_path / "bag", sorted(sent, key=lambda entry: entry[1]))
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(
+        ROBOT_FILE + f"    left_wheel_names: [{JOINTS[0]}]\n    right_wheel_names: [{JOINTS[1]}]\n"
+    )
+    printed = werrimbi("info", bag, "--robot", robot).words
+    assert "satellites). Its positions are taken." in printed
+    assert "Its headings are taken. " in printed
+    command = shlex.split(printed.split("Next:")[1].replace("\\\n", ""))
+    topics = [command[n + 1] for n, word in enumerate(command) if word == "--reference-topic"]
+    assert topics == ["/gps/fix", "/imu"]

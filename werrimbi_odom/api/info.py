@@ -158,7 +158,7 @@ def _as_read(
 
 
 def _with_gyro(path: Path, held: Held, file: RobotFile) -> Run | None:
-    """The run with a localiser's positions and a gyro's headings; None if that is not to be had.
+    """The run with others' positions and a gyro's headings; None if that is not to be had.
 
     A localiser's headings wander by more than most effects turn a robot in a metre. A gyro's do
     not, and the localiser frees them of their drift. It also tells a gyro that is dead, turned over

@@ -126,9 +126,10 @@ def _asked_for(contents: Contents, wheels: Wheels | None, wish: str | None) -> M
 
 
 def _gyro(references: Sequence[Measured], reference: Measured | None) -> Measured | None:
-    """A gyro that may give the headings beside the poses of a localiser."""
-    if reference is None or reference.measures != "poses":
+    """A gyro that may give the headings beside a localiser's poses, or beside positions."""
+    if reference is None or reference.measures == "yaw":
         return None
-    if reference.chain is None and reference.kind != LOCALISED:  # motion capture, scans
+    localised = reference.chain is not None or reference.kind == LOCALISED
+    if reference.measures == "poses" and not localised:  # motion capture, scans
         return None
     return _best([each for each in references if each.measures == "yaw"], None)

@@ -124,8 +124,8 @@ def add_recording_arguments(
         action="append",
         help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms; "
         "the scans of a lidar are matched with those of the last metres. "
-        "Given twice, for poses and for a gyro: the positions of the one with the headings of the "
-        "other",
+        "Given twice, for poses or positions and for a gyro: the positions of the one with the "
+        "headings of the other",
     )
     words = ", then once for each of --holdout" if holdout else ""
     declare(parser, "--reference", help=f"{OPTIONS['--reference']['help']}{words}")
@@ -157,7 +157,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     )
     if arguments.reference_kind is None and wanders:
         circles.append(
-            "the reference is a localiser (or satellites), whose errors wander: it is taken as "
+            "the reference is a localiser (or satellites, or a gyro laid upon positions), whose "
+            "errors wander: it is taken as "
             "--reference-kind local_map (absolute takes each pose's error as new)"
         )
     of_columns = not any(run.of_bag for run in (*found.runs, *found.holdout))

@@ -16,7 +16,7 @@ from werrimbi_odom.files.evaluation_options import LEAST, MOST, EvaluationOption
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.references.gyro_headings import as_of_a_gyro
 from werrimbi_odom.files.references.held_poses import without_held_poses
-from werrimbi_odom.files.references.merged_reference import with_one_scale
+from werrimbi_odom.files.references.merged_reference import as_mounted, with_one_scale
 from werrimbi_odom.files.robot_files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_bag import Topics
@@ -154,6 +154,8 @@ def gathered(
         else:
             show(number / len(drives), f"reading {drive.name}")
             run = _read(drive, source, how, references[number])
+        if run.reference is not None:
+            run = replace(run, reference=as_mounted(run.reference, source.robot))
         run = without_zeros(run)
         refuse_unjudgeable(run, source.robot)
         found.append(run)

@@ -109,6 +109,10 @@ class GyroTurn(NamedTuple):
     scale: float
     """Turn of the other reference over that of the gyro, estimated from this drive alone."""
     std: float
+    by_course: bool = False
+    """Whether it was aligned with the direction of positions, which hold no headings."""
+    mount: float = 0.0
+    """Angle to that direction at which the robot file has it, which `Reference.yaw` holds [rad]."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -123,7 +123,8 @@ def _references(held: Held) -> Iterator[str]:
         if each == held.reference and not held.problem:
             taken = " It is taken." if held.beside is None else " Its positions are taken."
         elif held.beside is not None and each == held.beside and not held.problem:
-            taken = " Its headings are taken: they wander less."
+            others = held.reference is not None and held.reference.measures == "poses"
+            taken = f" Its headings are taken{': they wander less' if others else ''}."
         kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"

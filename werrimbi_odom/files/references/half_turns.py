@@ -34,16 +34,23 @@ FEWEST = 20
 CLEARLY = 0.5
 """Correlation of the way along the headings with that of the wheels that tells ahead from behind: 1
 if the robot only drives and everything is set up right, 0 if one counter has the wrong sign."""
+SURELY = 5.0
+"""Standard deviations of such a correlation by chance beyond which it tells the sense of headings
+that were laid upon the path of positions, whose noise hides most of the way from one to the next.
+"""
 
 
 def without_half_turns(run: Run, bits: int) -> Run:
     """With all headings of one sense: ahead where the wheels roll ahead, else that of most of them.
 
-    Unchanged if none turns round at once. `bits`: of the counters, if they begin anew.
+    Unchanged if none turns round at once; headings that were laid upon a path are as a whole.
+    `bits`: of the counters, if they begin anew.
     """
     reference = run.reference
     if reference is None or reference.own_axes:
         return run
+    if reference.gyro is not None and reference.gyro.by_course:
+        return _as_it_rolls(run, reference, bits)
     rows = np.flatnonzero(reference.has_yaw)
     if rows.size < FEWEST:
         return run
@@ -66,6 +73,21 @@ def without_half_turns(run: Run, bits: int) -> Run:
     return replace(run, reference=replace(reference, yaw=headings), damage=(*run.damage, words))
 
 
+def _as_it_rolls(run: Run, reference: Reference, bits: int) -> Run:
+    """With headings that were laid upon a path turned round, if the wheels roll back along them.
+
+    Wheels that also turn the other way are wired wrongly; then the headings stay.
+    """
+    seen = reference.chosen(reference.has_yaw & reference.has_position)
+    ticks = run.ticks.unwrapped(bits)
+    back = _ahead(ticks, seen, seen.yaw) * np.sqrt(max(seen.time.size, 1)) < -SURELY
+    if not back or _turns_alike(ticks, seen) < CLEARLY:
+        return run
+    words = "by its wheels it drove mostly backwards, and so the headings are turned by 180°"
+    turned = replace(reference, yaw=reference.yaw + np.pi)
+    return replace(run, reference=turned, notes=(*run.notes, words))
+
+
 def _turned_round(seen: Reference) -> NDArray[np.bool_]:
     """Which headings look the other way than the first, (m,)."""
     turns = wrap_all(np.diff(seen.yaw))
@@ -81,13 +103,25 @@ def _turned_round(seen: Reference) -> NDArray[np.bool_]:
 
 def _ahead(ticks: Ticks, seen: Reference, yaw: Floats) -> float:
     """Correlation of the ways along the headings with those of the wheels; 0 without positions."""
+    steps = (np.diff(seen.x) + 1j * np.diff(seen.y)) * np.exp(-1j * yaw[:-1])
     counted = ticks.left.astype(np.float64) + ticks.right.astype(np.float64)
+    return _correlation(steps.real, counted, ticks, seen)
+
+
+def _turns_alike(ticks: Ticks, seen: Reference) -> float:
+    """Correlation of the turns with those of the wheels."""
+    counted = ticks.right.astype(np.float64) - ticks.left.astype(np.float64)
+    return _correlation(wrap_all(np.diff(seen.yaw)), counted, ticks, seen)
+
+
+def _correlation(steps: Floats, counted: Floats, ticks: Ticks, seen: Reference) -> float:
+    """Correlation of steps from pose to pose with those of some counts; 0 if none is known."""
     read = np.isfinite(counted)
     if not read.any():
         return 0.0
     stamps = np.maximum.accumulate(ticks.time[read])
-    steps = (np.diff(seen.x) + 1j * np.diff(seen.y)) * np.exp(-1j * yaw[:-1])
     rolled = np.diff(np.interp(seen.time, stamps, counted[read]))
     known = np.isfinite(steps)
-    along, rolled = steps.real[known], rolled[known]
-    return float(along @ rolled / max(np.linalg.norm(along) * np.linalg.norm(rolled), 1e-12))
+    steps, rolled = steps[known], rolled[known]
+    sizes = float(np.linalg.norm(steps) * np.linalg.norm(rolled))
+    return float(steps @ rolled) / max(sizes, 1e-12)

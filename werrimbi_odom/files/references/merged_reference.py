@@ -19,8 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.references.course_alignment import ANGLES, course_fit
 from werrimbi_odom.files.run import GyroTurn, Reference
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 FEWEST = 10
 """Least number of common headings: fewer do not separate offset and drift from noise."""
@@ -54,20 +56,18 @@ def merged(
             "the other headings alone (a localiser and a gyro); judge others one after the other"
         )
     (headings,), (poses,) = alone, whole
-    if int(poses.has_yaw.sum()) < FEWEST:
-        raise InputError(
-            f"{place}: the one with positions holds no headings, by which the other's could be "
-            "laid upon its map; judge them one after the other"
-        )
     time, yaw = _ascending(headings)
+    by_course = int(poses.has_yaw.sum()) < FEWEST
     inside = (poses.time >= time[0]) & (poses.time <= time[-1]) if time.size else poses.time < 0.0
-    both = inside & poses.has_yaw
+    both = inside & (poses.has_position if by_course else poses.has_yaw)
     if int(both.sum()) < FEWEST:
         raise InputError(
             f"{place}: they were not recorded at the same time: {_span(poses.time)} and "
             f"{_span(headings.time)}"
         )
     since = poses.time - poses.time[both][0]
+    if by_course:
+        return _upon_course(place, poses, (time, yaw), inside, since)
     piece = np.searchsorted([end for _, end in cuts], poses.time, side="right")
     pieces = (piece[:, None] == np.arange(len(cuts) + 1)).astype(np.float64)
     columns = np.column_stack([pieces, since])
@@ -77,12 +77,8 @@ def merged(
     read = time + late, yaw
     told, gyro, drift = _gyro_turn(read, pieces[both], columns, at, apart, both)
     laid = np.where(inside, at + columns @ told, np.nan)
-    degrees = np.degrees(60.0 * drift)
     each = f", in each of its {len(cuts) + 1} pieces by itself," if cuts else ""
-    words = (
-        f"headings are those of the one without positions, turned onto the other's{each} and freed "
-        f"of a steady drift of {degrees:+.2g}° a minute"
-    )
+    words = _words(f"turned onto the other's{each}", drift)
     if late:
         when = "before" if late > 0.0 else "after"
         words += (
@@ -90,6 +86,63 @@ def merged(
             "whose clock they are put"
         )
     return replace(poses, yaw=laid, sigma_yaw=None, covariance=None, gyro=gyro), words
+
+
+def as_mounted(reference: Reference, robot: Robot) -> Reference:
+    """Turn headings that were laid upon a path to the angle that a robot file has between both.
+
+    It was found with another reference, and the path tells nothing of it.
+    """
+    gyro = reference.gyro
+    if gyro is None or not gyro.by_course:
+        return reference
+    applied = [each for each in robot.effects if each.name in ANGLES]
+    mount = sum(ANGLES[each.name] * each.values["angle"] for each in applied)
+    yaw = reference.yaw + mount - gyro.mount
+    return replace(reference, yaw=yaw, gyro=gyro._replace(mount=mount))
+
+
+def _upon_course(
+    place: str,
+    poses: Reference,
+    gyro: tuple[Floats, Floats],
+    inside: NDArray[np.bool_],
+    since: Floats,
+) -> tuple[Reference, str]:
+    """Combine positions without headings with a gyro's, laid upon the direction of their path."""
+    at = np.interp(poses.time, *gyro)
+    rows = np.flatnonzero(inside & poses.has_position)
+    time = poses.time[rows]
+    rows = rows[np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0.0])]
+    columns = np.column_stack([np.ones_like(since), since])
+    clear = np.linalg.lstsq(columns[rows], at[rows], rcond=None)[0]
+    turned = at - columns @ clear
+    path = poses.x[rows] + 1j * poses.y[rows]
+    found = course_fit(poses.time[rows], path, gyro, turned[rows])
+    if isinstance(found, str):
+        raise InputError(
+            f"{place}: the one with positions holds no headings, and {found}; else judge them one "
+            "after the other"
+        )
+    laid = np.where(inside, at + found.angle + found.drift * since, np.nan)
+    sure = SCALE_TOLD * found.scale_std < abs(found.scale - 1.0) < SCALE_MOST
+    drift = found.drift - (float(clear[1]) * (found.scale - 1.0) if sure else 0.0)
+    turn = GyroTurn(*gyro, turned, found.scale, found.scale_std, by_course=True)
+    words = (
+        f"{_words('laid upon the direction of the path', drift)} (which tells them to "
+        f"±{np.degrees(found.unsure):.1g}°, ahead being where most of the way goes); so neither "
+        "an angle at which the robot drives nor one at which the gyro sits is told by them"
+    )
+    seen = replace(poses, yaw=laid, sigma_yaw=None, covariance=None, gyro=turn, kind="local_map")
+    return seen, words
+
+
+def _words(how: str, drift: float) -> str:
+    degrees = np.degrees(60.0 * drift)
+    return (
+        f"headings are those of the one without positions, {how} and freed of a steady drift of "
+        f"{degrees:+.2g}° a minute"
+    )
 
 
 def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> list[Reference]:

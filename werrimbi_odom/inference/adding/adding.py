@@ -60,7 +60,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     NUISANCES,
     Model,
 )
-from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, NOT_BY_COURSE
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, beyond_wheel_noise, with_noise
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
@@ -199,6 +199,12 @@ def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
             raise InputError(
                 f"{effect.name} looks at the measured channel {channel}, a column of "
                 f"ticks.csv, and {run.name} has none"
+            )
+        gyro = None if run.reference is None else run.reference.gyro
+        if effect.name in NOT_BY_COURSE and gyro is not None and gyro.by_course:
+            raise InputError(
+                f"{effect.name} is an angle between heading and path, and the headings of "
+                f"{run.name} were laid upon its path: they tell nothing of it"
             )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference.fitting.candidate import Candidate, usual_view
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.identifiable import NOT_BY_COURSE
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.drive_of_run import mirrored
 from werrimbi_odom.model.effect import AppliedEffect, Effect
@@ -101,8 +102,9 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
     The acceleration by a coarse counter is that of its steps, which a linear law adds up to the
     true one, and no other does. A scan tells place and heading of one instant: no gyro has a part
     in it, and its heading is not later than its place, unless a gyro's headings were put in. Where
-    no heading was measured, none is late or drifts. A clock gains nothing where the recorder's
-    shows that it does not. A robot that is driven by four wheels has no castor.
+    no heading was measured, none is late or drifts. Where headings were laid upon the direction of
+    the path, the robot drives along them by construction. A clock gains nothing where the
+    recorder's shows that it does not. A robot that is driven by four wheels has no castor.
     """
     if robot.wheels_a_side > 1:
         effects = [each for each in effects if not _of_a_castor(each)]
@@ -111,6 +113,8 @@ def able(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[E
         effects = [each for each in effects if each.lacks(()) or not _bends(each, drive)]
     if runs.of_one_rate:
         effects = [each for each in effects if not _of_a_clock(each)]
+    if runs.has_course_headings:
+        effects = [each for each in effects if each.name not in NOT_BY_COURSE]
     of_places = runs.positions_alone or runs.own_axes
     if not of_places or runs.has_gyro_headings:
         return tuple(effects)

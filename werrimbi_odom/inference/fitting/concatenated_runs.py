@@ -110,8 +110,14 @@ class Concatenated:
 
     @property
     def has_gyro_headings(self) -> bool:
-        """Whether headings come from a gyro aligned to those of a localiser."""
+        """Whether headings come from a gyro aligned with another reference."""
         return any(run.measured.gyro is not None for run in self.runs)
+
+    @property
+    def has_course_headings(self) -> bool:
+        """Whether they were aligned with the direction of the path, so that it tells no crab."""
+        gyros = (run.measured.gyro for run in self.runs)
+        return any(gyro is not None and gyro.by_course for gyro in gyros)
 
     @property
     def has_coarse_counters(self) -> bool:

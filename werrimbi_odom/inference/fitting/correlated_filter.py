@@ -46,6 +46,16 @@ class GyroHeading(NamedTuple):
     """Duration of each leg, (m,) [s]."""
     walk: Floats
     """Random walk of the gyro, variance per second, (g,) [rad²/s]."""
+    by_course: bool = False
+    """Whether they were aligned with the direction of the positions, which tell it here too."""
+
+    @property
+    def known(self) -> Floats:
+        """Initial variances of the error of their angle, their scale and their drift."""
+        scale = rules.LAID_SCALE**2
+        if self.by_course:
+            return np.array([rules.UNKNOWN_HEADING, scale, rules.COURSE_DRIFT**2])
+        return np.array([rules.LAID_YAW**2, scale, rules.LAID_DRIFT**2])
 
 
 class GaussMarkovError(NamedTuple):
@@ -83,8 +93,8 @@ class GaussMarkovError(NamedTuple):
         """Initial variance of all states other than the pose, (g, 3 or 5)."""
         if self.laid is None:
             return self.variance
-        known = np.square([rules.LAID_YAW, rules.LAID_SCALE, rules.LAID_DRIFT])
-        return np.column_stack([self.variance[:, :2], np.tile(known, (len(self.variance), 1))])
+        known = np.tile(self.laid.known, (len(self.variance), 1))
+        return np.column_stack([self.variance[:, :2], known])
 
 
 def filtered_with_correlated_error(legs: FilterInput, wander: GaussMarkovError) -> FilterResult:

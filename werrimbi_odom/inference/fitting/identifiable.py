@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.files.references.course_alignment import ANGLES
 from werrimbi_odom.inference.fitting.free_parameters import (
     MULTIPLIERS,
     FreeParameter,
@@ -32,6 +33,9 @@ from werrimbi_odom.model.robot import Robot
 SIZE = "wheel_radius_scale"
 CALIBRATED = ("track_width", "unequal_wheel_radii", SIZE)
 """Effects equivalent to the robot file's multipliers, in order of precedence."""
+
+NOT_BY_COURSE = tuple(ANGLES)
+"""Effects that nothing tells where headings were laid upon the direction of the path."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -190,7 +190,8 @@ def innovations(
         kept = np.exp(-np.sqrt(variances.reversion)[:, None] * runs.duration)
         laid = None
         if runs.has_gyro_headings:
-            laid = GyroHeading(prediction.turn, runs.duration, variances.walk_yaw)
+            walk, by_course = variances.walk_yaw, runs.has_course_headings
+            laid = GyroHeading(prediction.turn, runs.duration, walk, by_course)
         lost = runs.lost if excluded is None else runs.lost | (runs.gap & excluded)
         wander = GaussMarkovError(variances.wandered(), kept, runs.gap, lost, heading, laid)
         found = filtered_with_correlated_error(legs, wander)

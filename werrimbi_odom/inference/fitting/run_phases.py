@@ -24,7 +24,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     changed,
     parameters_to_fit,
 )
-from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED, NOT_BY_COURSE
 from werrimbi_odom.inference.fitting.score_tests import Score, scores
 from werrimbi_odom.inference.fitting.whitened_innovations import Point
 from werrimbi_odom.model.effect import AppliedEffect, extended_by
@@ -75,9 +75,11 @@ def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Free
     law is free where the robot has a value of it.
     """
     numbers: list[FreeParameter] = []
-    extended = extended_by(point.model.robot.effects)
+    held = (*CALIBRATED, *extended_by(point.model.robot.effects))
+    if runs.has_course_headings:
+        held = (*held, *NOT_BY_COURSE)
     for applied in point.model.robot.effects:
-        if applied.effect.is_mistake or applied.name in (*CALIBRATED, *extended):
+        if applied.effect.is_mistake or applied.name in held:
             continue  # sizes are in every fit, and what extends an effect holds all of it
         shared = tuple(
             name

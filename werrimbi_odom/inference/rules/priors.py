@@ -139,6 +139,12 @@ drive's own. By headings alone the drift is how a gyro's bias while the robot dr
 that at rest: 0.06 degrees a second, above the 0.01 or less by which a bias wanders in minutes, as
 the motors shake it and it warms up."""
 
+COURSE_DRIFT = 1e-2
+"""Standard deviation of the drift of a gyro's headings that were laid upon the direction of a path
+[rad/s], so wide that it has no influence: the positions that laid them tell it once more
+(`UNKNOWN_HEADING` is that of their angle). They are refused where both together are off by a fifth
+of a radian at an end of the drive, which in half a minute is two thirds of this."""
+
 FAR_ABOVE_NOISE = 2.5
 """Errors of legs relative to those by the noise of the softest wheels, above which a model is wrong
 whatever its likelihood, if it is beyond chance (`SURE`). With ten legs, noise that is known exceeds

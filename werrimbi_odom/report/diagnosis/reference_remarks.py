@@ -14,6 +14,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
+from werrimbi_odom.inference.fitting.identifiable import NOT_BY_COURSE
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, noise_assumed
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
@@ -42,6 +43,17 @@ def floor_not_asked(diagnosis: Diagnosis) -> list[str]:
         "What lies on the floor, as a slope or a carpet, has no name by scans, whose axes begin "
         "anew with each drive: it looks like an error that goes with the heading, in each drive by "
         "a wave of its own. Motion capture or a localiser's map shows it."
+    ]
+
+
+def crab_not_asked(diagnosis: Diagnosis) -> list[str]:
+    """That nothing tells at which angle the robot drives, where the path gave its headings."""
+    if not diagnosis.runs.has_course_headings:
+        return []
+    return [
+        "The headings were laid upon the direction of the path, so nothing tells at which angle to "
+        f"them the robot drives: {listed(NOT_BY_COURSE, 'and')} are not asked. A reference that "
+        "measures headings beside its positions shows them."
     ]
 
 
@@ -256,7 +268,7 @@ def or_its_metre(diagnosis: Diagnosis) -> list[str]:
 
 def moved_by_its_odometry(diagnosis: Diagnosis) -> list[str]:
     """That a localiser errs by the base that was found, as this odometry moves it."""
-    localised = any(
+    localised = not diagnosis.runs.has_course_headings and any(
         run.measured.kind == "local_map" and run.measured.has_yaw.any()
         for run in diagnosis.runs.runs
     )

@@ -41,7 +41,9 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
     left_out += jumps_words(diagnosis.left_out)
     left_out += events_words(diagnosis.happened, diagnosis.robot.track, diagnosis.left_by)
     left_out += remarks.without_events(advised) + reference_remarks.coarse_counters(diagnosis)
-    left_out += reference_remarks.rare_counts(diagnosis)
+    left_out += reference_remarks.rare_counts(diagnosis) + reference_remarks.crab_not_asked(
+        diagnosis
+    )
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out
