@@ -316,6 +316,7 @@ def test_an_array_of_floats_is_told_with_how_it_is_read(tmp_path: Path, werrimbi
     assert "Wheels: /wheel_ticks:0:1, counters at 10 Hz" in then
 
 
+@pytest.mark.evidence
 def test_legs_are_told_as_long_as_the_poses_let_them_be(tmp_path: Path, werrimbi: Werrimbi) -> None:
     """Of drives measured at their ends `info` said that they show all, `compare` that 1 m err."""
     robot = tmp_path / "robot.yaml"

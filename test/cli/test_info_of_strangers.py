@@ -131,6 +131,7 @@ def test_a_robot_that_stood_shows_nothing(sizes: bool, tmp_path: Path, werrimbi:
     assert told.endswith("Record again while the robot drives.")
 
 
+@pytest.mark.evidence
 def test_a_filter_s_poses_as_wheels_have_no_counts_and_no_radius_of_the_file(
     tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

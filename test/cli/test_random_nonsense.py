@@ -118,6 +118,7 @@ def judge(folder: Path, seed: int, wheels: str, seen: str) -> None:
             assert words.splitlines()[-1].startswith(f"werrimbi {verb[0]}: "), words
 
 
+@pytest.mark.evidence
 @pytest.mark.usefixtures("few_effects")
 def test_a_bound_that_says_nothing_is_not_told(tmp_path: Path) -> None:
     judge(tmp_path, 103, "steady", "still")

@@ -60,6 +60,7 @@ def test_the_size_is_found_within_its_error(creep: Added) -> None:
     assert abs(found.value - 0.02) < 4.0 * found.std < 0.004
 
 
+@pytest.mark.evidence
 def test_a_size_is_stated_no_finer_than_its_law() -> None:
     """Of ten starts by an engine, three had a slip within twice the ± of 1 % that was stated."""
     true = {"coefficient": 0.1, "above": 0.4}
@@ -256,6 +257,7 @@ def test_a_held_out_error_that_rises_by_chance_refuses_no_effect_that_the_others
     assert "higher, not told from chance" in " ".join(as_text(words_of(found)).split())
 
 
+@pytest.mark.evidence
 def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show() -> None:
     """A carpet whose pile leans the other way, and half a minute on it is enough."""
     one, other = (
@@ -304,6 +306,7 @@ def test_a_ratio_is_known_by_headings_however_coarse_the_positions_are() -> None
     assert coarse < 2.0 * fine
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(("name", "factor"), [("track_width", 0.5), ("wheel_radius_scale", 4.0)])
 def test_factors_far_from_one_are_reached(name: str, factor: float) -> None:
     key = {"track_width": "wheel_separation", "wheel_radius_scale": "wheel_radius"}[name]

@@ -196,6 +196,7 @@ def test_matched_scans_have_neither_a_gyro_nor_headings_that_come_later() -> Non
     assert gyros.isdisjoint(limit.effect for limit in detection_limits(told, effects))
 
 
+@pytest.mark.evidence
 def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -> None:
     runs = drifting()
     found = add_effects([find("reference_gyro_drift")], runs[:3], PLAIN, holdout=runs[3:])

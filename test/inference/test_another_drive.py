@@ -93,7 +93,8 @@ def test_the_reference_of_another_drive_is_said_to_be_that(
     assert "On the robot" not in words
 
 
-@pytest.mark.parametrize("noise", [0.0, in_evidence(1e-5)])
+@pytest.mark.evidence
+@pytest.mark.parametrize("noise", [0.0, 1e-5])
 def test_a_gyro_that_is_dead_is_said_to_show_no_turn(noise: float) -> None:
     random = np.random.default_rng(5)
 
@@ -111,6 +112,7 @@ def test_a_gyro_that_is_dead_is_said_to_show_no_turn(noise: float) -> None:
     assert "another drive" not in words
 
 
+@pytest.mark.evidence
 @MEASURED
 def test_that_of_this_drive_is_not(keep: Callable[[Reference], Reference]) -> None:
     runs = [with_reference_of(driven(seed), driven(seed), keep) for seed in (1, 2)]

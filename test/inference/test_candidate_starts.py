@@ -132,6 +132,7 @@ def test_on_one_circle_a_point_off_the_axle_is_a_rival_of_the_radii(point: compl
     assert "reference_lever_arm" in found.rivals
 
 
+@pytest.mark.evidence
 def test_on_one_circle_at_one_speed_many_effects_are_rivals_of_unequal_wheels() -> None:
     load = find("load_transfer").using(lateral=0.02, longitudinal=0.0)
     circle = positions_of_a_point(

@@ -304,6 +304,7 @@ def test_a_diagnosis_of_one_robot_tells_no_change() -> None:
     assert told_of(session(0.0)) == ()
 
 
+@pytest.mark.evidence
 def test_drives_with_dates_are_taken_in_their_order() -> None:
     dated = []
     for number, run in enumerate(session(0.003)):

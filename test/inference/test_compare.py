@@ -244,6 +244,7 @@ def test_a_gyro_that_shows_too_little_is_told_beside_a_base(runs: tuple[Run, ...
     assert twin.do not in no_gyro, "no gyro is so far off"
 
 
+@pytest.mark.evidence
 def test_a_bad_spin_shows_in_positions_alone_and_does_not_spoil_what_follows(
     runs: tuple[Run, ...],
 ) -> None:
@@ -336,6 +337,7 @@ def test_a_tracker_that_jumps_spoils_the_leg_on_which_it_does_and_no_other(
     assert moment["t_start_s"] <= jumped <= moment["t_end_s"]
 
 
+@pytest.mark.evidence
 def test_a_wrong_model_is_no_jump_of_the_reference(runs: tuple[Run, ...]) -> None:
     for robot in (
         replace(RIGHT, wheel_separation_multiplier=2.0),

@@ -44,6 +44,7 @@ def deviations(seed: int) -> dict[str, float]:
     return found
 
 
+@pytest.mark.evidence
 def test_intervals_hold_the_truth_of_a_few_calibrations() -> None:
     """Of 70 numbers or so chance leaves out more than 10 once in 1,300 times."""
     values = [value for seed in range(10) for value in deviations(5000 + seed).values()]

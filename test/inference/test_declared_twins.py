@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from test.command_line import Printed
-from test.evidence import in_evidence
 from test.inference.driven import COMMON, run_by, runs_of
 from test.inference.set_up_mistakes import mounted
 from test.model.drives import ROBOT
@@ -123,6 +122,7 @@ def test_a_lidar_or_a_marker_is_askew_rather_than_the_robots_axle(lidar: bool) -
     assert found.rivals == ("reference_yaw_offset", "sideways_drift")
 
 
+@pytest.mark.evidence
 def test_a_marker_ahead_is_no_axle_askew_beside_a_larger_wheel() -> None:
     """Lines alone, bent by one wheel: the marker goes askew of where it looks, and so may the axle.
 
@@ -143,7 +143,8 @@ def test_a_marker_ahead_is_no_axle_askew_beside_a_larger_wheel() -> None:
     assert "sideways_drift" in found.rivals_of_others["reference_yaw_offset"]
 
 
-@pytest.mark.parametrize("ahead", [0.1, in_evidence(0.3)])
+@pytest.mark.evidence
+@pytest.mark.parametrize("ahead", [0.1, 0.3])
 def test_twins_are_rivals_beside_what_is_missing_too(ahead: float) -> None:
     """A lidar where its transform says and askew, its place taken off in axes askew with it.
 

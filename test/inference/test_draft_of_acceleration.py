@@ -59,6 +59,7 @@ def test_an_even_law_of_the_acceleration_is_drafted_as_a_square(diagnosis: Diagn
     assert fitted == pytest.approx(GROWTH, rel=0.1)
 
 
+@pytest.mark.evidence
 def test_a_law_that_is_nothing_beside_its_error_is_not_written(
     diagnosis: Diagnosis, monkeypatch: pytest.MonkeyPatch
 ) -> None:

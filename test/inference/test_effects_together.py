@@ -115,6 +115,7 @@ def test_what_explains_most_by_itself_gives_way_to_what_does_better_beside_anoth
     assert found.verdict == "named"
 
 
+@pytest.mark.evidence
 def test_what_stood_in_for_another_is_dropped_when_that_is_found() -> None:
     """A castor that swings by its own angle passed for one that kicks at reversals alone."""
     truth = replace(PLAIN, effects=(find("castor_swing").using(drag=-0.02),))

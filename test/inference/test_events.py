@@ -117,6 +117,7 @@ def _beside_the_truth(run: Run, robot: Robot, kind: ReferenceKind = "absolute") 
     return events_among([EventSide(runs.runs, [run.path], point, held_out=False)], kind)
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("every", [1, 10])
 def test_a_push_that_two_poses_see_is_one_of_their_sum(sound: Drives, every: int) -> None:
     """It was not told, or as two: a wrong pose between them says no more than two steps do."""
@@ -401,6 +402,7 @@ def test_what_comes_at_one_place_is_no_accident(undisturbed: Diagnosis) -> None:
     assert (common.what, common.count, common.of_reference) == ("x", 8, False)
 
 
+@pytest.mark.evidence
 def test_where_a_reference_goes_wrong_is_no_floor(sound: Drives) -> None:
     """A marker that is hidden at one place, time and again: nothing of the robot goes with it."""
 

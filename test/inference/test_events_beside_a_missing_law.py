@@ -36,6 +36,7 @@ def driven(seed: int, share: float) -> Run:
     return replace(seen, name=f"{seed}", path=Path(f"{seed}"), ticks=replace(ticks, left=left))
 
 
+@pytest.mark.evidence
 def test_only_the_pose_that_was_wrong_jumped_beside_a_missing_law() -> None:
     """A wheel's noise stood for the law and for the reference's own: some sigma were a jump."""
     runs = [driven(seed, 0.06) for seed in (1, 2)]

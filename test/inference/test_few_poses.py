@@ -74,9 +74,8 @@ def by_tape(run: Run) -> Run:
     return replace(run, reference=replace(run.reference.chosen(ends)))
 
 
-@pytest.mark.parametrize(
-    ("base", "side"), [in_evidence(0.9, 1.0), (0.97, 2.0), in_evidence(1.03, 2.0), (1.15, 1.0)]
-)
+@pytest.mark.evidence
+@pytest.mark.parametrize(("base", "side"), [(0.9, 1.0), (0.97, 2.0), (1.03, 2.0), (1.15, 1.0)])
 def test_squares_that_close_give_the_base_that_closes_them_and_no_multiple_of_it(
     base: float, side: float
 ) -> None:
@@ -108,12 +107,13 @@ def test_a_base_by_squares_that_close_may_be_the_wheels() -> None:
     assert "wheels that are both 2.9 % smaller than entered look the same to them" in words
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("entered", "told"),
     [
         ({"wheel_radius": 0.1}, ("wheel_radius_scale",)),
-        in_evidence({"wheel_separation": 0.15}, ("track_width",)),
-        in_evidence({}, ()),
+        ({"wheel_separation": 0.15}, ("track_width",)),
+        ({}, ()),
     ],
 )
 def test_how_far_drives_ended_from_their_start_tells_sizes_far_off_and_no_wiring(
@@ -130,6 +130,7 @@ def test_how_far_drives_ended_from_their_start_tells_sizes_far_off_and_no_wiring
     assert tuple(each.effect for each in look_for_mistakes(crossed, file).findings) == told
 
 
+@pytest.mark.evidence
 def test_one_drive_that_ended_anywhere_makes_no_wiring_likelier() -> None:
     """Its tyres slipped: of seven drives by tape it alone spoke for exchanged wheels."""
     robot, random = WhiteNoiseRobot(0.35, 0.05, 0.05, 5e-4, 5e-4), np.random.default_rng(204)

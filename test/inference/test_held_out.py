@@ -172,6 +172,7 @@ def test_what_suits_the_fitted_part_alone_is_not_named(seed: int) -> None:
     assert ("werrimbi draft" in words) == ("What is known of it" in words)
 
 
+@pytest.mark.evidence
 def test_nor_is_it_beside_a_set_up_mistake() -> None:
     """A marker askew, and errors of the fitted drive alone that a lever arm suits.
 

@@ -292,7 +292,7 @@ def late(seed: int, delay: float) -> Run:
     return replace(seen, name=f"drive_{seed}", reference=late)
 
 
-@pytest.mark.parametrize("seed", range(0, 80, 10))
+@pytest.mark.parametrize("seed", [0, 40, *(in_evidence(10 * n) for n in (1, 2, 3, 5, 6, 7))])
 def test_parts_of_a_short_drive_agree_on_a_delay_by_the_law_at_the_fit(seed: int) -> None:
     """At every start and stop a tenth of a second is more than its derivative at none says."""
     laid = concatenated(match_for_fit([late(seed, 0.1)], ROBOT, 0.25, None))
@@ -351,6 +351,7 @@ def regular(seed: int) -> Run:
 REGULAR = Robot(0.53, 0.0825, 720.0, 720.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("seed", "amount", "variable"),
     [

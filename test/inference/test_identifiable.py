@@ -268,6 +268,7 @@ def scan_drive(seed: int, stamps: float) -> Run:
     return replace(run, reference=Reference(time, *poses, stated, stated, own_axes=True))
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("stamps", [0.0, 6e-3])
 def test_scans_state_how_well_they_are_matched_and_nothing_of_their_stamps(stamps: float) -> None:
     """Not told apart, the scatter passed for the wheels' noise, tenfold, and for an effect."""
@@ -435,6 +436,7 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
     )
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("name", "size"),
     [
@@ -542,6 +544,7 @@ def test_a_robot_that_veers_on_straight_lines_has_unequal_wheels() -> None:
     assert "track_width" in found.final.held
 
 
+@pytest.mark.evidence
 def test_on_one_circle_base_and_radii_are_not_told_apart() -> None:
     random = np.random.default_rng(7)
     commands = np.full(2500, 0.4), np.full(2500, 0.4)

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.evidence import in_evidence
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -71,7 +70,8 @@ def test_a_straight_course_that_is_kept_makes_no_law_of_the_turn_rate(seed: int)
     assert "track_width" in found.found
 
 
-@pytest.mark.parametrize("seed", [in_evidence(1), 2])
+@pytest.mark.evidence
+@pytest.mark.parametrize("seed", [1, 2])
 def test_circles_at_one_speed_make_no_law_of_it(seed: int) -> None:
     random = np.random.default_rng(seed)
     ramp = np.clip(np.minimum(np.arange(3000), np.arange(3000)[::-1]) / 50.0, 0.0, 1.0)

@@ -80,6 +80,7 @@ def test_a_reference_whose_error_goes_on_keeps_the_usual_legs(kind: str) -> None
     assert prepared(drives(30.0, 2), reference_kind=kind).parts == rules.PARTS_OF_A_LEG
 
 
+@pytest.mark.evidence
 def test_each_pose_tells_where_the_marker_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mount askew is found twice as well as by the poses at the ends of the usual legs."""
     askew = 5e-3

@@ -262,6 +262,7 @@ def test_a_sound_robot_before_gps_is_not_grossly_wrong(leg: float) -> None:
     assert "grossly" not in words_of(compared)[0].text
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_a_robot_of_half_or_twice_the_radius_is_grossly_wrong_before_gps_too(factor: float) -> None:
     wrong = replace(ROBOT, wheel_radius=factor * ROBOT.wheel_radius)

@@ -84,6 +84,7 @@ def test_a_gyro_tells_its_multiplier_and_nothing_of_its_point() -> None:
     assert "y is not determined by these drives" in said(found)
 
 
+@pytest.mark.evidence
 def test_by_another_name_a_base_is_no_surer() -> None:
     """A gyro's scale does what a base does, and on one circle the radii do."""
     truth = replace(ROBOT, wheel_separation_multiplier=1.04)

@@ -48,6 +48,7 @@ def test_a_localiser_taken_as_absolute_names_nothing_false(sound: Diagnosis) -> 
     assert 0.5 * WALK[1] < sound.wander.heading_in_a_second < 2.0 * WALK[1]
 
 
+@pytest.mark.evidence
 def test_it_is_said_and_what_follows_reckons_with_it(sound: Diagnosis) -> None:
     said = " ".join(str(each) for each in words_of(AdvisedDiagnosis(sound, None, ()), NextSteps()))
     assert "--reference-kind local_map" in said

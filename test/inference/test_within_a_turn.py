@@ -91,6 +91,7 @@ def test_legs_that_are_short_enough_already_are_left_alone(found: Result[Advised
     assert shorter_leg(found.found.diagnosis, 1.0) is None
 
 
+@pytest.mark.evidence
 def test_few_legs_that_leave_it_open_are_cut_into_shorter_ones(
     found: Result[AdvisedDiagnosis],
 ) -> None:

@@ -127,6 +127,7 @@ def test_from_a_bag_to_a_robot_file_that_is_right(
         assert base["std"] < 2e-3
 
 
+@pytest.mark.evidence
 def test_a_law_that_the_library_lacks_is_drafted_and_added(
     drives: Path, tmp_path: Path, werrimbi: Werrimbi
 ) -> None:

@@ -220,6 +220,7 @@ def test_a_heading_drifts_also_by_a_clock_that_is_behind() -> None:
     assert 0.0 < np.abs(drifting.reference_yaw_rad - plain.reference_yaw_rad).max() < 0.01
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     "entry", [e for e in sim.CATALOGUE if e.kind not in ("mistake", "robot")], ids=lambda e: e.name
 )
