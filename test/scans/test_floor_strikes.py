@@ -15,6 +15,7 @@ from test.scans.drives import ahead, at_rest, in_circles, of_sweeps, rms, taken
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.body_fixed import FixedLine, fixed_line
 from werrimbi_odom.scans.room_odometry import RoomOdometry
+from werrimbi_odom.scans.sweep import Sweep
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
@@ -153,6 +154,20 @@ SQUARE = Room(rooms.box(-2.0, -2.0, 2.0, 2.0))
 def test_walls_are_not_taken_for_the_floor(path: TruePath, room: Room) -> None:
     """Where many scans have them in one place before the lidar."""
     assert line_of(scanned(path, room, LIDAR, 0)) is None
+
+
+def test_a_wall_that_it_turns_from_is_no_floor_for_what_else_crosses_its_line() -> None:
+    """It drove along the wall for six seconds, and then saw other things at that place."""
+    random = np.random.default_rng(0)
+    yaw = np.concatenate([np.zeros(40), -0.17 * np.arange(1, 5)])
+    sweeps = []
+    for number, turned in enumerate(yaw):
+        count, noise = (41, 0.02) if turned == 0.0 else (12, 0.04)
+        along = np.sort(random.uniform(-2.0, 2.0, count))
+        across = 2.8 + noise * random.standard_normal(count)
+        points = np.column_stack([along, across])
+        sweeps.append(Sweep(0.2 * number, points, 0.0 * along, 0.0, np.full(count, 0.3)))
+    assert fixed_line(sweeps, yaw, np.zeros(yaw.size)) is None
 
 
 def test_without_turning_the_floor_is_not_told() -> None:

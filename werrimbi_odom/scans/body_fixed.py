@@ -21,6 +21,7 @@ from werrimbi_odom.scans.limits import (
     FIXED_BENT,
     FIXED_ECHOES,
     FIXED_SCANS,
+    FIXED_SHARE,
     FIXED_SHARP,
     FIXED_SURE,
     FIXED_TURNED,
@@ -181,7 +182,10 @@ class _Sharpened:
             np.bincount(of, weight, yaw.size)
             for weight in (None, self.along, self.across, self.along**2, self.along * self.across)
         )
-        rows = np.flatnonzero(count >= FIXED_ECHOES)
+        seen = count[count >= FIXED_ECHOES]
+        if seen.size < FIXED_SCANS:
+            return False
+        rows = np.flatnonzero(count >= max(FIXED_ECHOES, FIXED_SHARE * float(np.median(seen))))
         if rows.size < FIXED_SCANS:
             return False
         count, (x, y, xx, xy) = count[rows], np.array(sums)[:, rows] / count[rows]

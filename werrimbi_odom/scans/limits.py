@@ -88,6 +88,12 @@ FIXED_SCANS, FIXED_ECHOES = 30, 6
 """Fewest scans that see a line which is said to go with the robot, and echoes of it in each: three
 seconds at 10 Hz, and a sixth of a radian with 218 beams."""
 
+FIXED_SHARE = 0.5
+"""Fewest echoes of such a line in a scan that tells whether it turns, over those of its usual scan.
+What else comes near its place has no direction: a robot that drove along a wall and turned from it
+had 6 to 12 echoes there, of 41, and the wall seemed to turn by 0.10 ± 0.04 of what it did, with
+them left out by 0.58 ± 0.08. Of 16,594 stretches of 79 real recordings none is then the floor."""
+
 FIXED_SHARP = 0.3
 """Largest median distance of echoes from such a line, over the width in which they are sought (6 %
 of its distance). Echoes that fill that width have 0.5; the floor has 0.07 by the noise of

@@ -235,15 +235,15 @@ def _fixed(matcher: RoomOdometry) -> tuple[str, ...]:
 
 
 def _standing(found: ScanPath) -> tuple[str, ...]:
-    """What else a lidar may have seen that stands by its scans."""
-    if np.ptp(found.poses[:, :2], axis=0).max() > FIXED_STANDS:
+    """What else a lidar may have seen that stands by its scans, if most of them tell."""
+    if 2 * found.time.size < found.scans or np.ptp(found.poses[:, :2], axis=0).max() > FIXED_STANDS:
         return ()
     if np.std(found.poses[:, 2]) > FIXED_TURNED:
         return ()
     return (
-        "by its scans the lidar stands all the time. If it was driven, what it sees ahead goes "
-        "with it, as the floor does if it is tilted: it turned too little for that to be told from "
-        "walls",
+        "by its scans the lidar stands wherever they are matched. If it was driven, what it sees "
+        "ahead goes with it, as the floor does if it is tilted: it turned too little for that to "
+        "be told from walls",
     )
 
 
