@@ -10,12 +10,16 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from test.inference.driven import COMMON
 from test.inference.simulated_cases import GIVEN, Case, case
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.start_values import FitDrives
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of
 from werrimbi_odom.inference.diagnosis.p_values import deviations_from
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
 from werrimbi_odom.inference.diagnosis.told_sizes import as_told, doubted_effects, goes_without
@@ -83,3 +87,22 @@ def test_a_size_that_the_drives_need_is_not_gone_without() -> None:
 def test_what_is_not_determined_is_no_matter_of_size() -> None:
     wider = replace(told(RIGHT, "track_width"), held=("track_width",))
     assert doubted_effects(wider, GIVEN, ("track_width",)) == []
+
+
+def test_a_ratio_is_known_where_the_size_of_both_wheels_is_not() -> None:
+    """By coarse positions and fine headings it was as little known as the larger wheel alone."""
+    random = np.random.default_rng(1)
+    given = WhiteNoiseRobot(0.3, 0.05, 0.05, 3e-4, 3e-4)
+    robot = replace(given, right_radius=0.0505)
+    runs = [
+        drive(robot, wandering(random, 60.0), random, sigma_xy=0.3, sigma_yaw=2e-3)
+        for _ in range(3)
+    ]
+    found = diagnose(runs, given.entered(0.05), COMMON)
+    assert found.found == ("unequal_wheel_radii",)
+    wheel = best_sizes(found)["right_wheel_radius_multiplier"]
+    assert wheel[1] is not None
+    assert wheel[1] > 3e-3
+    ratio = values_of(found, "unequal_wheel_radii")["ratio"]
+    assert ratio.std < 4e-4
+    assert ratio.value == pytest.approx(1.01, abs=3.0 * ratio.std)

@@ -126,6 +126,16 @@ def with_spread(
     covariance = fit.covariance * np.outer(size, size)
     wider = np.sqrt(variances / np.diag(within))
     covariance[np.ix_(told, told)] = within * np.outer(wider, wider)
+    radii = [fit.design.names.index(name) for name in MULTIPLIERS[1:]]
+    if len(own := [index for index in radii if index in told]) == 1:
+        # Of one wheel that is told, the other is as little known: their ratio is not.
+        (other,) = set(radii) - set(own)
+        both = [*told, other]
+        names, factor = [*names, columns[other][0].name], [*(wide * wider), 0.0]
+        factor[-1] = factor[told.index(own[0])]
+        where = [shared.index(name) for name in names]
+        row = averaged[where[-1], where] * factor * factor[-1]
+        covariance[other, both] = covariance[both, other] = row
     return replace(fit, covariance=covariance)
 
 
