@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -32,10 +33,10 @@ from test.hidden import (
     smallest,
     survive,
 )
-from test.hidden.page import draw, page
+from test.hidden.page import draw, page, with_part
 from test.hidden.plan import ALL, SAMPLE, Sizes
 from test.hidden.result_line import Judged, judgement
-from test.hidden.resumable_jobs import Line, done, kept, mark, results_of
+from test.hidden.resumable_jobs import Line, commit_now, done, kept, mark, results_of
 from test.hidden.sets import ROOT, HiddenSet, make_all
 from test.hidden.table_layout import Table, show
 
@@ -263,7 +264,17 @@ def write(
     made = [table for tables in by_part.values() for table in tables]
     show([table for table in made if table.rows], Console(width=200).print)
     lines = judged_lines(wanted)
-    if not whole or not lines:
+    if not whole:
+        return
+    if not lines:
+        text = docs.read_text(encoding="utf-8")
+        for part, tables in by_part.items():
+            if own := _own(part, there[part]):
+                codes = Counter(str(line.get("commit", commit_now())) for line in own.values())
+                share = f"{len(own)} of {len(there[part].tasks)}"
+                says = f"Run by itself, {share} (code `{max(codes, key=codes.__getitem__)}`)"
+                text = with_part(text, tables, says)
+        docs.write_text(text, encoding="utf-8")
         return
     entry = history.entry_of(lines, mark(), start)
     kept_in = docs.with_name("evidence_history.jsonl")

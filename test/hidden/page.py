@@ -77,15 +77,32 @@ def page(
     return "\n".join([head, *filter(None, texts), *shown])
 
 
+def with_part(before: str, tables: Sequence[Table], says: str) -> str:
+    """The page with the sections of one part as they were made by themselves, which it `says`."""
+    for table in tables:
+        head = f"## {table.title}\n\n"
+        made = table.markdown().replace(head, f"{head}*{says}*\n\n", 1) if table.rows else ""
+        found = _section(before, table.title)
+        if found is None:
+            before += f"\n{made}" if made else ""
+        else:
+            before = before[: found.start()] + (f"{made}\n" if made else "") + before[found.end() :]
+    return before
+
+
+def _section(text: str, title: str) -> re.Match[str] | None:
+    return re.search(rf"^## {re.escape(title)}\n\n(.*?)(?=^## |^!\[|\Z)", text, re.M | re.S)
+
+
 def _kept(before: str, title: str) -> str:
     """A section of the page as it was, with the code that it is of; empty if it has none.
 
     Its title stays, since other pages link to it.
     """
-    found = re.search(rf"^## {re.escape(title)}\n\n(.*?)(?=^## |^!\[|\Z)", before, re.M | re.S)
+    found = _section(before, title)
     if found is None:
         return ""
-    old = found[1].startswith("*Not run anew")
+    old = found[1].startswith(("*Not run anew", "*Run by itself"))
     return f"## {title}\n\n" + ("" if old else f"*{_dated('Not run anew', before)}*\n\n") + found[1]
 
 

@@ -34,7 +34,7 @@ from test.hidden.evidence_tables import tables
 from test.hidden.follow import Followed, commands, follow, typed
 from test.hidden.followed_to_rest import at_the_truth, without_detour
 from test.hidden.intervals import clopper_pearson
-from test.hidden.page import page
+from test.hidden.page import page, with_part
 from test.hidden.result_line import Judged, is_right, judgement
 from test.hidden.rules import RULES
 from test.hidden.sets import HiddenSet
@@ -694,6 +694,14 @@ def test_what_was_not_run_stays_on_the_page_with_the_code_that_it_is_of() -> Non
         assert "![How small (code `aaa`)](pictures/limits)" in text
         assert "slip 7" not in text, "the part was run, and nothing was wrong"
     assert "Not run anew" not in written("ddd", third, limits)
+    says = "Run by itself, 1 of 2 (code `eee`)"
+    alone = with_part(third, [replace(limits, rows=(("kick",),)), RIGHT], says)
+    told = f"## Limits\n\n*{says}*\n\n| effect |\n| --- |\n| kick |\n"
+    for text in (alone, written("fff", alone, none, RIGHT)):
+        assert told in text
+        assert "slip" not in text
+    assert alone.count("## Limits") == 1
+    assert "![How small (code `aaa`)](pictures/limits)" in alone
 
 
 RIGHT = Table("Wrong", ("set",), ())
