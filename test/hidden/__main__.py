@@ -41,6 +41,10 @@ from test.hidden.sets import ROOT, HiddenSet, make_all
 from test.hidden.table_layout import Table, show
 
 
+BY_ITSELF = ("field", "scans", "smallest")
+"""Parts whose tables hold nothing of the judged sets."""
+
+
 @dataclass(frozen=True)
 class Extent:
     """How much of everything."""
@@ -269,7 +273,8 @@ def write(
     if not lines:
         text = docs.read_text(encoding="utf-8")
         for part, tables in by_part.items():
-            if own := _own(part, there[part]):
+            own = _own(part, there[part])
+            if own and part in BY_ITSELF:
                 codes = Counter(str(line.get("commit", commit_now())) for line in own.values())
                 share = f"{len(own)} of {len(there[part].tasks)}"
                 says = f"Run by itself, {share} (code `{max(codes, key=codes.__getitem__)}`)"
