@@ -40,7 +40,6 @@ from test.hidden.resumable_jobs import Line, commit_now, done, kept, mark, resul
 from test.hidden.sets import ROOT, HiddenSet, make_all
 from test.hidden.table_layout import Table, show
 
-
 BY_ITSELF = ("field", "scans", "smallest")
 """Parts whose tables hold nothing of the judged sets."""
 
