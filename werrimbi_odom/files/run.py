@@ -163,6 +163,11 @@ class Reference:
         """Where yaw was measured."""
         return np.isfinite(self.yaw)
 
+    @property
+    def by_course(self) -> bool:
+        """Whether headings are a gyro's, laid upon the direction of the positions' path."""
+        return self.gyro is not None and self.gyro.by_course
+
     def earlier(self, delay: float) -> Reference:
         """The same with stamps that are free of a delay [s]."""
         if delay == 0.0:

@@ -43,7 +43,8 @@ scatter to the side, and as a share of the whole way. On the spot it is that sca
 where turns begin and end a tenth of a second beside the gyro's."""
 TURNED_MOST = 1.0
 """Largest turn between positions [rad]; where a robot went meanwhile is not known beyond."""
-_MEDIAN_TO_SIGMA = 1.4826  # of a normal distribution
+MEDIAN_TO_SIGMA = 1.4826
+"""Of a normal distribution."""
 _HUBER = 1.345
 _ROUNDS = 20
 
@@ -112,7 +113,7 @@ def course_fit(
         if np.abs(change[0]) + np.abs(change[1]) * since[-1] < 1e-6:
             break
     left = aside - columns @ _robustly(columns, aside)
-    scatter = max(_MEDIAN_TO_SIGMA * float(np.median(np.abs(left))), 1e-6)
+    scatter = max(MEDIAN_TO_SIGMA * float(np.median(np.abs(left))), 1e-6)
     heading = scatter**2 * _precision_inverse(columns, [0, 1])
     ends_of_drive = np.array([[1.0, 0.0], [1.0, since[-1]]])
     unsure = float(np.sqrt(np.max(np.sum((ends_of_drive @ heading) * ends_of_drive, axis=1))))
@@ -138,7 +139,7 @@ def _middles(values: Floats) -> Floats:
 def _scatter(changes: Complex) -> float:
     """Standard deviation of the changes of steps to the side; ahead a robot speeds up."""
     ahead = 0.5 * np.angle(np.sum(changes**2 / np.maximum(np.abs(changes), 1e-12)))
-    return _MEDIAN_TO_SIGMA * float(np.median(np.abs((changes * np.exp(-1j * ahead)).imag)))
+    return MEDIAN_TO_SIGMA * float(np.median(np.abs((changes * np.exp(-1j * ahead)).imag)))
 
 
 def _mean_direction(gyro: tuple[Floats, Floats], time: Floats) -> Complex:
@@ -193,7 +194,7 @@ def _robustly(columns: Floats, values: Floats) -> Floats:
         root = np.sqrt(weight)
         found = np.linalg.lstsq(root[:, None] * columns / size, root * values, rcond=1e-9)[0]
         left = np.abs(values - columns / size @ found)
-        spread = max(_HUBER * _MEDIAN_TO_SIGMA * float(np.median(left)), 1e-9)
+        spread = max(_HUBER * MEDIAN_TO_SIGMA * float(np.median(left)), 1e-9)
         weight = np.minimum(1.0, spread / np.maximum(left, 1e-12))
     return np.asarray(found / size)
 

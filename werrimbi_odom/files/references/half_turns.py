@@ -49,7 +49,7 @@ def without_half_turns(run: Run, bits: int) -> Run:
     reference = run.reference
     if reference is None or reference.own_axes:
         return run
-    if reference.gyro is not None and reference.gyro.by_course:
+    if reference.by_course:
         return _as_it_rolls(run, reference, bits)
     rows = np.flatnonzero(reference.has_yaw)
     if rows.size < FEWEST:

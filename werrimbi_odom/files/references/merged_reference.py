@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.references.course_alignment import ANGLES, course_fit
+from werrimbi_odom.files.references.course_alignment import ANGLES, MEDIAN_TO_SIGMA, course_fit
 from werrimbi_odom.files.run import GyroTurn, Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -28,7 +28,6 @@ FEWEST = 10
 """Least number of common headings: fewer do not separate offset and drift from noise."""
 LASTING = 10.0
 """Correlation time of a localiser's errors [s]; AMCL and SLAM correct themselves in 5 to 30."""
-_MEDIAN_TO_SIGMA = 1.4826  # of a normal distribution
 SCALE_TOLD, SCALE_MOST = 4.0, 0.1
 """Significance of a gyro's scale in standard deviations, and its largest plausible error."""
 LATE_MOST = 0.5
@@ -112,8 +111,7 @@ def _upon_course(
     """Combine positions without headings with a gyro's, laid upon the direction of their path."""
     at = np.interp(poses.time, *gyro)
     rows = np.flatnonzero(inside & poses.has_position)
-    time = poses.time[rows]
-    rows = rows[np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0.0])]
+    rows = rows[_later_than_all_before(poses.time[rows])]
     columns = np.column_stack([np.ones_like(since), since])
     clear = np.linalg.lstsq(columns[rows], at[rows], rcond=None)[0]
     turned = at - columns @ clear
@@ -191,7 +189,7 @@ def _later(
         if not abs(late) < LATE_MOST:
             return 0.0
     left = np.unwrap(poses.yaw[both] - at) - free @ told
-    noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
+    noise = MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
     std = max(noise, 1e-6) * float(np.sqrt(np.linalg.pinv(free.T @ free)[-1, -1]))
     return late if abs(late) > SCALE_TOLD * std > 0.0 else 0.0
 
@@ -215,7 +213,7 @@ def _gyro_turn(
     free = np.column_stack([columns[both], turned[both]])
     told = _laid(pieces, free, apart[both])
     left = np.unwrap(apart[both]) - free @ told
-    noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
+    noise = MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
     # A localiser's errors are correlated, so the number of independent headings is that of such
     # intervals.
     count = max(float(np.ptp(columns[both, -1])) / LASTING, 1.0)
@@ -254,8 +252,12 @@ def _ascending(reference: Reference) -> tuple[Floats, Floats]:
     time, yaw = reference.time[known], reference.yaw[known]
     if time.size == 0:
         return time, yaw
-    later = np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0.0])
+    later = _later_than_all_before(time)
     return time[later], np.unwrap(yaw[later])
+
+
+def _later_than_all_before(time: Floats) -> NDArray[np.bool_]:
+    return np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0.0])
 
 
 def _span(time: Floats) -> str:

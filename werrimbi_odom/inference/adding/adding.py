@@ -200,8 +200,8 @@ def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
                 f"{effect.name} looks at the measured channel {channel}, a column of "
                 f"ticks.csv, and {run.name} has none"
             )
-        gyro = None if run.reference is None else run.reference.gyro
-        if effect.name in NOT_BY_COURSE and gyro is not None and gyro.by_course:
+        laid = run.reference is not None and run.reference.by_course
+        if effect.name in NOT_BY_COURSE and laid:
             raise InputError(
                 f"{effect.name} is an angle between heading and path, and the headings of "
                 f"{run.name} were laid upon its path: they tell nothing of it"

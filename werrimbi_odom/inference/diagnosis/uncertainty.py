@@ -130,12 +130,11 @@ def with_spread(
     if len(own := [index for index in radii if index in told]) == 1:
         # Of one wheel that is told, the other is as little known: their ratio is not.
         (other,) = set(radii) - set(own)
-        both = [*told, other]
-        names, factor = [*names, columns[other][0].name], [*(wide * wider), 0.0]
-        factor[-1] = factor[told.index(own[0])]
-        where = [shared.index(name) for name in names]
-        row = averaged[where[-1], where] * factor * factor[-1]
-        covariance[other, both] = covariance[both, other] = row
+        its = shared.index(columns[other][0].name)
+        factor = wide * wider
+        alike = factor[told.index(own[0])]
+        covariance[other, told] = covariance[told, other] = averaged[its, where] * factor * alike
+        covariance[other, other] = averaged[its, its] * alike**2
     return replace(fit, covariance=covariance)
 
 

@@ -116,8 +116,7 @@ class Concatenated:
     @property
     def has_course_headings(self) -> bool:
         """Whether they were aligned with the direction of the path, so that it tells no crab."""
-        gyros = (run.measured.gyro for run in self.runs)
-        return any(gyro is not None and gyro.by_course for gyro in gyros)
+        return any(run.measured.by_course for run in self.runs)
 
     @property
     def has_coarse_counters(self) -> bool:
