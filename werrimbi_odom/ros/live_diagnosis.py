@@ -109,14 +109,18 @@ class Watching(NoWatching):
 
     def odometry(self, time: float, twist: BodyMotion[float]) -> None:
         """Add time and twist of an odometry message."""
-        self._kept.motion(time, twist.along, twist.turn)
+        self._kept.motion(self._now(), time, twist.along, twist.turn)
 
     def reference(self, message: Any) -> None:
         """Add a message of the reference."""
         self._take(self._reference, serialize_message(message))
 
     def _take(self, topic: int, data: bytes) -> None:
-        self._kept.take(topic, self._node.get_clock().now().nanoseconds, data)
+        self._kept.take(topic, self._now(), data)
+
+    def _now(self) -> int:
+        """Reception time [ns]."""
+        return int(self._node.get_clock().now().nanoseconds)
 
     # ------------------------------------------------------------------------- diagnosis
 

@@ -18,8 +18,10 @@ OVERHEAD = 200
 MOVES, MOVES_TURN = 1e-3, 2e-3
 """Speeds above these [m/s, rad/s] count as driving; a robot at rest with fine encoders shows
 none."""
-LINGER = 1.0
-"""Time after driving for which all messages are kept [s], to include the end of the motion."""
+LINGER = 3.0
+"""Time after driving for which all messages are kept [s], to include the end of the motion. By
+reception, as the wheels' messages are ahead of the odometry, and far ahead in a bag that is played
+fast."""
 RESTING = 0.5
 """Interval between the messages of a topic that are kept at rest [s]."""
 PAUSE = 1.0
@@ -48,22 +50,26 @@ class Kept:
         self._messages: deque[ReceivedMessage] = deque()
         self._bytes = 0
         self._last = [-math.inf] * len(self._topics)
-        self._stamp = self._moved = -math.inf
+        self._stamp = -math.inf
+        self._at_rest_since = math.inf
+        """Reception of the first twist at rest [s]; infinite while it drives."""
 
-    def motion(self, stamp: float, speed: float, yaw_rate: float) -> None:
-        """Add a twist of the odometry [s, m/s, rad/s]."""
+    def motion(self, received: int, stamp: float, speed: float, yaw_rate: float) -> None:
+        """Add a twist of the odometry [ns, s, m/s, rad/s]."""
         step, self._stamp = stamp - self._stamp, stamp
         if abs(speed) > MOVES or abs(yaw_rate) > MOVES_TURN:
-            self._moved = stamp
+            self._at_rest_since = math.inf
             if 0.0 < step < PAUSE:
                 self.driven += step
+        else:
+            self._at_rest_since = min(self._at_rest_since, 1e-9 * received)
 
     def take(self, topic: int, received: int, data: bytes) -> None:
         """Add a message, and delete those that are too old."""
-        stands = self._stamp - self._moved > LINGER
-        if stands and 0.0 <= 1e-9 * received - self._last[topic] < RESTING:
+        now = 1e-9 * received
+        if now - self._at_rest_since > LINGER and 0.0 <= now - self._last[topic] < RESTING:
             return
-        self._last[topic] = 1e-9 * received
+        self._last[topic] = now
         self._messages.append(ReceivedMessage(self.driven, received, topic, data))
         self._bytes += len(data) + OVERHEAD
         oldest = self.driven - self._seconds
