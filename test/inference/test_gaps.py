@@ -128,6 +128,23 @@ def test_every_gap_is_found_and_no_leg_spans_one(runs: list[Run], lose: object, 
     assert way.max() < 1.4
 
 
+@pytest.mark.parametrize("begin", [15.0, 19.0, 21.0, 22.0])
+def test_ticks_that_are_silent_beyond_what_is_put_aside_are_a_gap(begin: float) -> None:
+    """The way was laid evenly over the seconds of silence: a robot with a wrong base was unknown.
+
+    What is put aside for judging may begin or end in a gap of the ticks.
+    """
+    run = without_ticks(run_of(ROBOT, 1, 60))
+    seen, gone = run.reference, (begin, begin + 3.0)
+    assert seen is not None
+    kept = seen.chosen((seen.time <= gone[0]) | (seen.time >= gone[1]))
+    record = record_of(replace(run, reference=kept, taken_out=(gone,), put_aside=(gone,)), ROBOT)
+    inside = (record.measured.time >= SPANS[0][0]) & (record.measured.time <= SPANS[0][1])
+    assert record.gap[np.flatnonzero(inside)[:-1]].all()
+    told = [part.begin for part in record.left_out]
+    assert told == [pytest.approx(at, abs=0.1) for at, _ in SPANS]
+
+
 def test_a_gap_is_no_jump_of_the_reference_and_spoils_no_figure(runs: list[Run]) -> None:
     late = replace(ROBOT, effects=(AppliedEffect(find("reference_delay"), {"delay": 0.08}),))
     whole = compare(runs, late)

@@ -113,16 +113,14 @@ def _silences(
     started = float(counters.time[0])
     inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
 
-    def unheard(
-        time: Floats, gone: Floats, late: NDArray[np.bool_] | None = None
-    ) -> list[tuple[float, float]]:
-        silent = np.flatnonzero(gaps_in(time, gone) & ~touched(time, taken_out))
-        ends = silent + 1 if late is None else silent + 1 + late[silent]
-        return [(float(time[at]), float(time[end])) for at, end in zip(silent, ends, strict=True)]
-
+    unseen = gaps_in(seen, np.interp(seen, counters.time, way)) & ~touched(seen, taken_out)
+    late = _caught_up(measured, leg, turn)
+    ticked = counters.time[inside]
+    # Of ticks nothing is taken out: a gap that goes on beside such a stretch is one.
+    uncounted = gaps_in(ticked, way[inside]) & ~_within(ticked, taken_out)
     gaps = _named(
-        unheard(seen, np.interp(seen, counters.time, way), _caught_up(measured, leg, turn)),
-        unheard(counters.time[inside], way[inside]),
+        [(float(seen[at]), float(seen[at + 1 + late[at]])) for at in np.flatnonzero(unseen)],
+        [(float(ticked[at]), float(ticked[at + 1])) for at in np.flatnonzero(uncounted)],
     )
     leaps, found = set(counters.leaps), []
     for who, (begin, end) in gaps:
@@ -143,6 +141,14 @@ def _silences(
         if part.end > seen[0] and part.begin < seen[-1]
     ]
     return tuple(sorted(found, key=lambda part: part.begin))
+
+
+def _within(time: Floats, stretches: Sequence[tuple[float, float]]) -> NDArray[np.bool_]:
+    """Intervals between stamps (n,) that lie in a stretch as a whole, shape (n - 1,)."""
+    found = np.zeros(max(time.size - 1, 0), dtype=np.bool_)
+    for begin, end in stretches:
+        found |= (time[:-1] >= begin) & (time[1:] <= end)
+    return found
 
 
 def _caught_up(measured: Reference, leg: float, turn: float) -> NDArray[np.bool_]:
