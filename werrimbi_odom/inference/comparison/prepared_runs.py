@@ -234,14 +234,16 @@ def for_fit(prepared: PreparedRuns, robot: Robot) -> list[MatchedRun]:
     for group in prepared.groups if robot is prepared.robot else ():
         records = (run.record for run in group.every.runs)
         there.update(compress(zip(group.index, records, strict=True), group.whole))
+    shares = prepared.in_order(lambda group: group.own.shares)
     return [
         cut_for_fit(
-            there.get(index) or record_of(run, robot, options.limits, options.leg),
+            there.get(index)
+            or replace(record_of(run, robot, options.limits, options.leg), noise_shares=of),
             robot,
             options.leg,
             prepared.parts,
         )
-        for index, run in enumerate(prepared.runs)
+        for index, (run, of) in enumerate(zip(prepared.runs, shares, strict=True))
     ]
 
 

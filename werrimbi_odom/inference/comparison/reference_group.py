@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +75,7 @@ def group_of(
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
     own = noise_of(robot, every, residuals, measure, options)
+    every = _with_shares(every, own.shares)
     jumps = tuple(
         jumps_of(residual, run.gap, robot)
         for residual, run in zip(residuals, every.runs, strict=True)
@@ -89,6 +91,18 @@ def group_of(
         jumps,
         own,
         residuals,
+    )
+
+
+def _with_shares(every: Concatenated, shares: Sequence[tuple[float, float]]) -> Concatenated:
+    """The runs, each with the share of the reference's noise that it has."""
+    if all(run.record.noise_shares == of for run, of in zip(every.runs, shares, strict=True)):
+        return every
+    return concatenated(
+        [
+            replace(run, record=replace(run.record, noise_shares=of))
+            for run, of in zip(every.runs, shares, strict=True)
+        ]
     )
 
 

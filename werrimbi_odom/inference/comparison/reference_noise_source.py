@@ -15,6 +15,7 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.local_map_errors import wandering_of
 from werrimbi_odom.inference.comparison.reference_noise import reference_noise, stamp_noise
 from werrimbi_odom.inference.comparison.residuals import Measure, Residual
+from werrimbi_odom.inference.comparison.unlike_noise import noise_of_each
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.model.pose import Floats
@@ -40,6 +41,9 @@ class ReferenceNoise:
     """Random walk of its heading error [rad/s^0.5]."""
     reversion: float = 0.0
     """Rate at which that error reverts to zero [1/s]."""
+    of_runs: tuple[tuple[float, float], tuple[float, float]] | None = None
+    """Noise of positions [m] and of headings [rad], the least and the most of a run, where runs
+    are not alike."""
 
     @property
     def wander(self) -> tuple[float, float]:
@@ -62,6 +66,13 @@ class OwnNoise:
     freedom: tuple[float, float]
     """Degrees of freedom of the variances of positions and of headings: infinite where they are
     given or stated, none where they are assumed."""
+
+    @property
+    def shares(self) -> list[tuple[float, float]]:
+        """Noise of each run's positions and headings, in shares of the noisiest run's."""
+        both = (each / each.max() for each in (self.sigma_xy, self.sigma_yaw))
+        place, heading = (each.tolist() for each in both)
+        return list(zip(place, heading, strict=True))
 
 
 def noise_of(
@@ -91,10 +102,15 @@ def noise_of(
         stated = [[None] * len(every.runs)] * 2
     else:
         estimated = reference_noise(robot, residuals, options.reference_kind)
-    position, of_position, told = _known(options.sigma_xy, stated[0], estimated[0], usual[0])
-    heading, of_heading, yaw_told = _known(options.sigma_yaw, stated[1], estimated[1], usual[1])
+    each = noise_of_each(robot, residuals, options.reference_kind, estimated)
+    sources = zip(
+        (options.sigma_xy, options.sigma_yaw), stated, estimated, each, usual, strict=True
+    )
+    (position, of_position, told), (heading, of_heading, yaw_told) = (_known(*of) for of in sources)
     stamp = stamp_noise(robot, every, residuals)
-    noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk)
+    ends = [(float(each.min()), float(each.max())) for each in (of_position, of_heading)]
+    unlike = (ends[0], ends[1]) if any(least < most for least, most in ends) else None
+    noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk, unlike)
     counts = (
         2 * sum(int(np.isfinite(item.measured).sum()) for item in residuals),
         sum(int(np.isfinite(item.measured_yaw).sum()) for item in residuals),
@@ -107,14 +123,20 @@ def noise_of(
 
 
 def _known(
-    given: float | None, stated: list[float | None], estimated: float | None, usual: float
+    given: float | None,
+    stated: list[float | None],
+    estimated: float | None,
+    unlike: Floats | None,
+    usual: float,
 ) -> tuple[float, Floats, str]:
     """Summary sigma, sigma of each run, and their origin."""
     count = len(stated)
     if given is not None:
         return given, np.full(count, given), "given"
     fallback, told = (usual, "assumed") if estimated is None else (estimated, "estimated")
-    values = np.array([fallback if value is None else value for value in stated])
+    others = [fallback] * count if unlike is None else unlike.tolist()
+    pairs = zip(stated, others, strict=True)
+    values = np.array([other if value is None else value for value, other in pairs])
     if all(value is not None for value in stated):
         told = "stated"
     return float(np.sqrt(np.mean(values**2))), values, told

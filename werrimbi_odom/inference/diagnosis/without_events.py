@@ -18,7 +18,8 @@ import numpy as np
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.judged_legs import in_runs, paths
-from werrimbi_odom.inference.comparison.reference_noise import reference_noise
+from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
+from werrimbi_odom.inference.comparison.unlike_noise import noise_of_the_noisiest
 from werrimbi_odom.inference.diagnosis.holdout import Judge
 from werrimbi_odom.inference.distributions import chi2_median
 from werrimbi_odom.inference.events.events import Events, EventSide, events_among, without
@@ -51,7 +52,9 @@ def noise_of_most(runs: Concatenated, point: Point) -> Variances:
     return point.variances
 
 
-def with_noise_of_reference(variances: Variances, point: Point, judge: Judge) -> Variances:
+def with_noise_of_reference(
+    variances: Variances, point: Point, prepared: PreparedRuns
+) -> Variances:
     """Variances in which a reference has no less noise than its small differences show.
 
     Those know no wheel noise. So wheels that stand for a missing law, and err by as much between
@@ -61,9 +64,8 @@ def with_noise_of_reference(variances: Variances, point: Point, judge: Judge) ->
     options = point.options
     if options.reference_kind != "absolute":
         return variances
-    prepared = judge.train
     residuals = paths(prepared, in_runs(prepared, point.model))
-    shown = reference_noise(prepared.robot, residuals, options.reference_kind)
+    shown = noise_of_the_noisiest(prepared.robot, residuals, options.reference_kind)
     least = [
         0.0 if known or sigma is None else sigma**2
         for sigma, known in zip(shown, options.sigmas_known, strict=True)
@@ -103,9 +105,11 @@ def refit_without_events(
 
 def events_beside(runs: Concatenated, fitted: Point, judge: Judge) -> Events:
     """Abrupt events beside a model, in the fitted and in the held-out drives."""
-    noise = with_noise_of_reference(noise_of_most(runs, fitted), fitted, judge)
-    point = replace(fitted, variances=noise)
-    home = replace(judge.fitted_per_run(point.model), variances=noise)
+    most, home = noise_of_most(runs, fitted), judge.fitted_per_run(fitted.model)
+    point, home = (
+        replace(each, variances=with_noise_of_reference(most, each, prepared))
+        for each, prepared in ((fitted, judge.train), (home, judge.holdout))
+    )
     fitted_on, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
     return events_among(
         [

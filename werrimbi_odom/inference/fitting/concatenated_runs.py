@@ -141,15 +141,20 @@ class Concatenated:
 
     @property
     def shares(self) -> Floats | None:
-        """Stated covariances of the poses at both ends of each leg, relative to usual.
+        """Covariances of the poses at both ends of each leg, relative to usual.
 
-        Shape (2, m, 3, 3), in the reference's axes. The unit is the largest typical value of a
-        drive, which stands for all (`with_stated_noise`). None if any run states none.
+        Shape (2, m, 3, 3), in the reference's axes. Stated for each pose; the unit is the largest
+        typical value of a drive, which stands for all (`with_stated_noise`). Where any run states
+        none, those of each run as a whole (`AlignedRun.noise_shares`); None if all are alike.
         """
         stated = [each for run in self.runs if (each := _stated(run.measured)) is not None]
         usual = [(run.sigma_xy, run.sigma_yaw) for run in self.runs]
         if len(stated) < len(self.runs) or any(None in each for each in usual):
-            return None
+            of_runs = np.array([run.record.noise_shares for run in self.runs])
+            if (of_runs == 1.0).all():
+                return None
+            variance = np.square(of_runs[self.run_of_leg][:, [0, 0, 1]])[:, :, None] * np.eye(3)
+            return np.stack([variance, variance])
         place, heading = np.array(usual).max(axis=0)
         unit = np.array([place, place, heading])
         return _at_both_ends(stated) / np.outer(unit, unit)

@@ -52,6 +52,8 @@ class AlignedRun:
     lost: tuple[tuple[float, float], ...] = ()
     """Stretches in which the reference was lost, free of the delay: `Run.taken_out` but for what
     is put aside."""
+    noise_shares: tuple[float, float] = (1.0, 1.0)
+    """Noise of its positions and headings, in shares of the noisiest run's beside it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -191,7 +191,11 @@ def reference_words(comparison: Comparison) -> list[str]:
     for measure, noise in comparison.prepared.noises:
         hows = [noise.xy_told] if measure != "heading" else []
         hows += [noise.yaw_told] if measure != "position" else []
-        values = _sizes(measure, noise.sigma_xy, noise.sigma_yaw)
+        values = f"{_sizes(measure, noise.sigma_xy, noise.sigma_yaw)} each {each}"
+        if noise.of_runs is not None:
+            least, most = (_sizes(measure, *sizes) for sizes in zip(*noise.of_runs, strict=True))
+            unlike = f"{least} each {each} in the best drive and {most} in the worst"
+            values = unlike if least != most else values
         told = hows[0] if len(set(hows)) == 1 else listed(hows)
         how = {
             "estimated": "fitted with the calibration"
@@ -209,7 +213,7 @@ def reference_words(comparison: Comparison) -> list[str]:
                 "differences scatter no more than reading the counters makes."
             )
             continue
-        lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
+        lines.append(f"The reference's own noise{what[measure]}, {values}, is {how}.")
         if wanders:
             lines[-1] += (
                 f" Its error also wanders, by {_sizes(measure, noise.walk_xy, noise.walk_yaw)} in "
