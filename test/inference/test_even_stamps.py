@@ -316,12 +316,25 @@ def test_hard_starts_are_no_reason_to_believe_stamps() -> None:
     assert scatter(found - read) < 0.3 * scatter(stamps - read)
 
 
-@pytest.mark.parametrize("together", [2, 4])
-def test_of_messages_sent_together_the_last_is_as_old_as_their_stamp(together: int) -> None:
-    """A driver reads at 100 Hz and sends several readings with the stamp of the last."""
-    read = 0.01 * np.arange(2000)
+@pytest.mark.parametrize(("together", "apart"), [(2, 0.0), (4, 0.0), (3, 3e-4), (8, 2e-4)])
+def test_of_messages_sent_together_the_last_is_as_old_as_their_stamp(
+    together: int, apart: float
+) -> None:
+    """A driver reads at 100 Hz and sends several readings with the stamp of the last.
+
+    Or a reader stamps them as they arrive, one after another.
+    """
+    read = 0.01 * np.arange(2000 // together * together)
     left, right = driven(read)
     stamps = np.repeat(read[together - 1 :: together], together)
+    stamps += apart * (np.arange(stamps.size) % together - together + 1)
     found = counters_of(Run("run", Path("run"), Ticks(stamps, left, right), None), ROBOT, None)
     np.testing.assert_allclose(found.time, read[together - 1 :: together])
     np.testing.assert_allclose(found.left + found.first_left, left[together - 1 :: together])
+
+
+def test_counters_that_tell_each_count_and_rest_now_and_then_send_no_packets() -> None:
+    stamps = np.concatenate([30.0 * rest + 0.004 * np.arange(500) for rest in range(10)])
+    counts = np.arange(stamps.size)
+    found = counters_of(Run("run", Path("run"), Ticks(stamps, counts, counts), None), ROBOT, None)
+    assert found.time.size == stamps.size

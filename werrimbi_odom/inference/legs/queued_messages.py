@@ -14,16 +14,20 @@ from werrimbi_odom.model.pose import Floats
 
 
 def last_of_packets(time: Floats) -> NDArray[np.intp]:
-    """Rows that end a packet of several that were sent with one stamp; all rows if there is none.
+    """Rows that end a packet of several that were sent at once; all rows if there is none.
 
     The last was read when it was sent, and the others before. Of a clock that stands still now and
     then the first is right; most rows share their stamp with another only where they were packed.
-    `time` (n,): stamps [s].
+    Packets that are stamped as they arrive, by one row after another, have stamps next to each
+    other. Pairs of these are put right by the timer (`even_stamps`). `time` (n,): stamps [s].
     """
-    rows = np.arange(time.size)
-    last = np.append(np.diff(time) != 0.0, True)
-    packed = 1.0 - np.count_nonzero(last) / time.size >= rules.PACKED
-    return rows[last] if packed else rows
+    rows, apart = np.arange(time.size), np.abs(np.diff(time))
+    usual = float(np.mean(np.minimum(apart, rules.PACKET_PAUSE))) if apart.size else 0.0
+    for between, share in ((0.0, rules.PACKED), (rules.PACKET_APART * usual, rules.PACKED_APART)):
+        last = np.append(apart > between, True)
+        if 1.0 - np.count_nonzero(last) / time.size >= share:
+            return rows[last]
+    return rows
 
 
 def period_of(stamps: Floats, number: Floats) -> float:

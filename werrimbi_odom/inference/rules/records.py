@@ -159,6 +159,12 @@ PACKED = 0.45
 """Share of the messages that have the stamp of the next one, above which they are sent in packets:
 half of them in pairs, less a few that are left over."""
 
+PACKED_APART, PACKET_APART, PACKET_PAUSE = 0.6, 0.1, 1.0
+"""The same for stamps of arrival: two of three messages, less a few. An interval within a packet, as
+a share of the mean one: a serial line at 115200 baud takes 1 ms for a message, of 20. And what a
+longer interval counts for in that mean [s]: a robot that stands, and tells nothing meanwhile, sends
+no packets."""
+
 EVEN_MESSAGES, EVEN_WINDOW = 50, 51
 """Fewest messages for a decision whether stamps tell when counters were read, as chance decides
 with fewer; and window of the running median of their delays: a few seconds, in which two clocks
