@@ -26,7 +26,7 @@ def last_of_packets(time: Floats) -> NDArray[np.intp]:
     for between, share in ((0.0, rules.PACKED), (rules.PACKET_APART * usual, rules.PACKED_APART)):
         last = np.append(apart > between, True)
         if 1.0 - np.count_nonzero(last) / time.size >= share:
-            return rows[last]
+            return np.asarray(rows[last])
     return rows
 
 

@@ -160,8 +160,8 @@ PACKED = 0.45
 half of them in pairs, less a few that are left over."""
 
 PACKED_APART, PACKET_APART, PACKET_PAUSE = 0.6, 0.1, 1.0
-"""The same for stamps of arrival: two of three messages, less a few. An interval within a packet, as
-a share of the mean one: a serial line at 115200 baud takes 1 ms for a message, of 20. And what a
+"""The same for stamps of arrival: two of three messages, less a few. An interval within a packet,
+as a share of the mean one: a serial line at 115200 baud takes 1 ms for a message, of 20. And what a
 longer interval counts for in that mean [s]: a robot that stands, and tells nothing meanwhile, sends
 no packets."""
 
