@@ -41,8 +41,8 @@ def noise_of_each(
     ]
     sigmas, numbers = (np.array(table, dtype=np.float64) for table in (each, counts))
     return (
-        _if_unlike(sigmas[:, 0], numbers[:, 0], estimated[0]),
-        _if_unlike(sigmas[:, 1], numbers[:, 1], estimated[1]),
+        _if_unlike(sigmas[:, 0], numbers[:, 0], estimated[0], rules.MOTION_CAPTURE_XY),
+        _if_unlike(sigmas[:, 1], numbers[:, 1], estimated[1], rules.MOTION_CAPTURE_YAW),
     )
 
 
@@ -59,12 +59,12 @@ def noise_of_the_noisiest(
     return place, heading
 
 
-def _if_unlike(sigma: Floats, count: Floats, of_all: float | None) -> Floats | None:
+def _if_unlike(sigma: Floats, count: Floats, of_all: float | None, floor: float) -> Floats | None:
     known = np.flatnonzero(np.isfinite(sigma))
     if of_all is None or known.size < 2:
         return None
     most, least = known[np.argmax(sigma[known])], known[np.argmin(sigma[known])]
-    ratio = sigma[most] / sigma[least]
+    ratio = max(sigma[most], floor) / max(sigma[least], floor)
     freedom = rules.FREEDOM_OF_A_DIFFERENCE * count
     chance = fisher_survival(ratio**2, freedom[most], freedom[least])
     chance *= known.size * (known.size - 1)

@@ -136,10 +136,11 @@ FREEDOM_OF_A_DIFFERENCE = 0.2
 0.21 with 18 to 200 poses of white noise (simulated). A median of absolute values has 0.37 of those
 of a mean square, and overlapping differences are correlated."""
 
-UNLIKE_NOISE = 2.0
-"""Ratio of standard deviations from which two drives' references are not given one noise: one for
-both is then wrong by the square root of that either way. Chosen; with less, to weigh each drive by
-its own gains a tenth of a standard deviation."""
+UNLIKE_NOISE = 3.0
+"""Ratio of standard deviations from which two drives' references are not given one noise: it is
+then wrong by root 3 either way. What is less than that of motion capture counts as that: small
+differences of a better one are of the drive (a robot under OptiTrack, from 0.1 mm where it is slow
+to 0.5 mm), and such drives would decide alone."""
 
 DIFFERENCE_REACH = 0.3
 """Path [m], or turn [rad], that such a difference may span: third differences remove errors that
