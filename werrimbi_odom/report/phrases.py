@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
@@ -219,6 +219,14 @@ def remark_words(remark: ReferenceRemark) -> str:
             "are right: its metre is none, or radius and base were both entered wrongly by that. "
             "Lay a tape beside it."
         )
+    if remark.what == "at_rest":
+        return (
+            f"The left wheel goes on at {1e3 * remark.size:.1f} mm/s and the right one at "
+            f"{1e3 * remark.usual:.1f} mm/s where the reference stands still, in "
+            f"{_places(remark)}: no robot is held so alike each time. Speeds with an offset of a "
+            "driver or a log do so, and counts that were summed up from them: subtract it from the "
+            "speeds. Until then the radii seem to go with the speed."
+        )
     angle = f"{math.degrees(abs(remark.size)):.1f}°"
     if remark.what == "sideways":
         return (
@@ -236,12 +244,15 @@ def remark_words(remark: ReferenceRemark) -> str:
     )
 
 
+_UNITS = {"short": "", "metre": "", "scale": "m", "at_rest": "m/s"}
+
+
 def remarks_json(remarks: Sequence[ReferenceRemark]) -> list[dict[str, Any]]:
     """Fields of each remark; sizes are shares of the path, lengths [m], or angles [rad]."""
     return [
         {
             **picked(remark, "what size"),
-            "unit": {"short": "", "metre": "", "scale": "m"}.get(remark.what, "rad"),
+            "unit": _UNITS.get(remark.what, "rad"),
             "usual": remark.usual,
             "stretches": [
                 picked(part, "run from_s:begin to_s:end size") for part in remark.stretches
