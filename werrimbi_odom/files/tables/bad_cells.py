@@ -34,7 +34,8 @@ def refuse(path: Path, found: Iterable[BadCell]) -> None:
 
     A mend that several have in a row is told once, behind the first.
     """
-    told, before, more = [], "", 0
+    told: list[str] = []
+    before, more = "", 0
     for cell in found:
         if len(told) == MOST:
             more += 1
