@@ -183,6 +183,17 @@ def test_a_bad_table_is_refused_with_its_place(desk: Path, text: str, says: str)
     assert not (desk / "new.yaml").exists()
 
 
+def test_all_that_is_wrong_in_a_table_is_told_at_once(desk: Path) -> None:
+    (desk / "before.csv").write_text("sense,x_m,y_m\nup,a,1\nccw,1\ncw,nan,2\n")
+    with pytest.raises(InputError) as refused:
+        umbmark(desk)
+    assert str(refused.value).endswith(
+        "line 2, column sense: 'up' must be cw or ccw; line 2, column x_m: 'a' is not a number "
+        "such as -0.094; line 3: 2 cells where the header has 3; separate by commas, and decimals "
+        "by points; line 4, column x_m: 'nan' is no measurement; leave the whole row out"
+    )
+
+
 def test_comments_spaces_case_and_more_columns_are_fine(desk: Path) -> None:
     text = "\ufeff# floor 2\n" + BEFORE.replace("cw,", "CW, ").replace("\n", ",note\n") + "\n"
     (desk / "before.csv").write_text(text.replace("cCW", "CCW"), encoding="utf-8")

@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,9 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
-from test.cli.commands import RECORDING, ROBOT, written_by
+from test.cli.commands import PLAIN, RECORDING, ROBOT, ROBOT_FILE, write_run, written_by
 from test.command_line import WERRIMBI, Complaint, ran
+from test.inference.driven import run_of
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 
@@ -40,6 +42,27 @@ LEGS = {
 
 def compared(tmp_path: Path, *words: object) -> dict[str, Any]:
     return written_by(tmp_path / "figures.json", "compare", *words)
+
+
+@pytest.mark.parametrize("verb", ["compare", "diagnose", "calibrate fit"])
+@pytest.mark.parametrize(("unit", "size"), [("millimetres", 1000.0), ("inches", 39.3701)])
+def test_a_reference_in_another_unit_is_refused_alike(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], verb: str, unit: str, size: float
+) -> None:
+    """`compare` said that the robot goes 940 times as far, and `calibrate fit` wrote a file."""
+    run = run_of(PLAIN, 1, 60)
+    seen = run.reference
+    assert seen is not None
+    write_run(
+        tmp_path / "run", replace(run, reference=replace(seen, x=size * seen.x, y=size * seen.y))
+    )
+    file, new = tmp_path / "robot.yaml", tmp_path / "new.yaml"
+    file.write_text(ROBOT_FILE)
+    out = ["--out", str(new)] if "fit" in verb else []
+    assert main([*verb.split(), "--robot", str(file), *out, str(tmp_path / "run")]) == 2
+    words = f"the reference's positions are in {unit}, and x_m and y_m mean metres: convert these"
+    assert words in capsys.readouterr().err
+    assert not new.exists()
 
 
 def wrong_base(tmp_path: Path) -> Path:

@@ -270,6 +270,43 @@ def test_wrong_references(tmp_path: Path, text: str, said: str) -> None:
     assert complaint(folder(tmp_path, FINE, text)).startswith(said)
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            FINE + "0.2,x,6\n0.3,5,y\n0.4,5\n",
+            "line 4, column left_ticks: 'x' is not a number; leave the cell empty where there is "
+            "none; line 5, column right_ticks: 'y' is not a number; line 6: 2 cells under 3 "
+            "columns",
+        ),
+        (
+            FINE + ",5,\n0.3,nan,6\nnan,,6\n",
+            "line 4, column t_s: it is empty; every row needs its time: fill it in, or leave the "
+            "row out; line 4, column right_ticks: it is empty; write nan where a reading is "
+            "missing, or leave the row out; line 6, column t_s: 'nan' is not a time; leave the row "
+            "out; line 6, column left_ticks: it is empty; write nan where a reading is missing, or "
+            "leave the row out",
+        ),
+        (
+            "t_s,left_ticks,right_ticks,mode\n" + "0,1,2,auto\n" * 9 + "1,2,x,auto\n",
+            "line 2, column mode: 'auto' is not a number; leave the cell empty where there is "
+            "none; leave a column of text out; line 11, column right_ticks: 'x' is not a number; "
+            "leave the cell empty where there is none",
+        ),
+    ],
+)
+def test_bad_cells_are_told_together(tmp_path: Path, text: str, said: str) -> None:
+    """They were told one at a time, a command for each."""
+    assert complaint(folder(tmp_path, text)) == f"ticks.csv, {said}"
+
+
+def test_of_many_bad_cells_the_number_is_told(tmp_path: Path) -> None:
+    said = complaint(folder(tmp_path, FINE, REFERENCE + "0,1,inf,3\n" * 20))
+    begin = "reference.csv, line 2, column y_m: 'inf' cannot be measured; leave the cell empty"
+    assert said.startswith(f"{begin} where nothing was; line 3, column y_m: 'inf'")
+    assert said.endswith("line 6, column y_m: 'inf' cannot be measured; and 15 more like these")
+
+
 def test_rows_without_a_single_value_are_blank_lines(tmp_path: Path) -> None:
     """A spreadsheet writes them between tables, and at the end."""
     blank = ' , ,"",\n,,,\n'

@@ -20,7 +20,8 @@ from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.prepared_runs import prepare
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.comparison.reference_checks import remarks_on
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.phrases import remark_words, remarks_json
 from werrimbi_odom.simulation import Peculiarity, TrueRobot, free, hide, record, start_stop

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import lru_cache
 
@@ -26,6 +27,7 @@ from werrimbi_odom.inference.diagnosis.told_sizes import as_told, doubted_effect
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.cutting import match_for_fit
+from werrimbi_odom.report.diagnosis.costs import sizes_found
 
 RIGHT, ALL_OFF = 128, 68
 """Drives of a late reference: wheels and base right, but the first order keeps unequal radii; base
@@ -106,3 +108,5 @@ def test_a_ratio_is_known_where_the_size_of_both_wheels_is_not() -> None:
     ratio = values_of(found, "unequal_wheel_radii")["ratio"]
     assert ratio.std < 4e-4
     assert ratio.value == pytest.approx(1.01, abs=3.0 * ratio.std)
+    said = r"right over left radius 1\.0\d+ ± 0\.0\d+ % larger, both radii known .* only to 1\.\d %"
+    assert re.fullmatch(said, sizes_found(found))

@@ -22,12 +22,14 @@ from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, ranked_of
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.report.calibration.fit_words import fit_in_words
 from werrimbi_odom.report.diagnosis.costs import cost, whole
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.reference_remarks import as_one_that_wanders
 from werrimbi_odom.report.diagnosis.words import words_of
+from werrimbi_odom.report.phrases import sizes_words
 from werrimbi_odom.report.terminal import as_text
 
 
@@ -113,6 +115,24 @@ def test_a_base_off_is_told_beside_wheels_that_are_exchanged() -> None:
     assert abs(value - 1.03) < 3.0 * std
     said = " ".join(as_text(words_of(told(found), NextSteps())).split())
     assert "On the robot, if it is wheels_swapped: wheel base 3.0" in said
+
+
+@pytest.mark.parametrize(
+    ("std", "ratio_std", "said"),
+    [
+        (0.011, 2e-4, "right over left radius 1.000 ± 0.020 % larger, both radii known"),
+        (0.002, 2e-4, "left wheel right as it is, right wheel 1.00 ± 0.20 % larger"),
+        (0.011, 0.01, "left wheel right as it is, right wheel 1.0 ± 1.1 % larger"),
+    ],
+)
+def test_wheels_within_their_uncertainty_are_told_by_a_ratio_that_is_sure(
+    std: float, ratio_std: float, said: str
+) -> None:
+    """Left right as it is, right 1.0 +- 1.1 % larger, beside a ratio known to 0.02 %."""
+    found = dict(zip(MULTIPLIERS, [(1.03, 0.01), (1.0, 0.0), (1.01, std)], strict=True))
+    words = sizes_words(replace(ROBOT, wheel_separation=0.3), found, ratio_std)
+    assert words.startswith("wheel base 3.0 ± 1.0 % larger (309.0 mm), ")
+    assert said in words
 
 
 @pytest.mark.evidence

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.calibrate_umbmark import calibration
-from werrimbi_odom.api.drives import Drives, Options, recordings_of
+from werrimbi_odom.api.drives import Drives, Options, recordings_of, refuse_other_units
 from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
@@ -70,6 +70,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     source = given.source
     for drives in filter(None, (given.runs, given.holdout)):
         refuse_standing(drives)
+    refuse_other_units(given)
     given = replace(
         given, runs=tuple(with_no_driving(run, source.robot, source.limits) for run in given.runs)
     )

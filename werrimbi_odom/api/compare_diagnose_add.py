@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.api.drives import Drives, Options, recordings_of
+from werrimbi_odom.api.drives import Drives, Options, recordings_of, refuse_other_units
 from werrimbi_odom.api.next_command import next_command
 from werrimbi_odom.api.one_blas_thread import with_one_blas_thread
 from werrimbi_odom.api.result import NewRobot, Result
@@ -69,6 +69,7 @@ def compared(
     from werrimbi_odom.report.comparison.document import document_of
 
     if over is None:
+        refuse_other_units(given)
         found = judge(given.runs, given.robot, given.evaluation, show=show)
     else:
         found = judged(over, given.robot, show=show)

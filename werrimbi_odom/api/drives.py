@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import UnionType
@@ -183,6 +184,23 @@ def refuse_circles(given: Recordings) -> list[str]:
             )
         told += [words] if words else []
     return told
+
+
+def refuse_other_units(given: Recordings) -> None:
+    """Check that no reference is in another unit, as `diagnose` does; InputError if one is.
+
+    The set-up is searched where ways by wheels and reference are as far apart as units are.
+    """
+    from werrimbi_odom.files.tables.compared_ways import words_about_ways
+    from werrimbi_odom.inference.set_up.search import look_for_mistakes
+
+    if not any(words_about_ways(run, given.robot) for run in given.runs):
+        return
+    words = None
+    with suppress(InputError):  # nothing in common: what is judged tells it
+        words = look_for_mistakes(given.runs, given.robot, given.evaluation).to_convert
+    if words is not None:
+        raise InputError(f"{given.runs[0].path}: {words}")
 
 
 def _several(runs: Drives) -> list[Run | Path]:

@@ -18,6 +18,7 @@ from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.tables.compared_ways import words_about_ways
 from werrimbi_odom.files.tables.mislabelled_columns import without_zeros
 from werrimbi_odom.inference.comparison.made_from_wheels import require_independent
+from werrimbi_odom.inference.comparison.speeds_at_rest import speeds_at_rest
 from werrimbi_odom.inference.legs.aligned_run import record_of, unmeasured
 from werrimbi_odom.inference.legs.count_interpolation import counters_of
 from werrimbi_odom.inference.legs.motion_states import driven
@@ -76,4 +77,5 @@ def judged_stretches(held: Held, source: RobotFile | None, first: FirstRobot) ->
         rare=counters.interval if counters.are_rare else 0.0,
         scans_restamped=scans,
         gyro_bias=bias,
+        at_rest=speeds_at_rest([run], [counters], wired) if sizes else None,
     )

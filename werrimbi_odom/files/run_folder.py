@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -118,8 +119,10 @@ def _cut(table: CsvTable) -> tuple[str, ...]:
 def _ticks(path: Path) -> tuple[Ticks, tuple[str, ...]]:
     table = read_table(path, TICKS_COLUMNS, TICKS_COLUMNS)
     channels = {name: table.column(name) for name in table.names if name not in TICKS_COLUMNS}
+    empty = [name for name in TICKS_COLUMNS[1:] if np.isnan(table.column(name)).any()]
+    table.refuse_where({**_wrong_times(table), **dict.fromkeys(empty, _not_a_count)})
+    times = table.column("t_s")
     left, right = (_counts(table, name) for name in TICKS_COLUMNS[1:])
-    times = _times(table)
     whole = _whole_seconds(times)
     told = (f"{path.name}: {whole}",) if whole else ()
     return Ticks(times, left, right, channels), (*_cut(table), *told)
@@ -137,12 +140,9 @@ def _whole_seconds(times: Floats) -> str:
     )
 
 
-def _times(table: CsvTable) -> Floats:
-    """Stamps; a row without one is an error."""
-    times = table.column("t_s")
-    if not (np.abs(times) < LATEST).all():
-        table.refuse_where("t_s", _not_a_time)
-    return times
+def _wrong_times(table: CsvTable) -> dict[str, Callable[[str], str]]:
+    """What is wrong with stamps, if any is: a row without one is an error."""
+    return {} if (np.abs(table.column("t_s")) < LATEST).all() else {"t_s": _not_a_time}
 
 
 def _not_a_time(text: str) -> str:
@@ -157,14 +157,12 @@ def _not_a_time(text: str) -> str:
 def _counts(table: CsvTable, name: str) -> Counts:
     """Counters; `nan` and `inf` mark failed readings, which the model counts."""
     values = table.column(name)
-    if np.isnan(values).any():
-        table.refuse_where(name, _not_a_count)
     counts = counts_of(values)
     if np.isfinite(values).all() and np.abs(values).max() >= EXACT:
         exact = table.integers(name)
         return counts if exact is None else exact
     if ((values >= UNSIGNED[0]) & (values <= UNSIGNED[1])).any():
-        table.refuse_where(name, _not_a_whole_count)
+        table.refuse_where({name: _not_a_whole_count})
     return counts
 
 
@@ -191,12 +189,15 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
         if name.startswith("sigma") and name not in SIGMA_COLUMNS:
             known = " and ".join(SIGMA_COLUMNS)
             raise InputError(f"{path}, line 1: unknown column {name}; there are {known}")
-    x, y, yaw = (_measured(table, name) for name in REFERENCE_COLUMNS[1:])
-    sigmas = [
-        _measured(table, name, minimum=0.0) if name in table.names else None
-        for name in SIGMA_COLUMNS
-    ]
-    reference, was_sorted = in_order(Reference(_times(table), x, y, yaw, *sigmas))
+    wrong = _wrong_times(table)
+    for name in (*REFERENCE_COLUMNS[1:], *SIGMA_COLUMNS):
+        values, least = table.column(name), 0.0 if name in SIGMA_COLUMNS else -math.inf
+        if np.isinf(values).any() or (values < least).any():
+            wrong[name] = partial(_not_measured, minimum=least)
+    table.refuse_where(wrong)
+    sigmas = [table.column(name) if name in table.names else None for name in SIGMA_COLUMNS]
+    poses = [table.column(name) for name in REFERENCE_COLUMNS]
+    reference, was_sorted = in_order(Reference(*poses, *sigmas))
     reference, course = without_course(reference)
     reckoned = words_about_own_headings(reference)
     if not (reference.has_position | reference.has_yaw).any():
@@ -231,13 +232,6 @@ def _nothing_measured(table: CsvTable) -> InputError:
         f"{table.path}: {', '.join(others)} and {last} are empty in all {len(table.values)} rows: "
         "nothing is measured; fill in x_m and y_m, or yaw_rad where headings alone were measured"
     )
-
-
-def _measured(table: CsvTable, name: str, minimum: float = -math.inf) -> Floats:
-    values = table.column(name)
-    if np.isinf(values).any() or (values < minimum).any():
-        table.refuse_where(name, lambda text: _not_measured(text, minimum))
-    return values
 
 
 def _not_measured(text: str, minimum: float) -> str:

@@ -19,6 +19,7 @@ from werrimbi_odom.files.robot_descriptions.first_robot import FirstRobot
 from werrimbi_odom.files.robot_descriptions.wheel_joints import WheelJoints
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.inference.fitting.prediction import tell_lengths
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.motion_states import DrivenAmount
@@ -63,6 +64,8 @@ class Held:
     """Correction of the scan stamps, rms [s]."""
     gyro_bias: float = 0.0
     """Rate of the headings at rest, which is removed (`legs.gyro_bias`) [rad/s]."""
+    at_rest: ReferenceRemark | None = None
+    """Speeds of the wheels where the reference stands (`comparison.speeds_at_rest`), if any."""
     beside: Measured | None = None
     """Gyro whose headings are taken with the positions of `reference`, a localiser."""
 

@@ -74,6 +74,9 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         **picked(held, "restamped_s:restamped scans_restamped_s:scans_restamped"),
         "gyro_bias_rad_per_s": held.gyro_bias,
         "clock_rate": held.clock_rate,
+        "speeds_at_rest_m_per_s": None
+        if held.at_rest is None
+        else {"left": held.at_rest.size, "right": held.at_rest.usual},
         "can_show": can,
         "cannot_show": cannot,
     }

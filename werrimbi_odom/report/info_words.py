@@ -35,7 +35,7 @@ from werrimbi_odom.report.info_wheels import (
     wheels_words,
 )
 from werrimbi_odom.report.number_format import capital, listed
-from werrimbi_odom.report.phrases import left_out_words
+from werrimbi_odom.report.phrases import left_out_words, remark_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
 _WITHOUT_FORM = ("std_msgs/msg/String", *FLOATS, *ARRAYS)
@@ -86,6 +86,8 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             f"Its headings turn by {math.degrees(held.gyro_bias):.2g}°/s while the wheels stand: "
             "a gyro's bias, which is removed."
         )
+    if held.at_rest is not None:
+        yield remark_words(held.at_rest)
     if held.clock_rate:
         yield (
             f"The reference's clock {'gains' if held.clock_rate > 0.0 else 'loses'} "

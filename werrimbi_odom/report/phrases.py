@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.number_format import from_start, listed, picked, with_std
+from werrimbi_odom.report.number_format import from_start, listed, picked, two_digits, with_std
 
 _MOST = 5  # stretches that are reported one by one
 _TOLD = 3  # the same, for a suspect reference
@@ -103,33 +103,69 @@ def left_out_json(parts: Sequence[LeftOut]) -> list[dict[str, Any]]:
 _NAMES = dict(zip(MULTIPLIERS, ("wheel base", "left wheel", "right wheel"), strict=True))
 
 
-def sizes_words(given: Robot, found: Mapping[str, tuple[float, float | None]]) -> str:
+def sizes_words(
+    given: Robot, found: Mapping[str, tuple[float, float | None]], ratio_std: float
+) -> str:
     """Changed sizes in a sentence without its full stop; "" if all are as in the given robot.
 
-    `found` holds the multipliers by name, with their standard deviations if known.
+    `found` holds the multipliers by name, with their standard deviations if known. `ratio_std`:
+    relative standard deviation of right over left radius. Headings tell that ratio where positions
+    are too coarse for either radius; then it is told in their place.
     """
     moved = {name for name in MULTIPLIERS if found[name][0] != getattr(given, name)}
     if not moved:
         return ""
+    ratio = _ratio_alone(given, found, ratio_std)
     parts = []
-    for name in MULTIPLIERS:
+    for name in MULTIPLIERS[:1] if ratio else MULTIPLIERS:
         if name in moved:
-            parts.append(_moved(name, given, *found[name]))
+            parts.append(_moved(name, given, found))
         elif name != MULTIPLIERS[0]:
             parts.append(f"{_NAMES[name]} right as it is")
-    return ", ".join(parts)
+    return ", ".join([*parts, *ratio])
 
 
-def _moved(name: str, given: Robot, value: float, std: float | None) -> str:
+def _ratio_alone(
+    given: Robot, found: Mapping[str, tuple[float, float | None]], std: float
+) -> list[str]:
+    """The ratio of the radii, where it has surely changed but neither radius has."""
+    sizes, stds = zip(*(_relative(given, name, found) for name in MULTIPLIERS[1:]), strict=True)
+    ratio = sizes[1] / sizes[0]
+    if any(
+        abs(size - 1.0) > rules.SIGNIFICANT * own for size, own in zip(sizes, stds, strict=True)
+    ):
+        return []
+    if not abs(ratio - 1.0) > rules.SIGNIFICANT * std * ratio:
+        return []
+    return [
+        f"right over left radius {_change(ratio, std * ratio)}, both radii known by these drives "
+        f"only to {two_digits(100.0 * max(stds))} %"
+    ]
+
+
+def _relative(
+    given: Robot, name: str, found: Mapping[str, tuple[float, float | None]]
+) -> tuple[float, float]:
+    """One multiplier over that of the given robot, and the standard deviation of that."""
+    value, std = found[name]
+    before = float(getattr(given, name))
+    return value / before, (std or 0.0) / before
+
+
+def _moved(name: str, given: Robot, found: Mapping[str, tuple[float, float | None]]) -> str:
     """One size: its relative change, and its length."""
-    ratio = value / float(getattr(given, name))
+    ratio, std = _relative(given, name, found)
     nominal = given.wheel_separation if name == MULTIPLIERS[0] else given.wheel_radius
     what = "" if name == MULTIPLIERS[0] else "radius "
-    long = f"{what}{_millimetres(nominal * value)}"
+    long = f"{what}{_millimetres(nominal * found[name][0])}"
     if not 0.5 < ratio < 2.0:
         return f"{_NAMES[name]} {ratio:.4g} times as large ({long})"
-    share = with_std(100.0 * abs(ratio - 1.0), 100.0 * (std or 0.0) / float(getattr(given, name)))
-    return f"{_NAMES[name]} {share} % {'larger' if ratio > 1.0 else 'smaller'} ({long})"
+    return f"{_NAMES[name]} {_change(ratio, std)} ({long})"
+
+
+def _change(ratio: float, std: float) -> str:
+    share = with_std(100.0 * abs(ratio - 1.0), 100.0 * std)
+    return f"{share} % {'larger' if ratio > 1.0 else 'smaller'}"
 
 
 def _millimetres(metres: float) -> str:
@@ -183,6 +219,14 @@ def remark_words(remark: ReferenceRemark) -> str:
             "are right: its metre is none, or radius and base were both entered wrongly by that. "
             "Lay a tape beside it."
         )
+    if remark.what == "at_rest":
+        return (
+            f"The left wheel goes on at {1e3 * remark.size:.1f} mm/s and the right one at "
+            f"{1e3 * remark.usual:.1f} mm/s where the reference stands still, in "
+            f"{_places(remark)}: no robot is held so alike each time. Speeds with an offset of a "
+            "driver or a log do so, and counts that were summed up from them: subtract it from the "
+            "speeds. Until then the radii seem to go with the speed."
+        )
     angle = f"{math.degrees(abs(remark.size)):.1f}°"
     if remark.what == "sideways":
         return (
@@ -200,12 +244,15 @@ def remark_words(remark: ReferenceRemark) -> str:
     )
 
 
+_UNITS = {"short": "", "metre": "", "scale": "m", "at_rest": "m/s"}
+
+
 def remarks_json(remarks: Sequence[ReferenceRemark]) -> list[dict[str, Any]]:
     """Fields of each remark; sizes are shares of the path, lengths [m], or angles [rad]."""
     return [
         {
             **picked(remark, "what size"),
-            "unit": {"short": "", "metre": "", "scale": "m"}.get(remark.what, "rad"),
+            "unit": _UNITS.get(remark.what, "rad"),
             "usual": remark.usual,
             "stretches": [
                 picked(part, "run from_s:begin to_s:end size") for part in remark.stretches

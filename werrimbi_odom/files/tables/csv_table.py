@@ -8,7 +8,7 @@ import csv
 import itertools
 import re
 import warnings
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.tables.bad_cells import NUMBER, BadCell, bad_cells, refuse
 from werrimbi_odom.files.tables.column_names import perhaps_meant
 from werrimbi_odom.files.text_files import reading
 from werrimbi_odom.model.pose import Floats
@@ -30,9 +31,6 @@ MAX_LINE = 2**20
 """Bytes."""
 _FLOAT = np.dtype(np.float64)
 
-_NUMBER = re.compile(
-    r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf|infinity|nan)\s*\Z", re.IGNORECASE | re.ASCII
-)
 _BLANK = re.compile(r'[\s,"]*\Z')
 """A line with no value in it."""
 _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?[^\S\n]*(?=,)')
@@ -70,16 +68,22 @@ class CsvTable:
                 return np.ascontiguousarray(rows[str(self.names.index(name))]).view(np.int64)
         return None
 
-    def refuse_where(self, name: str, wrong: Callable[[str], str]) -> None:
-        """Raise on the first invalid cell of a column.
+    def refuse_where(self, wrong: Mapping[str, Callable[[str], str]]) -> None:
+        """Raise on the invalid cells of some columns, with their lines and columns.
 
-        `wrong`: takes a cell's text and returns what is wrong with it; "" if nothing is. InputError
-        at the first invalid cell, with its line and column.
+        `wrong`: for each column, a function that takes a cell's text and returns what is wrong with
+        it and, behind a semicolon, what to do; "" if nothing is wrong.
         """
-        place = self.names.index(name)
-        for line, cells in _rows(self.path, self.cut):
-            if complaint := wrong(cells[place].strip()):
-                raise InputError(f"{self.path}, line {line}, column {name}: {complaint}")
+        places = [(name, self.names.index(name), fault_of) for name, fault_of in wrong.items()]
+        refuse(
+            self.path,
+            (
+                BadCell(f"line {line}, column {name}", *complaint.split("; ", 1))
+                for line, cells in (_rows(self.path, self.cut) if places else ())
+                for name, place, fault_of in places
+                if (complaint := fault_of(cells[place].strip()))
+            ),
+        )
 
 
 def read_table(
@@ -137,7 +141,7 @@ def _header(
     place = f"{path}, line 1"
     missing = [name for name in required if name not in names]
     if missing and set(names) not in map(set, enough):
-        if all(_NUMBER.match(name) for name in names):
+        if all(NUMBER.match(name) for name in names):
             raise InputError(f"{place}: there is no header; the first line must be {wanted}")
         if line.lstrip()[:1] in ("#", "%"):
             raise InputError(
@@ -185,7 +189,7 @@ def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
         return 0
     cells = last.split(",")
     whole = len(cells) == len(names) and all(
-        _NUMBER.match(cell.strip().strip('"')) or not cell.strip() for cell in cells
+        NUMBER.match(cell.strip().strip('"')) or not cell.strip() for cell in cells
     )
     if whole and all(cells[place].strip() for place in filled):
         return 0
@@ -251,41 +255,9 @@ def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
 
 def _refuse_bad_row(path: Path, names: Sequence[str], cut: int, required: Sequence[str]) -> None:
     try:
-        for number, cells in _rows(path, cut):
-            place = f"{path}, line {number}"
-            if [cell.strip() for cell in cells] == list(names):
-                raise InputError(
-                    f"{place}: the column names again: the log was begun anew there; make a run of "
-                    "each part, with the names as its first line"
-                )
-            for name, cell in zip(names, cells, strict=False):
-                if cell.strip() and not _NUMBER.match(cell):
-                    further = "" if name in required else "; leave a column of text out"
-                    text = cell.strip()
-                    shown = text if len(text) <= 40 else f"{text[:40]}..."
-                    raise InputError(
-                        f"{place}, column {name}: {shown!r} is not a number; "
-                        f"leave the cell empty where there is none{further}"
-                    )
-            if len(cells) != len(names):
-                raise InputError(
-                    f"{place}: {len(cells)} cells under {len(names)} columns"
-                    f"{_in_all_rows(path, names, cut)}"
-                )
+        refuse(path, bad_cells(lambda: _rows(path, cut), names, required))
     except csv.Error as error:
         raise InputError(f"{path} cannot be read: {error}") from error
-
-
-def _in_all_rows(path: Path, names: Sequence[str], cut: int) -> str:
-    """Remark on a header that fits no row."""
-    counts = {len(cells) for _, cells in _rows(path, cut)}
-    if len(counts) > 1:
-        return ""
-    few = min(counts) < len(names)
-    return (
-        f", as in all rows: {'one that it names was not written' if few else 'one has no name'}, "
-        "so the others may not stand under their names"
-    )
 
 
 def _not_text(path: Path) -> InputError:

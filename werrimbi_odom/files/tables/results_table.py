@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.tables.bad_cells import BadCell, refuse
 from werrimbi_odom.files.text_files import read_small_text
 from werrimbi_odom.model.pose import Floats
 
@@ -42,7 +43,7 @@ def read_results(
     path = Path(path)
     wanted = [*([word] if word else []), *numbers]
     header: list[str] = []
-    rows, words = [], []
+    rows, words, bad = [], [], list[BadCell]()
     for line, cells in _lines(path):
         if not header:
             header = cells
@@ -57,14 +58,17 @@ def read_results(
                 raise InputError(f"{path}, line {line}: the column {twice[0]} is there twice")
             continue
         if len(cells) != len(header):
-            raise InputError(
-                f"{path}, line {line}: {len(cells)} cells where the header has {len(header)}; "
-                "separate by commas, and decimals by points"
-            )
+            fault = f"{len(cells)} cells where the header has {len(header)}"
+            bad.append(BadCell(f"line {line}", fault, "separate by commas, and decimals by points"))
+            continue
         row = dict(zip(header, cells, strict=True))
-        if word:
-            words.append(_word(row[word], f"{path}, line {line}, column {word}", choices))
-        rows.append([_number(row[name], f"{path}, line {line}, column {name}") for name in numbers])
+        faults = {word: _not_a_word(row[word], choices)} if word else {}
+        faults |= {name: _not_measured(row[name]) for name in numbers}
+        bad += [BadCell(f"line {line}, column {name}", *one) for name, one in faults.items() if one]
+        if not any(faults.values()):
+            words += [row[word].lower()] if word else []
+            rows.append([float(row[name]) for name in numbers])
+    refuse(path, bad)
     if not header:
         raise InputError(f"{path} is empty; its first line must be {','.join(wanted)}")
     return ResultsTable(np.array(rows, dtype=np.float64).reshape(-1, len(numbers)), tuple(words))
@@ -87,17 +91,16 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     return found
 
 
-def _number(cell: str, place: str) -> float:
+def _not_measured(cell: str) -> tuple[str, ...]:
+    """What is wrong with a number, and what to do; empty if nothing is."""
     try:
         value = float(cell)
     except ValueError:
-        raise InputError(f"{place}: {cell[:40]!r} is not a number such as -0.094") from None
-    if not math.isfinite(value):
-        raise InputError(f"{place}: {cell!r} is no measurement; leave the whole row out")
-    return value
+        return (f"{cell[:40]!r} is not a number such as -0.094",)
+    return (
+        () if math.isfinite(value) else (f"{cell!r} is no measurement", "leave the whole row out")
+    )
 
 
-def _word(cell: str, place: str, choices: Sequence[str]) -> str:
-    if cell.lower() not in choices:
-        raise InputError(f"{place}: {cell[:40]!r} must be {' or '.join(choices)}")
-    return cell.lower()
+def _not_a_word(cell: str, choices: Sequence[str]) -> tuple[str, ...]:
+    return () if cell.lower() in choices else (f"{cell[:40]!r} must be {' or '.join(choices)}",)

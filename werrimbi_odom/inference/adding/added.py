@@ -100,6 +100,8 @@ class Added:
     """The robot to write."""
     multiplier_stds: Mapping[str, float | None]
     """None where the multiplier is as in the given file."""
+    ratio_std: float
+    """Relative standard deviation of the ratio of the radii."""
     train: JudgedSide
     holdout: JudgedSide
     without: Mapping[str, float]

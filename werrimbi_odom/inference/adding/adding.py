@@ -164,6 +164,7 @@ def add_effects(
         given=robot,
         robot=final,
         multiplier_stds={name: std_of(known, name) or None for name in MULTIPLIERS},
+        ratio_std=known.std_of_size("unequal_wheel_radii"),
         train=train,
         holdout=kept,
         without={name: sides.before for name, sides in alone.items()},

@@ -16,7 +16,6 @@ from werrimbi_odom.inference.calibration_parametrisation import (
     base_name,
     base_told,
     sizes_of,
-    std_as_effect,
 )
 from werrimbi_odom.inference.diagnosis.estimated_values import of_other_sign
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -152,11 +151,8 @@ def std_of(fit: Fitted, name: str) -> float:
 
 def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     """A calibration effect's value, relative to the given robot file."""
-    robot = fit.point.model.robot
-    value = sizes_of(robot).over(sizes_of(given)).as_effects[effect.name]
-    names = fit.design.names
-    where = [names.index(name) for name in MULTIPLIERS]
-    std = value * std_as_effect(effect.name, robot, fit.covariance[np.ix_(where, where)])
+    value = sizes_of(fit.point.model.robot).over(sizes_of(given)).as_effects[effect.name]
+    std = value * fit.std_of_size(effect.name)
     declared = next(iter(effect.parameters.values()))
     return FittedParameter(
         declared, value, std, "fitted" if std < rules.CALIBRATION_KNOWN * value else "undetermined"

@@ -22,7 +22,8 @@ from werrimbi_odom.inference.comparison.leg_errors import (
     statistics,
 )
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns, prepare, refuse_standing
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.comparison.reference_checks import remarks_on
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.inference.comparison.residuals import Residual
 from werrimbi_odom.inference.comparison.systematic import (
     NoiseFactor,

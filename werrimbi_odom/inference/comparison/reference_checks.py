@@ -13,8 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +20,9 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark, Stretch
 from werrimbi_odom.inference.comparison.residuals import Residual
+from werrimbi_odom.inference.comparison.speeds_at_rest import speeds_at_rest
 from werrimbi_odom.inference.distributions import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.cutting import leg_ends
 from werrimbi_odom.model.effect import view_of
@@ -30,50 +30,6 @@ from werrimbi_odom.model.pose import Floats, wrap, wrap_all
 
 _PAIRED = 100
 """Stretches of a drive whose pairwise slopes are used (Theil-Sen)."""
-
-What = Literal[
-    "another_drive",
-    "no_turn",
-    "places",
-    "scale",
-    "short",
-    "sideways",
-    "sideways_by_place",
-    "apart",
-    "metre",
-]
-"""Kind of anomaly. another_drive: nothing in common with the wheels; no_turn: headings that do not
-change; places: only its turns; scale: only its way, by a factor; short: path shorter (or longer) in
-places; sideways: constant angle between path and heading; sideways_by_place: such an angle in
-places; apart: an angle that grows; metre: another metric scale."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stretch:
-    """A few metres of a run."""
-
-    run: Path
-    begin: float
-    """[s]"""
-    end: float
-    size: float
-    """Size of the anomaly."""
-    started: float = 0.0
-    """First tick of the run [s], as in `LeftOut`."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceRemark:
-    """An anomaly of a reference."""
-
-    what: What
-    size: float
-    """short, metre: relative path length error, negative if shorter; scale: its path [m]; else an
-    angle [rad]."""
-    usual: float = 0.0
-    """Value over the normal stretches; no_turn: turn by the wheels [rad]; scale: their way [m]."""
-    stretches: tuple[Stretch, ...] = ()
-    """Stretches concerned; empty if all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +56,7 @@ def remarks_on(prepared: PreparedRuns) -> tuple[ReferenceRemark, ...]:
                 paths.append((prepared.runs[index], item, run.gap))
     if not paths:
         return ()
+    at_rest = speeds_at_rest(prepared.runs, prepared.counters, prepared.robot)
     mount = view_of(prepared.robot.effects).yaw
     cuts = [_cuts(item, gap, prepared.options.leg, mount) for _, item, gap in paths]
     runs = [run for run, _, _ in paths]
@@ -108,6 +65,7 @@ def remarks_on(prepared: PreparedRuns) -> tuple[ReferenceRemark, ...]:
         *_lengths(runs, cuts, prepared.options.leg),
         *_angles(runs, cuts, prepared.options.leg, wander),
         *_metre(cuts),
+        *([] if at_rest is None else [at_rest]),
     )
 
 

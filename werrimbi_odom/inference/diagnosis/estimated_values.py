@@ -16,7 +16,6 @@ from werrimbi_odom.inference.calibration_parametrisation import (
     base_name,
     base_told,
     sizes_of,
-    std_as_effect,
 )
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.forward_selection import tried_with
@@ -122,12 +121,8 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
     effect = find(name)
     item = next(iter(effect.parameters.values()))
     size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
-    names = diagnosis.told.design.names
-    std = math.nan
-    if set(MULTIPLIERS) <= set(names) and name not in diagnosis.told.held:
-        where = [names.index(multiplier) for multiplier in MULTIPLIERS]
-        spread = diagnosis.told.covariance[np.ix_(where, where)]
-        std = size * std_as_effect(name, diagnosis.robot, spread)
+    told = diagnosis.told
+    std = math.nan if name in told.held else size * told.std_of_size(name)
     return Value(size, std, item.unit, item.says, item.null)
 
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration_parametrisation import sizes_of, std_as_effect
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of
 from werrimbi_odom.inference.diagnosis.evidence import p_value_of_score
 from werrimbi_odom.inference.diagnosis.homogeneity import homogeneity_of_effect
 from werrimbi_odom.inference.diagnosis.penalised_likelihood import Fitted
@@ -75,7 +75,5 @@ def p_value_of_size(fit: Fitted, name: str, given: Robot, start: Robot) -> float
 
 def deviations_from(given: Robot, fit: Fitted, name: str) -> float:
     """By how many standard deviations a size differs from that of the file."""
-    robot = fit.point.model.robot
-    where = [fit.design.names.index(multiplier) for multiplier in MULTIPLIERS]
-    std = std_as_effect(name, robot, fit.covariance[np.ix_(where, where)])
-    return abs(math.log(sizes_of(robot).over(sizes_of(given)).as_effects[name])) / max(std, 1e-12)
+    size = sizes_of(fit.point.model.robot).over(sizes_of(given)).as_effects[name]
+    return abs(math.log(size)) / max(fit.std_of_size(name), 1e-12)

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.calibration_parametrisation import sizes_of
+from werrimbi_odom.inference.calibration_parametrisation import sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.fit_statistics import (
     covariance_of,
     grain_of,
@@ -144,6 +144,12 @@ class Fitted:
         effect = self.newest
         own = [f"{effect.name}.{key}" for key, item in effect.parameters.items() if not item.tries]
         return any(key not in self.held for key in own)
+
+    def std_of_size(self, name: str) -> float:
+        """Standard deviation of the logarithm of a calibration effect."""
+        where = [self.design.names.index(multiplier) for multiplier in MULTIPLIERS]
+        spread = self.covariance[np.ix_(where, where)]
+        return std_as_effect(name, self.point.model.robot, spread)
 
     def without(self, name: str) -> tuple[Point, tuple[FreeParameter, ...]]:
         """Point and parameters of the same model without one of its effects."""

@@ -10,7 +10,7 @@ from typing import Literal
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference import rules
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round
 from werrimbi_odom.inference.diagnosis.misfit import Misfit

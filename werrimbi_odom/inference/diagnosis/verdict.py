@@ -18,7 +18,8 @@ from werrimbi_odom.inference.comparison.another_drive import (
 )
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.prepared_runs import PreparedRuns
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.comparison.reference_checks import remarks_on
+from werrimbi_odom.inference.comparison.reference_remark import ReferenceRemark
 from werrimbi_odom.inference.diagnosis.calibration_selection import sizes_needed
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.forward_selection import Round

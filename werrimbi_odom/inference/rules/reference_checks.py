@@ -77,3 +77,23 @@ errors of 20 mm that are alike on one drive of two are no camera's."""
 BESIDE_ROUNDS = 3
 """Fits in turn of a dependence and of the wander of a reference. Chosen: a wander that a dependence
 was taken for shrinks in the first, and the third moves the cost by less than one."""
+
+# ------------------------------------------------------------- wheels that go on where poses stand
+
+AT_REST_WINDOW = 4
+"""Seconds over which speeds are compared; a rest needs two more, which a late reference spoils."""
+
+AT_REST_MOVED = 0.1
+"""Speed of the reference relative to that of the wheels, below which it stands."""
+
+AT_REST_USUAL, AT_REST_SPEEDS = 0.9, (0.01, 0.25)
+"""Quantile of the speeds of a drive that is its usual one, and the range of speeds at rest relative
+to it. Chosen: less changes no radius by more than a per cent, and more is a wheel that drives,
+against a wall or off the floor. The robots of UTIAS have 5 %."""
+
+AT_REST_ALIKE, AT_REST_MOST = 0.2, 0.9
+"""Relative difference up to which speeds at rest are alike, and the share of all rests that must
+be so: wheels that stand in one of them have no offset."""
+
+AT_REST_RESTS = 2
+"""Rests that are needed: in one a robot may have been held."""

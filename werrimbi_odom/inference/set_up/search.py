@@ -58,7 +58,7 @@ SWAPPED, MOUNT = "wheels_swapped", "reference_yaw_offset"
 BEYOND = "correct its stamps or positions, and diagnose again"
 IN_UNIT = (
     "the reference's positions are in {unit}, and x_m and y_m mean metres: convert these columns "
-    "(divide by {size:.6g}) and diagnose again"
+    "(divide by {size:.6g})"
 )
 
 

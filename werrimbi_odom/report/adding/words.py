@@ -81,7 +81,7 @@ def _sizes(added: Added) -> str:
     """Changed wheel base and radii as lengths on the robot, or that none changed."""
     stds = added.multiplier_stds
     found = {name: (getattr(added.robot, name), stds[name]) for name in MULTIPLIERS}
-    words = sizes_words(added.given, found)
+    words = sizes_words(added.given, found, added.ratio_std)
     if not words:
         return "Base and radii stay as the robot file has them."
     return f"On the robot: {words}. It is written as the robot file's multipliers."

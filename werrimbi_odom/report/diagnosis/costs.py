@@ -94,7 +94,8 @@ def judged(advised: AdvisedDiagnosis) -> str:
 
 def sizes_found(diagnosis: Diagnosis) -> str:
     """Wheel base and radii of the best model in measurable units; "" if all are right."""
-    return sizes_words(diagnosis.given, best_sizes(diagnosis))
+    spread = diagnosis.told.std_of_size("unequal_wheel_radii")
+    return sizes_words(diagnosis.given, best_sizes(diagnosis), spread)
 
 
 def whole(advised: AdvisedDiagnosis) -> list[str]:
