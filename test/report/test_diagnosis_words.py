@@ -36,7 +36,7 @@ from werrimbi_odom.report.diagnosis.costs import by_sizes_alone, cost, whole
 from werrimbi_odom.report.diagnosis.document import document_of
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.phrases import hang_together
-from werrimbi_odom.report.diagnosis.reference_remarks import not_shown
+from werrimbi_odom.report.diagnosis.reference_remarks import not_shown, or_upside_down
 from werrimbi_odom.report.diagnosis.remarks import (
     alike,
     at_bounds_told,
@@ -413,3 +413,17 @@ def test_what_errors_go_with_is_told_as_beside_base_and_radii() -> None:
     """Of a wheel 0.2 % larger it was "before anything is put in: nothing", which veers."""
     (said,) = tables._map(SimpleNamespace(depends_on=()))  # type: ignore[arg-type]
     assert as_text([said]).startswith("What the errors go with, base and radii alone put in: ")
+
+
+def test_by_scans_that_are_mirrored_one_looks_whether_the_lidar_hangs_upside_down() -> None:
+    """They were to be told by a yaw that grows, which no scan shows."""
+    twins = "wheels_swapped", "reference_mirrored"
+
+    def said(rivals: tuple[str, ...], own_axes: bool) -> list[str]:
+        diagnosis: Any = SimpleNamespace(rivals=rivals, runs=SimpleNamespace(own_axes=own_axes))
+        return or_upside_down(diagnosis)
+
+    (told,) = said(twins, True)
+    assert "should then turn it over, by a roll of 180°" in told
+    assert not said(twins, False)
+    assert not said(("sideways_drift", "reference_yaw_offset"), True)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An hour of scans, matched as they come: `python -m test.scans.hour` (five minutes of a core).
+"""An hour of scans, matched as they come: `python -m test.scans.hour` (five to fifteen minutes).
 
 Every ten minutes it prints how many scans a second were matched, and the memory of the process.
 """

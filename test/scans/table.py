@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/scans.md, written there: `python -m test.scans.table` (three minutes)."""
+"""The table of docs/scans.md, written there: `python -m test.scans.table` (3 to 6 minutes)."""
 
 from __future__ import annotations
 

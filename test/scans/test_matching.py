@@ -10,8 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from test.scans.drives import in_circles, seen
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.line_features import REACH, line_elements
 from werrimbi_odom.scans.matching import match
+from werrimbi_odom.scans.scan_odometry import motion_between
 from werrimbi_odom.scans.sweep import (
     Sweep,
     SweepMotion,
@@ -20,6 +22,7 @@ from werrimbi_odom.scans.sweep import (
     range_noise,
     sweep_of,
 )
+from werrimbi_odom.scans.three_pass_odometry import ScanMatcher, ScanPath
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import PERIOD, TruePath
 from werrimbi_odom.simulation.lidar import Lidar
@@ -37,6 +40,40 @@ def test_a_guess_that_is_a_fifth_wrong_moves_nothing() -> None:
     ]
     assert np.ptp(poses, axis=0)[:2].max() < 5e-4
     assert np.ptp(poses, axis=0)[2] < 5e-4
+
+
+class Misjudging(ScanMatcher):
+    """Its first pass takes its own last motion for some times what it was."""
+
+    times = 1.0
+
+    @property
+    def _motion(self) -> Floats:
+        return self._taken_for
+
+    @_motion.setter
+    def _motion(self, measured: Floats) -> None:
+        self._taken_for = self.times * measured
+
+
+def test_a_first_pass_that_guesses_a_fifth_wrong_moves_no_leg() -> None:
+    """Scans are deskewed by it too: legs of a metre by that pass alone are moved by 10 mm."""
+    _, sweeps = seen(in_circles(25.0), rooms.living_room(), Lidar(rate_hz=5.0))
+
+    def path(times: float) -> ScanPath:
+        matcher = Misjudging()
+        matcher.times = times
+        for sweep in sweeps:
+            matcher.take(sweep)
+        return matcher.path()
+
+    right, wrong = path(1.0), path(1.2)
+    assert right.time.size == wrong.time.size == len(sweeps)
+    apart = [
+        motion_between(*(motion_between(*found.poses[[row, row + 20]]) for found in (right, wrong)))
+        for row in range(right.time.size - 20)
+    ]
+    assert np.abs(apart).max() < 5e-4
 
 
 def test_deskewed_echoes_are_those_of_a_lidar_that_stands() -> None:

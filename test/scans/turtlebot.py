@@ -146,12 +146,17 @@ def place_by_two_short_drives(
     return {name: (each["value"], each["std"] or math.nan) for name, each in every.items()}
 
 
-def found(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What `add` makes of all that is wrong, by scans and by the truth: 10 m, and 10 m held out."""
+def found(folder: Path, driven: int = 3, seed: int = 10) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What `add` makes of all that is wrong, by scans and by the truth: 10 m, and 10 m held out.
+
+    `driven`, `seed`: of the first drive's manoeuvre, and of its wheels, room and lidar.
+    """
     robot = wo.read_robot(sim.write_robot_file(ROBOT, folder / "robot.yaml"))
     drives = [
         recorded(
-            sim.free(80.0, seed=3 + n, speed=0.25, yaw_rate=0.8), 10 + n, folder / f"drive_{n}"
+            sim.free(80.0, seed=driven + n, speed=0.25, yaw_rate=0.8),
+            seed + n,
+            folder / f"drive_{n}",
         )
         for n in range(2)
     ]

@@ -45,6 +45,7 @@ def ambiguous_words(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         if effect is not None:
             size = phrases.sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
+    lines += reference_remarks.or_upside_down(diagnosis)
     lines += reference_remarks.or_the_reference_s_scale(diagnosis)
     lines += reference_remarks.moved_by_its_odometry(diagnosis)
     lines += reference_remarks.transform_to_mend(diagnosis)

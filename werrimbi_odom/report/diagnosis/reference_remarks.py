@@ -226,6 +226,17 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def or_upside_down(diagnosis: Diagnosis) -> list[str]:
+    """That scans are mirrored by a lidar that hangs upside down, which nobody need drive to see."""
+    if not diagnosis.runs.own_axes or "reference_mirrored" not in diagnosis.rivals:
+        return []
+    return [
+        "A lidar that hangs upside down shows the same: look at it. Its transform (URDF, "
+        "/tf_static) should then turn it over, by a roll of 180°. Mend it there, or add "
+        "reference_mirrored, but not both."
+    ]
+
+
 def or_a_compass(diagnosis: Diagnosis, goes_with: str) -> list[str]:
     """That a compass errs by the direction, where headings alone do; `goes_with`: a variable."""
     if goes_with != "heading" or not diagnosis.runs.headings_alone:
