@@ -59,7 +59,7 @@ def search_sparse(
         return [], None
     drives = _Drives(cuts, track, measured == "pose")
     ticks = ratio_of_ticks(robot)
-    tried = [(drives.fits(each), each) for each in drives.settings(ticks)]
+    tried = [(drives.fits(each), each) for each in _settings(ticks)]
     best = max(value for value, _ in tried)
     # Of those that predict the same, the first. Distances know sizes, and no left from right.
     setting = next(each for value, each in tried if value > best - SAME)
@@ -68,6 +68,8 @@ def search_sparse(
     if more.sum() < rules.SPARSE_MARGIN or more.sum() - more.max() < rules.SPARSE_APART:
         return [], None
     if measured != "pose" and setting.wired.names():
+        return [], None
+    if setting.left == setting.right != 1.0 and not drives.tell_lengths():
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
@@ -139,16 +141,11 @@ class _Drives:
     track: float
     facing: bool
 
-    def settings(self, ticks: float) -> Iterator[Setting]:
-        """Those that these drives may tell: both wheels' size only if they end somewhere else."""
+    def tell_lengths(self) -> bool:
+        """Whether they tell both wheels' size: only if they end somewhere else."""
         cuts = self.cuts
         way = cuts.summed(0.5 * np.abs(cuts.left + cuts.right))
-        sized = tell_lengths(np.abs(cuts.move), way)
-        return (
-            each
-            for each in _settings(ticks)
-            if sized or each.left != each.right or each.left == 1.0
-        )
+        return tell_lengths(np.abs(cuts.move), way)
 
     def fits(self, setting: Setting) -> float:
         """Log-likelihood of all drives under a set-up."""
