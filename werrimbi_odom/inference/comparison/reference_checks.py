@@ -49,17 +49,18 @@ def remarks_on(prepared: PreparedRuns) -> tuple[ReferenceRemark, ...]:
     Uses the prepared legs and the path length by the given robot file. A wrong scale of that only
     affects the remark about the metric scale.
     """
-    paths: list[tuple[Run, Residual, NDArray[np.bool_]]] = []
+    mount, leg = view_of(prepared.robot.effects).yaw, prepared.options.leg
+    runs, cuts = list[Run](), list[_Cuts]()
     for group in prepared.groups:
-        for index, item, run in zip(group.index, group.plain, group.every.runs, strict=True):
+        each = zip(group.index, group.plain, group.every.runs, group.own.sigma_xy, strict=True)
+        for index, item, run, noise in each:
             if np.isfinite(item.measured).sum() > 1:
-                paths.append((prepared.runs[index], item, run.gap))
-    if not paths:
+                length = max(rules.SUSPECT_CUT * leg, noise / rules.SUSPECT_NOISE)
+                runs.append(prepared.runs[index])
+                cuts.append(_cuts(item, run.gap, length, mount))
+    if not runs:
         return ()
     at_rest = speeds_at_rest(prepared.runs, prepared.counters, prepared.robot)
-    mount = view_of(prepared.robot.effects).yaw
-    cuts = [_cuts(item, gap, prepared.options.leg, mount) for _, item, gap in paths]
-    runs = [run for run, _, _ in paths]
     wander = min(rules.SUSPECT_WANDER, max(noise.wander[1] for _, noise in prepared.noises))
     return (
         *_lengths(runs, cuts, prepared.options.leg),
@@ -92,13 +93,15 @@ class _Cuts:
     the wheels' turn."""
 
 
-def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float, mount: float) -> _Cuts:
-    """Cuts in the axes of the robot, from which the file says that the reference's are turned."""
+def _cuts(item: Residual, gap: NDArray[np.bool_], length: float, mount: float) -> _Cuts:
+    """Cuts in the axes of the robot, from which the file says that the reference's are turned.
+
+    `length`: of a cut, by the wheels [m].
+    """
     rolled = np.nan_to_num(item.relative)
     forward = np.cos(mount) * rolled[:, 0] - np.sin(mount) * rolled[:, 1]
     along = np.concatenate([[0.0], np.cumsum(forward)])
     way = np.concatenate([[0.0], np.cumsum(np.hypot(rolled[:, 0], rolled[:, 1]))])
-    length = rules.SUSPECT_CUT * leg
     ends = leg_ends(way, gap, length)
     way_of = np.diff(way[ends])
     ahead = np.diff(along[ends])
