@@ -12,6 +12,7 @@ import pytest
 
 from test.evidence import in_evidence
 from test.scans.drives import ahead, at_rest, in_circles, of_sweeps, rms, taken
+from test.scans.pitching import HEIGHT, LIDAR, pitched
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.body_fixed import FixedLine, fixed_line
 from werrimbi_odom.scans.room_odometry import RoomOdometry
@@ -20,34 +21,8 @@ from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
 
-HEIGHT = 0.17
-"""Of the lidar above the floor [m], as a TurtleBot3's."""
-LIDAR = Lidar()
-
-
 LARGE = Room(1.6 * rooms.living_room().walls)
 """10 m by 8 m."""
-
-
-def pitched(
-    sweeps: Sweeps, pitch: Callable[[Floats], Floats], aside: float = 0.0
-) -> tuple[Sweeps, float]:
-    """Scans of a lidar that looks down by an angle [rad], by time; and the floor's share.
-
-    It looks down ahead, or to the left by an angle `aside` [rad].
-    """
-    beams = sweeps.ranges.shape[1]
-    turn = np.arange(beams) / beams
-    angle = 2.0 * np.pi * turn - aside
-    down = pitch(sweeps.time[:, None] + turn / LIDAR.rate_hz)
-    slant = sweeps.ranges / np.hypot(np.cos(angle) * np.cos(down), np.sin(angle))
-    falls = np.cos(angle) * np.sin(down)
-    floor = np.where(falls > 1e-6, HEIGHT / np.maximum(falls, 1e-6), np.inf)
-    sigma = np.hypot(LIDAR.noise, LIDAR.noise_share * np.minimum(floor, LIDAR.farthest))
-    noise = sigma * np.random.default_rng(0).standard_normal(floor.shape)
-    ranges = np.minimum(slant, floor + noise)
-    ranges[ranges > LIDAR.farthest] = np.inf
-    return replace(sweeps, ranges=ranges), float((floor < slant).mean())
 
 
 def over_thresholds(time: Floats) -> Floats:
