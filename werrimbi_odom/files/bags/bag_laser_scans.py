@@ -27,7 +27,7 @@ WHY: dict[Flag, str] = {
     "few": "too little within the lidar's reach",
     "weak": "what was seen leaves a direction free, as a bare corridor does",
     "disagree": "what was seen did not agree with what was seen before",
-    "unsettled": "two places fitted alike",
+    "unsettled": "the match settled on no place",
     "fast": "a place farther away than a robot drives",
 }
 """Reasons why a scan is not matched, as the end of a sentence."""
