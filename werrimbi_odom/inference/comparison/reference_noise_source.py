@@ -111,10 +111,7 @@ def noise_of(
     ends = [(float(each.min()), float(each.max())) for each in (of_position, of_heading)]
     unlike = (ends[0], ends[1]) if any(least < most for least, most in ends) else None
     noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk, unlike)
-    counts = (
-        2 * sum(int(np.isfinite(item.measured).sum()) for item in residuals),
-        sum(int(np.isfinite(item.measured_yaw).sum()) for item in residuals),
-    )
+    counts = map(sum, zip(*(item.coordinates for item in residuals), strict=True))
     freedom = tuple(
         {"estimated": rules.FREEDOM_OF_A_DIFFERENCE * count, "assumed": 0.0}.get(how, math.inf)
         for how, count in zip((told, yaw_told), counts, strict=True)

@@ -42,6 +42,12 @@ class Residual:
     relative: Floats
     """Predicted relative pose of each interval, shape (n - 1, 3)."""
 
+    @property
+    def coordinates(self) -> tuple[int, int]:
+        """Number of measured coordinates of positions, and of measured headings."""
+        places, headings = (np.isfinite(each).sum() for each in (self.measured, self.measured_yaw))
+        return 2 * int(places), int(headings)
+
 
 def measured_alike(run: Run) -> tuple[Run, Measure]:
     """Quantity that most rows of the reference measure, and the run restricted to these rows.

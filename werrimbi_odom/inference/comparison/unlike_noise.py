@@ -35,10 +35,7 @@ def noise_of_each(
     if kind != "absolute" or len(residuals) < 2 or estimated == (None, None):
         return None, None
     each = [reference_noise(robot, [item], kind) for item in residuals]
-    counts = [
-        (2 * np.isfinite(item.measured).sum(), np.isfinite(item.measured_yaw).sum())
-        for item in residuals
-    ]
+    counts = [item.coordinates for item in residuals]
     sigmas, numbers = (np.array(table, dtype=np.float64) for table in (each, counts))
     return (
         _if_unlike(sigmas[:, 0], numbers[:, 0], estimated[0], rules.MOTION_CAPTURE_XY),
