@@ -19,6 +19,7 @@ from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Ticks
 from werrimbi_odom.inference.diagnosis import diagnosis, misfit
 from werrimbi_odom.inference.diagnosis.effect_support import Support, is_even
+from werrimbi_odom.inference.diagnosis.homogeneity import Lasting
 from werrimbi_odom.inference.diagnosis.misfit import Misfit, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.step_jacobians import Amount
 from werrimbi_odom.inference.fitting.candidate import Candidate
@@ -118,7 +119,7 @@ def test_the_rest_of_a_law_is_no_sign_of_an_effect_that_the_parts_do_not_show(
     speaks = 1e-4
     monkeypatch.setattr(diagnosis, "homogeneity_of_effect", lambda *_: speaks)
     monkeypatch.setattr(
-        diagnosis, "_beyond_the_library", lambda _, best, __: rest if best is None else None
+        diagnosis, "_beyond_the_library", lambda _, best, *__: rest if best is None else None
     )
     held = Misfit("coulomb_slip", rest, 0.002)
     monkeypatch.setattr(diagnosis, "misfit_of_held_law", lambda *_: held)
@@ -129,6 +130,45 @@ def test_the_rest_of_a_law_is_no_sign_of_an_effect_that_the_parts_do_not_show(
         0.02  # a floor that leans, in half of a room with a carpet; it doubled the fitted error
     )
     assert diagnosis._chosen(this, RUNS) == (None, rest)
+
+
+def test_an_effect_that_few_parts_show_and_a_dependence_that_few_show_compete_alike(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A slope that scans saw was named a base that differs from left to right turns.
+
+    The parts spoke for that base at 0.4 %, by the curve of turning, which lasted; and for a wave
+    over the heading, eight times as large, at 0.11 %.
+    """
+    turning, slope = dependence(200.0, "yaw_rate"), dependence(1261.0, "heading")
+    base = SimpleNamespace(names=("turn_dependent_track",), cost=-150.0, penalty=16.0)
+    before = SimpleNamespace(
+        point=None, numbers=(), squares=5e3, spare=np.inf, cost=0.0, penalty=0.0
+    )
+    before.penalty_of_one = before.penalty_of_own = 8.0
+    score = Score(Candidate(find("turn_dependent_track"), {}), 177.0, 2, np.zeros(2))
+    cells = [slope, turning]
+    for cell in cells:
+        cell.p_value, cell.variable.per_run = 1e-40, False
+    this: Any = SimpleNamespace(before=before, scores=[score], dependences=cells, number=60)
+    by_parts = {id(turning): 1.8e-4, id(slope): 1.1e-3}
+    monkeypatch.setattr(before, "point", SimpleNamespace(model=SimpleNamespace(robot=None)))
+    monkeypatch.setattr(diagnosis, "support_of", lambda *_: Support(frozenset(), frozenset()))
+    monkeypatch.setattr(
+        diagnosis, "lasting", lambda *asked: [Lasting(c, by_parts[id(c)], None) for c in asked[3]]
+    )
+    monkeypatch.setattr(diagnosis, "_significant", lambda *_: base)
+    monkeypatch.setattr(diagnosis, "disagreeing", lambda *_: False)
+    monkeypatch.setattr(diagnosis, "homogeneity_of_effect", lambda *_: 4e-4)
+    monkeypatch.setattr(diagnosis, "misfit_of_held_law", lambda *_: None)
+    runs: Any = SimpleNamespace(data=2600, drive=lambda _: None)
+    monkeypatch.setattr(diagnosis, "p_value_by_parts", lambda *_: 4e-3)
+    assert diagnosis._chosen(this, runs) == (None, slope)
+    monkeypatch.setattr(diagnosis, "p_value_by_parts", lambda *_: 1e-5)
+    assert diagnosis._chosen(this, runs) == (base, None), "proved by itself, it needs no rival's"
+    by_parts[id(slope)] = 0.02
+    monkeypatch.setattr(diagnosis, "p_value_by_parts", lambda *_: 4e-3)
+    assert diagnosis._chosen(this, runs) == (base, None)
 
 
 @pytest.mark.evidence

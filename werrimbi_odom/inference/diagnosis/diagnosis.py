@@ -214,8 +214,9 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
 
     Few parts of the drives may show an effect: of a late clock on one long circle, those with
     starts and stops. So few cannot prove it alone, even if they agree. But if a dependence lasts,
-    something is missing, and the effect competes for it, if the parts speak for it at all. What a
-    law of the model leaves in its own variables is no such sign.
+    something is missing, and the effect competes for it, if the parts speak for it at all; so do
+    other dependences, which need speak no louder. What a law of the model leaves in its own
+    variables is no such sign.
     """
     best = _significant(this)
     if best is not None and p_value_by_parts(runs, best, best.names[-1], this.number) < rules.SURE:
@@ -228,7 +229,7 @@ def _chosen(this: Round, runs: Concatenated) -> tuple[Fitted | None, Dependence 
     rest = misfit_of_held_law(this, None, lasts, runs)
     if rest is not None and rest.effect is not None:
         return None, lasts
-    beyond = _beyond_the_library(this, best, runs)
+    beyond = _beyond_the_library(this, best, runs, rules.SURE_WHEN_ASKED)
     return (best, None) if beyond is None else (None, beyond)
 
 
@@ -259,12 +260,14 @@ def _together(
     return None, []
 
 
-def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:
+def _beyond_the_library(
+    this: Round, best: Fitted | None, runs: Concatenated, limit: float = rules.SURE
+) -> Dependence | None:
     """The dependence, if any, that explains more than a correct law could leave unexplained.
 
     Then no effect of the library is the missing one. The dependence competes with the best effect
     as a model of its own, by the same reduction of the cost and the same penalty for each
-    parameter.
+    parameter. `limit`: the p-value by parts of the drives below which it lasts.
     """
     score = next(
         (
@@ -294,6 +297,4 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     numbers = (*CALIBRATION, *this.before.numbers)
     found = lasting(runs, this.before.point, numbers, certain[: rules.CELLS_ASKED])
-    return next(
-        (each.cell for each in found if each.p_value < rules.SURE and not each.only_in), None
-    )
+    return next((each.cell for each in found if each.p_value < limit and not each.only_in), None)
