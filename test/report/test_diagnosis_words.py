@@ -202,7 +202,7 @@ def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:
         SimpleNamespace(effect=name, hidden=True, shown_by="arcs", needs_more=False)
         for name in ("track_width", "tyre_squash")
     )
-    diagnosis = SimpleNamespace(found=("track_width",), runs=SimpleNamespace(data=100))
+    diagnosis = SimpleNamespace(found=("track_width",), runs=SimpleNamespace(tells_noise=True))
     told: Any = SimpleNamespace(diagnosis=diagnosis, sights=sights)
     (said,) = not_shown(told)
     assert "tyre_squash (arcs would show it)" in said

@@ -53,7 +53,7 @@ def wandering_of(
     """
     laid = concatenated([cut_for_fit(record, robot, options.leg) for record in records])
     point = start_point(laid, robot, options)
-    if laid.data < rules.NOISE_NUMBERS:
+    if not laid.tells_noise:
         return Wandering(point.variances, False)
     point, numbers = with_own_values(laid, point)
     numbers = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)

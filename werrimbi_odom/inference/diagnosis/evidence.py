@@ -147,7 +147,7 @@ def dependences(
             tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
-    spare = runs.data - frame.basis.shape[1] if runs.data < rules.NOISE_NUMBERS else math.inf
+    spare = math.inf if runs.tells_noise else runs.data - frame.basis.shape[1]
     whole = float(rest @ rest)
     shares = shares_of_steps(path, runs.drive(point.model.robot).duration)
     turning = turning_of(runs, path.motion.turn)

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.identifiable import Directions
 from werrimbi_odom.inference.fitting.whitened_innovations import Design, Point
@@ -26,7 +25,7 @@ def scatter_of(runs: Concatenated, design: Design) -> float:
 
 def residual_degrees_of(runs: Concatenated, design: Design) -> float:
     """Residual degrees of freedom for the noise; infinite where there are enough data."""
-    if runs.data >= rules.NOISE_NUMBERS:
+    if runs.tells_noise:
         return math.inf
     return float(max(runs.data - len(design.columns), 1))
 

@@ -74,7 +74,7 @@ def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
     """
     point = fit.point
     independent = point.options.reference_kind == "absolute"
-    if not independent or runs.has_stamp_noise or runs.data < rules.NOISE_NUMBERS:
+    if not independent or runs.has_stamp_noise or not runs.tells_noise:
         return False
     options = replace(point.options, reference_kind="local_map")
     costs = Costs(runs, replace(point, options=options))

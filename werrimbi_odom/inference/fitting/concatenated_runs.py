@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.mount import Mount
 from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.fitting.caches import Caches, keep_freed_memory, side_by_side
 from werrimbi_odom.inference.fitting.drives_of_runs import counts_of, drive_of_runs, messages_of
 from werrimbi_odom.inference.legs.gyro_bias import drifts_known
@@ -84,6 +85,11 @@ class Concatenated:
     def data(self) -> int:
         """Number of measured coordinates at the ends of legs that are not gaps."""
         return int(np.isfinite(self.finish[~self.gap]).sum())
+
+    @property
+    def tells_noise(self) -> bool:
+        """Whether there are data enough to estimate the noise; with fewer it is as given."""
+        return self.data >= rules.NOISE_NUMBERS
 
     @property
     def channels(self) -> set[str]:

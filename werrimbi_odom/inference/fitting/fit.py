@@ -130,7 +130,7 @@ def fit_model(
     if find_jumps:
         noise = point.variances
         point = _robustly(runs, point, numbers)
-        if runs.data < rules.NOISE_NUMBERS:
+        if not runs.tells_noise:
             point = replace(point, variances=noise)
     point = replace(point, variances=with_known_noise(point.variances, point.options))
     if rounds > 0:
@@ -176,7 +176,7 @@ def fit_model(
 
 def _with_fitted_noise(runs: Concatenated, point: Point) -> Point:
     """The point with the noise that its model leaves, where data are enough to tell it."""
-    if runs.data < rules.NOISE_NUMBERS:
+    if not runs.tells_noise:
         return point
     found = map_variances(Costs(runs, point), point.variances, point.options.sigmas_known)
     return replace(point, variances=found)

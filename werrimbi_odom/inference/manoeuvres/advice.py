@@ -35,7 +35,7 @@ def shorter_leg(diagnosis: Diagnosis, leg: float) -> float | None:
     """
     if diagnosis.verdict == "none":
         return None
-    if noise_assumed(diagnosis) and not diagnosis.runs.positions_alone:
+    if not diagnosis.runs.tells_noise and not diagnosis.runs.positions_alone:
         return rules.SHORT_LEG if leg > rules.SHORT_LEG else None
     if diagnosis.verdict != "ambiguous":
         return None
@@ -56,7 +56,7 @@ def settles(shorter: Diagnosis, longer: Diagnosis) -> bool:
 
     Or, where longer legs are too few to tell the noise, whether there are more of the shorter.
     """
-    if noise_assumed(longer):
+    if not longer.runs.tells_noise:
         return shorter.runs.data > longer.runs.data
     known = {*longer.rivals, *longer.found}
     return (
@@ -64,11 +64,6 @@ def settles(shorter: Diagnosis, longer: Diagnosis) -> bool:
         and shorter.effect in longer.rivals
         and known.issuperset(shorter.found)
     )
-
-
-def noise_assumed(diagnosis: Diagnosis) -> bool:
-    """Whether the noise is not fitted, because the legs are too few."""
-    return diagnosis.runs.data < rules.NOISE_NUMBERS
 
 
 def _legs(diagnosis: Diagnosis, leg: float) -> float:
@@ -128,7 +123,7 @@ def advised_diagnosis(given: Recordings, show: Show = silent) -> AdvisedDiagnosi
             lambda share, words: show(share, f"legs of {shorter:g} m: {words}"),
         )
         if settles(again, diagnosis):
-            too_few = noise_assumed(diagnosis)
+            too_few = not diagnosis.runs.tells_noise
             diagnosis, leg, open_at = again, shorter, leg
     show(0.97, "the next step")
     effects = given.collection.effects

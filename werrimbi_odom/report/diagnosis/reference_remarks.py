@@ -16,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, value
 from werrimbi_odom.inference.diagnosis.mended_mount import mended_mount
 from werrimbi_odom.inference.fitting.identifiable import NOT_BY_COURSE
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, noise_assumed
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.inference.manoeuvres.ideal_drives import rates_of
 from werrimbi_odom.inference.set_up.misentered_values import is_ordinary
 from werrimbi_odom.report.number_format import (
@@ -127,7 +127,7 @@ def not_shown(advised: AdvisedDiagnosis) -> list[str]:
     by_drive = [
         f"{sight.effect} ({sight.shown_by} would show it)"
         for sight in hidden
-        if sight.shown_by and not noise_assumed(advised.diagnosis)
+        if sight.shown_by and advised.diagnosis.runs.tells_noise
     ]
     lines = []
     if by_drive:

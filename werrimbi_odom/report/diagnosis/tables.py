@@ -12,7 +12,6 @@ from werrimbi_odom.inference.diagnosis.estimated_values import Value, values_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.step_jacobians import CHANNELS
-from werrimbi_odom.inference.manoeuvres.advice import noise_assumed
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.document import Part, Table, paragraphs
@@ -25,7 +24,7 @@ _MAPPED = 10
 def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> list[Part]:
     """Parameters, ranking, evidence map, and detection limits."""
     parts = [*_parameters(diagnosis), _ranking(diagnosis), *_map(diagnosis)]
-    known = diagnosis.verdict == "none" and not noise_assumed(diagnosis)
+    known = diagnosis.verdict == "none" and diagnosis.runs.tells_noise
     return [*parts, *_sights(sights)] if known else parts
 
 

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
     one_wheel,
     reference_wanders,
 )
-from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis, noise_assumed
+from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis import costs, phrases, reference_remarks, remarks
 from werrimbi_odom.report.diagnosis.ambiguous import ambiguous_words
@@ -54,7 +54,7 @@ def words_of(advised: AdvisedDiagnosis, steps: NextSteps) -> tuple[Paragraph, ..
 def _shorter(advised: AdvisedDiagnosis) -> list[str]:
     """Why the legs are shorter than was asked for, or that they are too few."""
     if advised.open_at is None:
-        few = noise_assumed(advised.diagnosis)
+        few = not advised.diagnosis.runs.tells_noise
         return [
             "The legs are so few that their noise is assumed: they do not tell it, nor from which "
             "size on an effect would have been seen."
@@ -146,7 +146,7 @@ def _none(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
     lines += remarks.instead_of_held(diagnosis)
     if wanders:
         lines.append(remarks.wanders_words(diagnosis.robot))
-    if not (noise_assumed(diagnosis) or all(sight.hidden for sight in advised.sights)):
+    if diagnosis.runs.tells_noise and not all(sight.hidden for sight in advised.sights):
         lines.append(
             "How well that is known: the table says from which size on each effect would have been "
             "seen."
