@@ -21,6 +21,7 @@ from werrimbi_odom.inference.calibration_parametrisation import (
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot(left_noise=4e-4, right_noise=5.8e-4)
 NEAR_KEYFRAME = 2e-3, 2e-3
@@ -67,12 +68,24 @@ def session(seed: int) -> list[Run]:
     return found
 
 
+RADII_OFF = (1.0, 0.995, 1.005)
+
+
+def entered(off: tuple[float, float, float]) -> Robot:
+    """The robot's file. `off`: its base and radii over the true ones."""
+    true = TRUE.entered()
+    return replace(
+        true,
+        **{name: share * getattr(true, name) for name, share in zip(MULTIPLIERS, off, strict=True)},
+    )
+
+
 @pytest.mark.parametrize(
     ("effect", "off"),
     [
         (None, (1.0, 1.0, 1.0)),
         ("track_width", (1.03, 1.0, 1.0)),
-        ("unequal_wheel_radii", (1.0, 0.995, 1.005)),
+        ("unequal_wheel_radii", RADII_OFF),
     ],
     ids=["nothing", "base", "radii"],
 )
@@ -80,12 +93,8 @@ def session(seed: int) -> list[Run]:
 def test_what_is_hidden_is_named_with_its_size(
     seed: int, effect: str | None, off: tuple[float, float, float]
 ) -> None:
-    """`off`: the file's base and radii over the true ones."""
     true = TRUE.entered()
-    entered = {
-        name: share * getattr(true, name) for name, share in zip(MULTIPLIERS, off, strict=True)
-    }
-    given = replace(true, **entered)
+    given = entered(off)
     options = EvaluationOptions(reference_kind="local_map")
     found = diagnose(session(seed), given, all_effects().effects, options)
     assert found.found == (() if effect is None else (effect,))
@@ -95,3 +104,12 @@ def test_what_is_hidden_is_named_with_its_size(
         std = found.told.std_of_size(name)
         assert abs(by) < 3.0 * std
         assert std < 3e-3
+
+
+@pytest.mark.evidence
+@pytest.mark.parametrize("seed", [1, 2, 6])
+def test_so_it_is_where_the_reference_is_not_said_to_wander(seed: int) -> None:
+    """With independent errors nothing was seen of radii 1 % apart, and that stood: *none*."""
+    found = diagnose(session(seed), entered(RADII_OFF), all_effects().effects)
+    assert found.wander is not None
+    assert (found.verdict, found.found) == ("named", ("unequal_wheel_radii",))

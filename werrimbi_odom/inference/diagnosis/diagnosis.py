@@ -57,6 +57,7 @@ from werrimbi_odom.inference.diagnosis.wandering_reference import (
     error_may_wander,
     explains_all,
     wander_of,
+    wanders_far,
 )
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, refit_without_events
 from werrimbi_odom.inference.events.events import Events
@@ -106,17 +107,18 @@ def diagnose(
     if not found.of_another_drive and error_may_wander(found.runs, found.final):
         on_map = replace(options, reference_kind="local_map")
         again = diagnose(runs, robot, effects, on_map, holdout=holdout, show=show)
-        # A reference that wanders explains all that is left, and lets nothing be named that was
-        # not; else it is the robot that errs so.
+        # A reference that wanders explains all that is left, and no small wander lets something be
+        # named that was not; else it is the robot that errs so.
         explained = not any(cell.p_value < rules.VERY_SURE for cell in again.remaining)
         law = found.misfit is not None and found.misfit.effect is not None
         explained = explained and explains_all(
             found.runs, found.final, again.final, competing, of_a_law=law
         )
-        if explained and (again.verdict == "none" or not nothing_left):
+        variances = again.final.point.variances
+        told = again.verdict == "none" or not nothing_left or wanders_far(variances)
+        if explained and told:
             alone = again.runs.positions_alone
-            wander = wander_of(again.final.point.variances, positions_alone=alone)
-            return replace(again, wander=wander)
+            return replace(again, wander=wander_of(variances, positions_alone=alone))
     return with_what_is_no_noise(found, happened)
 
 

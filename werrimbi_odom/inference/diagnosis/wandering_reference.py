@@ -66,6 +66,11 @@ def wander_of(variances: Variances, *, positions_alone: bool = False) -> Wander:
     return replace(found, heading_in_a_second=None, heading=None) if positions_alone else found
 
 
+def wanders_far(variances: Variances) -> bool:
+    """Whether a reference wanders as localisers do, and no camera system."""
+    return bool(variances.wandered()[0].max() > rules.SMALL_WANDER**2)
+
+
 def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
     """Whether a wandering reference explains some of what a model of everything found leaves.
 
@@ -89,7 +94,7 @@ def error_may_wander(runs: Concatenated, fit: Fitted) -> bool:
     start = with_known_noise(_chosen(some, best), options)
     found = map_variances(costs, start, options.sigmas_known)
     gain = fit.cost - float(posterior_cost(costs, found)[0])
-    if small and found.wandered()[0].max() > rules.SMALL_WANDER**2:
+    if small and wanders_far(found):
         return False
     return chi2_survival(gain, len(WALK)) < rules.VERY_SURE
 
