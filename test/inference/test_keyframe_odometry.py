@@ -83,11 +83,10 @@ def entered(off: tuple[float, float, float]) -> Robot:
 @pytest.mark.parametrize(
     ("effect", "off"),
     [
-        (None, (1.0, 1.0, 1.0)),
-        ("track_width", (1.03, 1.0, 1.0)),
-        ("unequal_wheel_radii", RADII_OFF),
+        in_evidence(None, (1.0, 1.0, 1.0), id="nothing"),
+        in_evidence("track_width", (1.03, 1.0, 1.0), id="base"),
+        pytest.param("unequal_wheel_radii", RADII_OFF, id="radii"),
     ],
-    ids=["nothing", "base", "radii"],
 )
 @pytest.mark.parametrize("seed", [1, in_evidence(2), in_evidence(3)])
 def test_what_is_hidden_is_named_with_its_size(
