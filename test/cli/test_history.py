@@ -208,13 +208,16 @@ def test_what_a_bag_is_read_by_is_no_other_robot_s(tmp_path: Path) -> None:
     assert run.reference is not None
     sent = [*joints(ros, run), *poses(ros, run)]
     bag = ros.write(tmp_path / "bag", sorted(sent, key=lambda each: each[1]), "sqlite3")
-    file, known = tmp_path / "robot.yaml", []
-    for left, right in (JOINTS, JOINTS[::-1]):
+    file = tmp_path / "robot.yaml"
+
+    def history_by(left: str, right: str) -> None:
         names = f"    left_wheel_names: [{left}]\n    right_wheel_names: [{right}]\n"
         file.write_text(ROBOT_FILE + names)
-        found = wo.history(wo.read_robot(file), bag, cache=tmp_path / "kept").found
-        known.append(found.drives[0].kept)
-    assert known == [False, False]
+        wo.history(wo.read_robot(file), bag, cache=tmp_path / "kept")
+
+    history_by(*JOINTS)
+    with pytest.raises(InputError, match="counters are exchanged"):
+        history_by(*JOINTS[::-1])
 
 
 def test_a_drive_that_was_read_and_cannot_be_used_leaves_the_others(months: Path) -> None:
@@ -227,6 +230,23 @@ def test_a_drive_that_was_read_and_cannot_be_used_leaves_the_others(months: Path
     assert [each.run for each in found.unusable] == [Path("blind")]
     with pytest.raises(InputError, match=r"no drive can be used; blind: .*no reference"):
         wo.history(robot, blind)
+
+
+@pytest.mark.parametrize("wrong", ["millimetres", "exchanged"])
+def test_a_drive_that_is_set_up_wrongly_tells_no_sizes(months: Path, wrong: str) -> None:
+    """By millimetres the base was 1e-48 of the file's, and "calibrate again" was said of it."""
+    robot = wo.read_robot(months / "robot.yaml")
+    sound, drive = (wo.read_run(months / f"drive_{number}", robot) for number in (0, 3))
+    seen, ticks = drive.reference, drive.ticks
+    assert seen is not None
+    if wrong == "millimetres":
+        seen = replace(seen, x=1e3 * seen.x, y=1e3 * seen.y)
+    else:
+        ticks = replace(ticks, left=ticks.right, right=ticks.left)
+    found = wo.history(robot, [sound, replace(drive, reference=seen, ticks=ticks)]).found
+    assert [each.run.name for each in found.drives] == ["drive_0"]
+    assert [each.run.name for each in found.unusable] == ["drive_3"]
+    assert wrong in found.unusable[0].why
 
 
 def test_a_drive_that_was_read_counts_once(months: Path) -> None:

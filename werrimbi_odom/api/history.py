@@ -143,7 +143,7 @@ def unusable_task(task: DriveTask, why: str) -> Unusable:
 
 
 def _unusable(run: Path, why: object) -> Unusable:
-    return Unusable(run, " ".join(str(why).split()))
+    return Unusable(run, " ".join(str(why).removeprefix(f"{run}: ").split()))
 
 
 @with_one_blas_thread

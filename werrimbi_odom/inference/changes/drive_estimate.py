@@ -29,6 +29,7 @@ from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.inference.legs.cutting import match_for_fit, with_stated_noise
 from werrimbi_odom.inference.legs.usable_run import with_no_driving
+from werrimbi_odom.inference.set_up.search import require_sizes_to_mean_something
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -57,7 +58,12 @@ class DriveEstimate:
 
 
 def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> DriveEstimate:
-    """Fit one drive by itself; InputError when it has no usable reference or no ticks."""
+    """Fit one drive by itself.
+
+    InputError when it has no usable reference or no ticks, or when what is set up wrongly (a unit,
+    exchanged counters) leaves its sizes without a meaning.
+    """
+    require_sizes_to_mean_something(run, robot, options)
     laid = concatenated(
         match_for_fit(
             [with_no_driving(run, robot, options.limits)], robot, options.leg, options.limits

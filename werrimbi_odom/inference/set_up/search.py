@@ -178,6 +178,14 @@ def look_for_mistakes(
     return SetUp(findings, mended)
 
 
+def require_sizes_to_mean_something(run: Run, robot: Robot, options: EvaluationOptions) -> None:
+    """Check the reference's unit and the wheels' wiring: InputError if one of them is wrong."""
+    found = look_for_mistakes([run], robot, options)
+    wired = (each.words for each in found.findings if each.effect in WIRING_WORDS)
+    if (words := found.to_convert or next(wired, None)) is not None:
+        raise InputError(f"{run.path}: {words}")
+
+
 def mistakes_without_sizes(
     run: Run, robot: Robot, options: EvaluationOptions
 ) -> tuple[SetUpFinding, ...]:
