@@ -19,9 +19,10 @@ from werrimbi_odom.report.save import find_browser
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "pictures"
-sys.path[:0] = [str(ROOT), str(ROOT / "test" / "report")]
+sys.path[:0] = [str(ROOT), str(ROOT / "test" / "report"), str(ROOT / "benchmark")]
 
 from browser import visit  # noqa: E402
+from history_year import ROBOT_FILE, make  # noqa: E402
 
 WIDTH, PHONE = 1100, 390
 
@@ -36,6 +37,9 @@ VERDICTS = {
 
 MISCALIBRATED = (("track_width=1.04", "unequal_wheel_radii=1.03"), "9")
 """The same, for `calibrate fit`."""
+
+YEAR = (60, 60.0)
+"""Drives of a robot's history, and how long each lasts [s]."""
 
 
 def main() -> None:
@@ -55,6 +59,7 @@ def main() -> None:
             "--out", "new.yaml", "--report", "add.html")  # fmt: skip
         run("calibrate", "fit", *drives(simulated("calibration", *MISCALIBRATED)),
             "--out", "fit.yaml", "--report", "fit.html")  # fmt: skip
+        history()
         robot = ("--robot", "none/robot.yaml")
         Path("SQUARES.csv").write_text(SQUARES)
         run("calibrate", "umbmark", "SQUARES.csv", "--side", "4", *robot,
@@ -82,6 +87,7 @@ SHOWN = (
     ("fit", False, WIDTH, 1440),
     ("umbmark", False, WIDTH, 2120),
     ("noise", False, WIDTH, 1220),
+    ("history", False, WIDTH, 2350),
     ("compare_phone", False, PHONE, 2300),
 )
 """Name of the picture, whether dark, width and greatest height; below it are tables."""
@@ -107,6 +113,16 @@ def simulated(name: str, hidden: Sequence[str], seed: str) -> Path:
     hides = [word for each in hidden for word in ("--hide", each)]
     run("simulate", "--out", name, *hides, "--seed", seed)
     return Path(name)
+
+
+def history() -> None:
+    """The year of docs/history.md."""
+    year = Path("year")
+    year.mkdir()
+    (year / "robot.yaml").write_text(ROBOT_FILE)
+    runs = [make(year, number, *YEAR) for number in range(YEAR[0])]
+    run("history", "--robot", year / "robot.yaml", *runs, "--cache", "kept",
+        "--report", "history.html")  # fmt: skip
 
 
 def out_and_back() -> str:

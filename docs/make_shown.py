@@ -58,10 +58,10 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
             "that it begins with.",
             "python benchmark/draft.py",
         ),
-        by_tests(
-            "test/hidden/test_live_node.py",
+        Shown(
             "The live node with the added effect errs less on held-out drives, whose ticks are "
             "sent to it over DDS.",
+            "python -m pytest test/hidden/test_live_node.py",
         ),
         by_tests(
             "test/inference/test_set_up_recorded_robots.py test/inference/test_set_up.py",
@@ -69,10 +69,10 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
             "robots and into simulated ones, are named in every case.",
             long=True,
         ),
-        by_tests(
-            "test/hidden/test_small_part.py test/hidden/test_command_line.py",
+        Shown(
             "A small, fixed part of the evidence (all of it: [evidence.md](evidence.md), "
             "`python -m test.hidden`).",
+            "python -m pytest test/hidden/test_small_part.py test/hidden/test_command_line.py",
         ),
     ),
     "See it": (

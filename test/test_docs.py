@@ -153,5 +153,9 @@ def test_what_is_shown_was_printed_by_commands_that_there_are() -> None:
         for word in command.split():
             if word.endswith(".py") or word.startswith("test/"):
                 assert (ROOT / word).exists(), command
+            if word.endswith(".py") and "not evidence" in command:
+                tests = (ROOT / word).read_text()
+                marked = tests.count("@pytest.mark.evidence")
+                assert tests.count("\ndef test_") > marked, f"{command} runs nothing of {word}"
         assert "(ended with" not in output, f"{command}: {output}"
         assert " failed" not in output, f"{command}: {output}"

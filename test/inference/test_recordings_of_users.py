@@ -174,6 +174,14 @@ def test_sizes_that_are_told_are_those_that_occurred() -> None:
     assert "lowest at 0.2" in dependence_words(cell)
     assert "highest at 0.99 m/s" in dependence_words(cell)
     assert strength_words(replace(cell, shares=None)) == "±20 %"
+    slow = 0.01 + 0.0004 * random.random(2000)  # it was "highest at 0.01" too
+    crawling = replace(
+        cell,
+        variable=Variable("speed", "m/s", slow, slow),
+        coefficients=0.02 * np.arange(curve_knots(slow).size),
+        shares=(slow, slow),
+    )
+    assert "lowest at 0.01 and highest at 0.0104 m/s" in dependence_words(crawling)
 
 
 SQUASH = '''

@@ -194,7 +194,7 @@ def _shape(cell: Dependence) -> str:
         at = _quantiles(went, _weights(cell), np.linspace(_RARE, 1.0 - _RARE, 25))
         nearest = [int(np.argmin(np.abs(went - value))) for value in at]
         values = _errors(cell)[nearest]
-        bottom, top = (_round(float(at[index])) for index in (values.argmin(), values.argmax()))
+        bottom, top = _apart(float(at[values.argmin()]), float(at[values.argmax()]))
         return f", a curve, lowest at {bottom} and highest at {top} {variable.unit}".rstrip()
     if cell.form == "place":
         x, y = place_of(cell)
@@ -206,8 +206,13 @@ def _two_digits(value: float) -> str:
     return f"{value:.2g}" if abs(value) < 99.5 else f"{value:.0f}"
 
 
-def _round(value: float) -> str:
-    return "0" if abs(value) < 1e-6 else f"{value:.2g}"
+def _apart(*values: float) -> list[str]:
+    """Values in two digits, or in as many more as tell them apart."""
+    for digits in range(2, 6):
+        told = ["0" if abs(value) < 1e-6 else f"{value:.{digits}g}" for value in values]
+        if len(set(told)) == len(told):
+            break
+    return told
 
 
 def _sides(cell: Dependence) -> slice:
