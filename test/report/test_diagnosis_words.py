@@ -47,6 +47,7 @@ from werrimbi_odom.report.diagnosis.remarks import (
 )
 from werrimbi_odom.report.diagnosis.unknown import unknown_words
 from werrimbi_odom.report.diagnosis.words import words_of
+from werrimbi_odom.report.number_format import change_words
 from werrimbi_odom.report.terminal import as_text
 
 
@@ -427,3 +428,15 @@ def test_by_scans_that_are_mirrored_one_looks_whether_the_lidar_hangs_upside_dow
     assert "should then turn it over, by a roll of 180°" in told
     assert not said(twins, False)
     assert not said(("sideways_drift", "reference_yaw_offset"), True)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "unit", "words"),
+    [
+        (4.41e-3, 4.38e-3, "m", "stays at 4.4 mm"),  # three bags: "goes from 4.4 mm to 4.4 mm"
+        (4.4e-3, 2.2e-3, "m", "falls from 4.4 mm to 2.2 mm"),
+        (0.0035, 0.0047, "rad", "goes from 0.20° to 0.27°"),
+    ],
+)
+def test_what_looks_the_same_stays(before: float, after: float, unit: str, words: str) -> None:
+    assert change_words(before, after, unit) == words

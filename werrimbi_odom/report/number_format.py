@@ -43,6 +43,14 @@ def error_words(value: float, unit: str) -> str:
     return f"{math.degrees(value):.2f}°" if math.isfinite(value) else "-"
 
 
+def change_words(before: float, after: float, unit: str) -> str:
+    """What a leg error does: it falls or goes from one figure to another, or stays at it."""
+    one, other = error_words(before, unit), error_words(after, unit)
+    if one == other:
+        return f"stays at {one}"
+    return f"{'falls' if after < before else 'goes'} from {one} to {other}"
+
+
 def with_std(value: float, std: float) -> str:
     """Value and standard deviation, with two digits of the latter."""
     if not math.isfinite(value):

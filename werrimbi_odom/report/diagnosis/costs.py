@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, mista
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
-from werrimbi_odom.report.number_format import error_words
+from werrimbi_odom.report.number_format import change_words, error_words
 from werrimbi_odom.report.phrases import leg_words, rarer_than_asked, sizes_words
 
 
@@ -107,10 +107,7 @@ def whole(advised: AdvisedDiagnosis) -> list[str]:
     if not diagnosis.found or alone or not math.isfinite(sides.before):
         return []
     them = "it and these sizes" if one else "all of them"
-    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
-    goes = f"{'falls' if sides.after < sides.before else 'goes'} from {before} to {after}"
-    if before == after:
-        goes = f"stays at {before}"
+    goes = change_words(sides.before, sides.after, sides.unit)
     return [f"With {them} put in, the {error_kind(sides)} error on {judged(advised)} {goes}."]
 
 
@@ -130,9 +127,8 @@ def by_sizes_alone(advised: AdvisedDiagnosis) -> list[str]:
     seen = any(abs(value - given) > rules.SIGNIFICANT * (std or 0.0) for value, given, std in sizes)
     if not (words and sides.fell and usual and seen):
         return []
-    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
+    goes = change_words(sides.before, sides.after, sides.unit)
     return [
         f"Base and radii by themselves: {words}. With these the {error_kind(sides)} error on "
-        f"{judged(advised)} falls from {before} to {after}. They are off, or stand in for the mean "
-        "of what follows."
+        f"{judged(advised)} {goes}. They are off, or stand in for the mean of what follows."
     ]

@@ -21,6 +21,7 @@ from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import sizes
 from werrimbi_odom.report.number_format import (
     chance_words,
+    change_words,
     error_words,
     listed,
     quantity,
@@ -129,8 +130,9 @@ def without_events(advised: AdvisedDiagnosis) -> list[str]:
     every, quiet = advised.diagnosis.holdout, advised.diagnosis.quiet[1]
     if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
         return []
-    before, after = (error_words(error, quiet.unit) for error in (quiet.before, quiet.after))
-    change = f"goes from {before} to {after}" if advised.diagnosis.found else f"is {after}"
+    change = f"is {error_words(quiet.after, quiet.unit)}"
+    if advised.diagnosis.found:
+        change = change_words(quiet.before, quiet.after, quiet.unit)
     one = len(advised.diagnosis.happened.events) == 1
     return [
         f"In the errors {'it counts' if one else 'they count'}, as in those of `werrimbi compare`. "
@@ -205,10 +207,9 @@ def outdated_told(advised: AdvisedDiagnosis) -> list[str]:
         )
         lines.append(f"- {name}: {sizes(diagnosis, name)}, where the robot file has {file}.")
     if lines and math.isfinite(sides.before):
-        before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
+        goes = change_words(sides.before, sides.after, sides.unit)
         lines.append(
-            f"With these values the {error_kind(sides)} error on {judged(advised)} goes from "
-            f"{before} to {after}."
+            f"With these values the {error_kind(sides)} error on {judged(advised)} {goes}."
         )
     return lines
 
