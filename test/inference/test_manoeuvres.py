@@ -24,7 +24,10 @@ from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.manoeuvres.expected_evidence import (
     Experiment,
+    Sensitivities,
+    Trace,
     best_alias,
+    difference,
     sensitivities_of,
     separation,
     trace_at,
@@ -114,6 +117,32 @@ def test_a_rival_that_one_circle_cannot_tell_from_a_base_is_imagined_whole() -> 
     alone = look.white[rival.name] @ best_alias(look, target, rival)
     free = nuisance(look.own).residual(np.stack([alone, target.white], axis=-1))
     assert free[:, 0] @ free[:, 1] > 0.9 * free[:, 1] @ free[:, 1]
+
+
+def test_what_rivals_differ_by_is_no_more_than_a_drive_allows() -> None:
+    """Squares by tape at both ends: bases that know the turn rate, and one that does not, are one.
+
+    Both grew against each other without limit, and a figure of eight told them "by 64 m".
+    """
+    rival = Candidate(find("turn_dependent_track"), {})
+    names = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
+    looked_at = [rival, *(Candidate(find(name), {}) for name in names)]
+
+    def taped(*ideals: Ideal) -> tuple[Sensitivities, Trace]:
+        runs = [
+            ideal_run(ideal, ROBOT, PACE, ticks=0.02, poses=np.inf, measures=(True, True))
+            for ideal in ideals
+        ]
+        laid = concatenated([match(run, ROBOT, 0.25, None, 0.4) for run in runs])
+        look = sensitivities_of(Experiment(laid, start_point(laid, ROBOT)), looked_at, ())
+        return look, trace_at(look, find("unequal_wheel_radii").using(ratio=0.996))
+
+    squares = [
+        Ideal("", "", "", lambda size, turn=turn: [(size, 0.0, 0.6), (0.0, turn, 0.6)] * 4)
+        for turn in (0.5 * np.pi, -0.5 * np.pi)
+    ]
+    apart = difference(taped(*squares, *squares), taped(BY_NAME["figure_eight"]), rival)
+    assert np.hypot(apart[:, 0], apart[:, 1]).max() < 0.1
 
 
 def test_slow_and_fast_lines_tell_lost_counts_from_a_smaller_wheel() -> None:
@@ -226,16 +255,18 @@ def test_what_takes_longer_than_one_may_ask_for_is_begun_if_it_tells_as_likely_a
 
 
 def test_what_rivals_differ_by_is_told_in_words_that_people_use() -> None:
-    legs = np.array([[0.012345, 0.0, np.radians(123.0)]])
+    leg = np.array([[0.012345, 0.0, np.radians(123.0)]])
     pairs = {("first", "other"): 100.0}
-    told = quickest(
-        ("first", "other"), [Discrimination(BY_NAME["square"], 2.0, pairs, lambda _: legs)]
-    )
-    assert told is not None
-    assert told.why == (
-        "first and other look alike on these drives, but around squares in both senses they differ "
-        "by 12 mm and 120° on a short leg"
-    )
+    for legs, where in ((np.tile(leg, (3, 1)), "on a short leg"), (leg, "at the end")):
+        told = quickest(
+            ("first", "other"),
+            [Discrimination(BY_NAME["square"], 2.0, pairs, lambda _, legs=legs: legs)],
+        )
+        assert told is not None
+        assert told.why == (
+            "first and other look alike on these drives, but around squares in both senses they "
+            f"differ by 12 mm and 120° {where}"
+        )
 
 
 def test_a_rival_that_no_drive_tells_keeps_none_from_telling_the_others() -> None:

@@ -133,15 +133,19 @@ def best_alias(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
     the turn rate equals a base), the change is attributed to the rival. Otherwise the rival would
     be assumed at almost zero size, and no drive could tell that from the calibration.
     """
+    return _aliased(look, target, rival)[: look.white[rival.name].shape[-1]]
+
+
+def _aliased(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
+    """Sizes of the rival and of the calibrations beside it, as fitted to the target, (k,)."""
     squeezed, width = _squeezed(look, target, (rival.name, *_beside(target.name, rival)), ())
     columns, wanted = squeezed[:, :width], squeezed[:, width]
     own, whole = look.white[rival.name].shape[-1], float(np.linalg.norm(wanted))
     if whole < SILENT:
-        return np.zeros(own)
+        return np.zeros(width)
     costs = np.where(np.arange(width) < own, _WILLING, _RELUCTANT) / whole
     slow = np.diag(costs * np.linalg.norm(columns, axis=0))
-    found = solved(np.concatenate([columns, slow]), np.concatenate([wanted, np.zeros(width)]))
-    return np.asarray(found[:own])
+    return solved(np.concatenate([columns, slow]), np.concatenate([wanted, np.zeros(width)]))
 
 
 def separation(pairs: Sequence[tuple[Sensitivities, Trace]], rival: Candidate) -> float:
@@ -160,10 +164,8 @@ def difference(
 ) -> Floats:
     """Legs (m, 3) of new drives: the target less the rival as fitted to the known drives."""
     names = (rival.name, *_beside(known[1].name, rival))
-    squeezed, width = _squeezed(known[0], known[1], names, ())
-    solution = solved(squeezed[:, :width], squeezed[:, width])
     marks = np.concatenate([ahead[0].legs[name] for name in names], axis=-1)
-    return np.asarray(ahead[1].legs - marks @ solution)
+    return np.asarray(ahead[1].legs - marks @ _aliased(*known, rival))
 
 
 def _beside(target: str, rival: Candidate) -> tuple[str, ...]:

@@ -234,7 +234,10 @@ def _size(apart: Floats) -> str:
         parts.append(f"{millimetres:g} mm" if position < 0.1 else f"{position:.2g} m")
     if heading > rules.APART_HEADING:
         parts.append(f"{float(f'{heading:.2g}'):g}°")
-    return (" and ".join(parts) or "little, again and again") + " on a short leg"
+    told = " and ".join(parts)
+    if len(apart) == 1:  # measured at its start and its end alone
+        return f"{told or 'little'} at the end"
+    return f"{told or 'little, again and again'} on a short leg"
 
 
 def _candidate(name: str, this: Round, diagnosis: Diagnosis) -> Candidate:

@@ -49,7 +49,7 @@ def _fall(advised: AdvisedDiagnosis, sides: Sides, *, both_sized: bool) -> list[
             ]
         turned = _fall_of_headings(advised.diagnosis)
         if turned:
-            return [f"What it costs: {where} {turned}; positions are as good without it."]
+            return [f"What it costs: {where} {turned}; alone it does not lower the position error."]
         return [f"What it costs is not seen yet: {both}, which these legs do not tell from chance."]
     told_before, told_after = (error_words(each, sides.unit) for each in (before, after))
     if told_before == told_after:
