@@ -296,6 +296,27 @@ def test_a_heading_in_whole_degrees_holds_no_robot_that_turns_slowly(unit: float
     assert with_no_driving(run, machine.entered()).no_driving == ()
 
 
+def test_a_gyro_that_turns_too_fast_for_it_does_not_say_that_the_robot_stood() -> None:
+    """It shows up to 0.6 rad/s: "the robot did not" was said of spins that it saw by 0.6."""
+    random = np.random.default_rng(2)
+    parts_of = [
+        (0.4 * random.uniform(0.5, 1.0), 0.0) if number % 2 else (0.0, random.choice([-0.4, 0.4]))
+        for number in range(24)
+    ]
+    parts_of[9], parts_of[18] = (0.0, 1.0), (0.0, -1.0)
+    speed, turning = (np.repeat(each, 70) for each in zip(*parts_of, strict=True))
+    run = run_by(ROBOT, speed, turning)
+    assert run.reference is not None
+    time, yaw = run.reference.time, np.unwrap(run.reference.yaw)
+    rate = np.clip(np.diff(yaw) / np.diff(time), -0.6, 0.6)
+    seen = np.concatenate([[0.0], np.cumsum(rate * np.diff(time))])
+    found = with_no_driving(replace(run, reference=of_headings(time, seen)), ROBOT).no_driving
+    assert found
+    for part in found:
+        assert part.why == "held"
+        assert "faster than the reference can follow" in part.words
+
+
 def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:
     """As of a simulator: a minute of waiting in which no angle is twice the same."""
     time = np.arange(0.0, 60.0, 0.05)

@@ -31,6 +31,9 @@ from werrimbi_odom.model.robot import Robot
 _GRID = 0.1  # grid on which held and carried are told apart [s]
 
 HELD = "the wheels turned and the robot did not: held, or against a wall"
+HELD_BACK = (
+    "the wheels turned more than the robot: held back, or faster than the reference can follow"
+)
 CARRIED = "the robot moved and its wheels did not: carried, or pushed"
 BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
 
@@ -242,7 +245,9 @@ def _by_kind(begin: float, end: float, seen: Sequence[MeasuredMotion]) -> list[N
             end + max(lag, 0.0) if other == grid.size else float(grid[other]),
         )
         if not moved[one]:
-            parts.append(NoDriving(*span, "held", HELD))
+            went = float(measured[one:other].sum() / max(expected[one:other].sum(), 1e-12))
+            words = HELD_BACK if went > rules.NO_DRIVING_WENT else HELD
+            parts.append(NoDriving(*span, "held", words))
         else:
             stood = np.mean(rolled[one:other] <= still) > 0.5
             parts.append(NoDriving(*span, "carried", CARRIED if stood else BY_HAND))

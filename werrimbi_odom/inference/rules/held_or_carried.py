@@ -205,6 +205,11 @@ NO_DRIVING_FOLLOWS = 0.25
 which the heading follows the wheels: it then turns by half or more of what they say, where that of
 a robot that is held by none (a share of 1)."""
 
+NO_DRIVING_WENT = 0.5
+"""Share of what the wheels say that the robot moved in a stretch, above which it did not stand: a
+gyro that goes up to 0.6 rad/s shows 0.6 of a spin at 1 rad/s. Simulated robots that were held went
+0 to 0.18 of it (44 stretches), with the moments in which they stop and go on."""
+
 NO_DRIVING_JOINED, NO_DRIVING_SILENT = 1.0, 3.0
 """Time [s] between two stretches, or to an end of the drive, that is left out with them: always,
 and if no window in between agrees with the wheels. To hold a robot takes time."""
