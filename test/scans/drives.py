@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,6 +31,15 @@ def ahead(duration: float, speed: float = 0.3) -> TruePath:
     t = np.arange(0.0, duration, PERIOD)
     lead = np.clip(t - 3.0, 0.0, 1.0)
     return _path(t, speed * lead, 0.05 * lead * np.cos(t), middle=False)
+
+
+def to_and_fro(duration: float, start: float = -1.6) -> TruePath:
+    """Along x at 0.3 m/s, 12.5 s ahead and 12.5 s back."""
+    t = np.arange(0.0, duration, PERIOD)
+    lead = np.clip(t - 3.0, 0.0, 1.0)
+    speed = 0.3 * lead * np.clip(3.0 * np.sin(0.08 * np.pi * (t - 3.0)), -1.0, 1.0)
+    path = _path(t, speed, 0.05 * lead * np.cos(t), middle=False)
+    return replace(path, x_m=path.x_m + start)
 
 
 def hops(duration: float) -> TruePath:

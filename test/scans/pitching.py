@@ -51,10 +51,10 @@ def _falls(
     return np.cos(angle) * np.sin(down), slant
 
 
-def swaying(seed: int, degrees: float = 1.5) -> Callable[[Floats], Floats]:
-    """A pitch [rad] that is another one every 0.15 s, of a standard deviation."""
+def swaying(seed: int, degrees: float = 1.5, every: float = 0.15) -> Callable[[Floats], Floats]:
+    """A pitch [rad] that is another one every so often [s], of a standard deviation."""
     knots = np.radians(degrees) * np.random.default_rng([seed, 3]).standard_normal(4000)
-    return lambda time: np.interp(time, 0.15 * np.arange(knots.size), knots)
+    return lambda time: np.interp(time, every * np.arange(knots.size), knots)
 
 
 def room_beside_stairs() -> Room:
@@ -63,14 +63,21 @@ def room_beside_stairs() -> Room:
     return Room(walls[(walls[:, [0, 2]] > -5.4).all(axis=1)])
 
 
-def before_stairs_up(path: TruePath, room: Room, lidar: Lidar, seed: int) -> Sweeps:
+def corridor_to_stairs() -> Room:
+    """Bare; its other end is beyond the lidar's range."""
+    return Room(np.array([[-3.0, side, 80.0, side] for side in (-1.0, 1.0)]))
+
+
+def before_stairs_up(
+    path: TruePath, room: Room, lidar: Lidar, seed: int, every: float = 0.15
+) -> Sweeps:
     """Stairs go up where the wall lacks, between walls; the robot sways as it drives.
 
     A beam meets the first riser that is above it. At an edge its echo lies between two.
     """
     end = -3.0 - TREAD * RISERS
     beside = [[-3.0, side, end, side] for side in (-1.0, 1.0)]
-    sway, random = swaying(seed), np.random.default_rng([seed, 4])
+    sway, random = swaying(seed, every=every), np.random.default_rng([seed, 4])
 
     def seen(riser: int) -> Sweeps:
         x = -3.0 - TREAD * riser

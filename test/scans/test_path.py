@@ -21,7 +21,9 @@ from test.scans.drives import (
     of_sweeps,
     rms,
     seen,
+    to_and_fro,
 )
+from test.scans.pitching import before_stairs_up, corridor_to_stairs
 from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.scans.three_pass_odometry import ScanMatcher
 from werrimbi_odom.simulation import rooms
@@ -254,6 +256,20 @@ def test_dents_that_go_with_the_lidar_do_not_hold_it_along_a_corridor(
     found = of_sweeps(replace(sweeps, ranges=ranges), lidar)
     assert found.path.time[-1] > 31.0
     assert np.abs(found.legs(0.5)[0][:, 0]).max() < 0.02
+
+
+@pytest.mark.parametrize(("every", "seed"), [(1.0, 0), in_evidence(4.0, 1)])
+def test_before_stairs_alone_a_path_is_cut_where_another_step_is_seen(
+    every: float, seed: int
+) -> None:
+    """A pitch of 1.5 degrees. Matches took the next riser: single poses leapt by up to 0.3 m."""
+    path = to_and_fro(18.0 if seed == 0 else 50.0)
+    sweeps = before_stairs_up(path, corridor_to_stairs(), Lidar(), seed, every)
+    found = of_sweeps(sweeps, Lidar())
+    assert found.path.time.size > 0.1 * found.path.scans
+    errors, nees = found.legs(0.5)
+    assert np.abs(errors[:, 0]).max() < 0.1  # a third of a step
+    assert nees.mean() < 2.0
 
 
 def test_a_path_is_cut_where_the_robot_is_carried_and_never_bridged() -> None:

@@ -10,14 +10,19 @@ import numpy as np
 
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.scans.limits import (
+    ALONE,
     FASTEST,
     FASTEST_TURN,
     FEIGNED,
     FEWEST_POINTS,
     FLOOR,
     LARGEST_SIGMA,
+    LEAP,
+    LEAST_AGREED,
     LEAST_MATCHED,
     LEAST_SHARE,
+    LOST_AFTER,
+    LOST_AFTER_ALONE,
 )
 from werrimbi_odom.scans.local_map import LocalMap
 from werrimbi_odom.scans.matching import Match, match
@@ -45,19 +50,35 @@ class ScanTracker:
         """
         self.scatter = 0.0
         """Scatter of the echoes of the last scan about the lines of the map [m]."""
+        self._alone = False  # one place was all that told one direction of the last position
+        self._failed = 0
+
+    @property
+    def lost(self) -> bool:
+        """Whether so many matches failed in a row that the next has nothing to begin with."""
+        return self._failed >= (LOST_AFTER_ALONE if self._alone else LOST_AFTER)
 
     def take(self, points: Floats, reach: Floats, motion: Floats, duration: float) -> Flag:
         """Match deskewed echoes (k, 2), starting from the last pose moved by `motion` (3,).
 
         If the match is rejected, the pose stays as it was.
         """
+        flag = self._take(points, reach, motion, duration)
+        self._failed = self._failed + 1 if flag else 0
+        return flag
+
+    def _take(self, points: Floats, reach: Floats, motion: Floats, duration: float) -> Flag:
         if self._map.elements is None:
             if len(points) < FEWEST_POINTS:
                 return "few"
             self._map.take(self.pose, points, reach)
             return "" if self._map.elements is not None else "few"
-        found = match(points, self._map.elements, moved(self.pose, motion))
+        guess = moved(self.pose, motion)
+        found = match(points, self._map.elements, guess)
         flag = _flag(found, len(points), motion_between(self.pose, found.pose), duration)
+        if not flag and self._alone and np.hypot(*(found.pose - guess)[:2]) > LEAP:
+            flag = "weak"
+        self._alone = found.alone > ALONE or (self._alone and bool(flag))
         if not flag:
             self.pose, self.covariance = found.pose, found.covariance.copy()
             self.scatter = found.noise
@@ -96,7 +117,7 @@ def _flag(found: Match, echoes: int, motion: Floats, duration: float) -> Flag:
         return "weak"
     if np.sqrt(max(variance[1], covariance[2, 2])) > LARGEST_SIGMA:
         return "weak"
-    if found.share < LEAST_SHARE:
+    if found.share < LEAST_SHARE or found.agreed < LEAST_AGREED:
         return "disagree"
     if not found.converged:
         return "unsettled"

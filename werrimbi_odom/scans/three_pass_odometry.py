@@ -25,7 +25,6 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.limits import (
     FEWEST_POSES,
     LONGEST_HOLE,
-    LOST_AFTER,
     ORDER_MOST,
     ORDER_TURNING,
 )
@@ -125,7 +124,7 @@ class ScanMatcher:
         if flag:
             self._flags[flag] += 1
             self._failed += 1
-            if self._failed >= LOST_AFTER:
+            if self._first.lost:
                 self._cut()
             return
         if self._begun:
@@ -193,7 +192,6 @@ class _PassAgain:
         """Yaw rate in the last scan [rad/s]."""
         self._seen: deque[_Seen] = deque(maxlen=2 * AROUND + 1)
         self._done = 0  # scans at the front of `_seen` that this pass has
-        self._failed = 0
         self._flags = flags
 
     def take(self, seen: _Seen) -> Iterator[_Seen]:
@@ -215,7 +213,6 @@ class _PassAgain:
     def _renew(self) -> None:
         # Beside the last pose: one that is the same to the last digit looks held, not measured.
         self.tracker = ScanTracker(self.tracker.pose + 1e-6)
-        self._failed = 0
         self.piece += 1
 
     def _match(self) -> Iterator[_Seen]:
@@ -231,13 +228,11 @@ class _PassAgain:
         flag = self.tracker.take(points, seen.sweep.reach, motion, duration)
         if flag:
             self._flags[flag] += 1
-            self._failed += 1
             # What was missed is in the guess: the pose goes on as in the pass before.
             self.tracker.pose = moved(self.tracker.pose, motion)
-            if self._failed >= LOST_AFTER:
+            if self.tracker.lost:
                 self._renew()
             return
-        self._failed = 0
         yield seen._replace(pose=self.tracker.pose)
 
 
