@@ -96,13 +96,15 @@ class LidarCollector:
         InputError if the scans do not determine the robot's path.
         """
         found = self._matcher.path()
-        if found.time.size == 0:
+        words = _in_degrees(self._around)  # a few of them may match all the same
+        if not words and found.time.size == 0:
             if 2 * self._undirected > found.scans:
                 words = _undirected(self._undirected, found)
             else:
-                words = _other_unit(self._around, self._ranges) or (
+                words = _in_millimetres(self._ranges) or (
                     _lost(found) if self._echoes else _blind(found, self._reach)
                 )
+        if words:
             raise InputError(f"{self._place}: {'; '.join((words, *_fixed(self._matcher)))}")
         mount = self._mounting.mount() if self._mounting else None
         poses, covariances, walked = of_base(found, mount or Mount(0.0, 0.0, 0.0))
@@ -256,17 +258,19 @@ def _undirected(count: int, found: ScanPath) -> str:
     )
 
 
-def _other_unit(around: float, ranges: list[float]) -> str:
-    """Which numbers of scans that fit nowhere are not in radians or metres; "" if all may be.
-
-    `around`: angle from the first beam to the last [rad]. `ranges`: median range of each scan [m].
-    """
+def _in_degrees(around: float) -> str:
+    """Sentence about beams that go around farther than once and a half [rad]; "" if none do."""
     if around > _AROUND:
         return (
             f"the beams of a scan go around by {around:.4g} rad: angle_min, angle_max and "
             "angle_increment are in degrees, and must be in radians (times pi/180). Mend that "
             "where the lidar's driver is set up, or choose another reference"
         )
+    return ""
+
+
+def _in_millimetres(ranges: list[float]) -> str:
+    """Sentence about median ranges of scans that fit nowhere, too far for metres; "" if none is."""
     usual = float(np.median(ranges)) if ranges else 0.0
     if usual > _FAR:
         return (
