@@ -51,12 +51,13 @@ class ScanTracker:
         self.scatter = 0.0
         """Scatter of the echoes of the last scan about the lines of the map [m]."""
         self._alone = False  # one place was all that told one direction of the last position
-        self._failed = 0
+        self.failed = 0
+        """Number of matches that failed since the last pose."""
 
     @property
     def lost(self) -> bool:
         """Whether so many matches failed in a row that the next has nothing to begin with."""
-        return self._failed >= (LOST_AFTER_ALONE if self._alone else LOST_AFTER)
+        return self.failed >= (LOST_AFTER_ALONE if self._alone else LOST_AFTER)
 
     def take(self, points: Floats, reach: Floats, motion: Floats, duration: float) -> Flag:
         """Match deskewed echoes (k, 2), starting from the last pose moved by `motion` (3,).
@@ -64,7 +65,7 @@ class ScanTracker:
         If the match is rejected, the pose stays as it was.
         """
         flag = self._take(points, reach, motion, duration)
-        self._failed = self._failed + 1 if flag else 0
+        self.failed = self.failed + 1 if flag else 0
         return flag
 
     def _take(self, points: Floats, reach: Floats, motion: Floats, duration: float) -> Flag:

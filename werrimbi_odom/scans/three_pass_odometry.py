@@ -91,7 +91,7 @@ class ScanMatcher:
         self._intervals: deque[float] = deque(maxlen=INTERVALS)
         self._last: Sweep | None = None
         self._first = ScanTracker(np.zeros(3))
-        self._motion, self._clock, self._failed = np.zeros(3), 0.0, 0
+        self._motion, self._clock = np.zeros(3), 0.0
         self._begun, self._scans = False, 0
         self._flags: Counter[Flag] = Counter()
         self._second, self._third = _PassAgain(self._flags), _PassAgain(self._flags)
@@ -115,21 +115,19 @@ class ScanMatcher:
         turns = 1 if self._last is None else max(round((sweep.time - self._last.time) / usual), 1)
         self._last = sweep
         self._clock += turns * usual
-        if self._begun or self._failed:
-            turns += self._failed
+        turns += self._first.failed
         before = self._first.pose
         points = deskewed(sweep, own_course(self._motion, usual))
         motion = turns * self._motion
         flag = self._first.take(points, sweep.reach, motion, turns * usual)
         if flag:
             self._flags[flag] += 1
-            self._failed += 1
             if self._first.lost:
                 self._cut()
             return
         if self._begun:
             self._motion = motion_between(before, self._first.pose) / turns
-        self._begun, self._failed = True, 0
+        self._begun = True
         self._again(self._second.take(_Seen(sweep, self._first.pose, self._clock)))
 
     def headings(self, most: int) -> Floats:
@@ -163,7 +161,7 @@ class ScanMatcher:
         self._again(self._second.rest())
         self._keep(self._third.rest())
         self._first = ScanTracker(self._first.pose)
-        self._motion, self._begun, self._failed = np.zeros(3), False, 0
+        self._motion, self._begun = np.zeros(3), False
 
     def _again(self, matched: Iterable[_Seen]) -> None:
         for seen in matched:

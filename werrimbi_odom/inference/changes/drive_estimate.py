@@ -63,12 +63,9 @@ def estimate_of_drive(run: Run, robot: Robot, options: EvaluationOptions) -> Dri
     InputError when it has no usable reference or no ticks, or when what is set up wrongly (a unit,
     exchanged counters) leaves its sizes without a meaning.
     """
+    run = with_no_driving(run, robot, options.limits)
     require_sizes_to_mean_something(run, robot, options)
-    laid = concatenated(
-        match_for_fit(
-            [with_no_driving(run, robot, options.limits)], robot, options.leg, options.limits
-        )
-    )
+    laid = concatenated(match_for_fit([run], robot, options.leg, options.limits))
     fit = fit_calibration(laid, robot, with_stated_noise(options, laid.runs))
     fit = _with_its_reference(laid, fit, robot)
     evidence = evidence_of(laid, fit)
