@@ -221,7 +221,7 @@ def without_nested(runs: Concatenated, tried: Sequence[Fitted]) -> list[Fitted]:
             name = wider.names[-1]
             needless = (
                 dearer
-                or _extension_p_value(wider) > rules.SURE
+                or extension_p_value(wider, wider.newest) > rules.SURE
                 or homogeneity_of_effect(runs, wider, name, find(extended).parameters) > rules.SURE
             )
             name = name if needless else extended
@@ -229,9 +229,8 @@ def without_nested(runs: Concatenated, tried: Sequence[Fitted]) -> list[Fitted]:
     return kept
 
 
-def _extension_p_value(fit: Fitted) -> float:
-    """P-value of what the newest effect of a model has beyond the one that it extends (Wald)."""
-    effect = fit.newest
+def extension_p_value(fit: Fitted, effect: Effect) -> float:
+    """P-value of what an effect of a model has beyond the one that it extends (Wald)."""
     nested = find(effect.extends).parameters
     freed = [key for key in effect.parameters if key not in nested]
     rise, degrees = wald_test(effect, freed, fit.design, fit.covariance, fit.point)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects found early are dropped or exchanged where those found after them do their part.
+"""Effects found early are dropped, narrowed or exchanged where those found later do their part.
 
 Forward selection alone keeps what it took first (Miller, "Subset selection in regression", 2002,
 section 3.5): of a wheel that is oval and off its centre, a bump on its tread explains the most by
@@ -13,10 +13,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from werrimbi_odom.effects.lookup import find
 from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.diagnosis.forward_selection import (
     Round,
     best_of_each,
+    extension_p_value,
     fitted_beside,
     refit_to_rest,
 )
@@ -60,6 +62,12 @@ def reconsidered(
             less, kept = _without(runs, fit, at, rounds, given)
             if less is not None and less.total < fit.total:
                 return reconsidered(runs, refit_to_rest(runs, less, given), kept, given)
+    for at, name in enumerate(fit.names[:-1]):
+        wider = applied_of(fit.point.model.robot.effects, name).effect
+        if wider.extends and extension_p_value(fit, wider) > rules.SURE:
+            less, kept = _narrowed(runs, fit, at, rounds, given)
+            if less is not None:
+                return reconsidered(runs, refit_to_rest(runs, less, given), kept, given)
     return _exchanged(runs, fit, rounds, given)
 
 
@@ -81,6 +89,19 @@ def _without(
     tried = tuple(sorted([first, *others], key=lambda each: each.total))
     kept = [*rounds[:at], replace(rounds[at], tried=tried), *rounds[at + 2 :]]
     return _with_the_later_ones(runs, first, fit, later[1:], given), kept
+
+
+def _narrowed(
+    runs: Concatenated, fit: Fitted, at: int, rounds: Sequence[Round], given: Robot
+) -> tuple[Fitted | None, list[Round]]:
+    """Fit with what an earlier effect extends in its place, and the rounds of that."""
+    extended = find(applied_of(fit.point.model.robot.effects, fit.names[at]).effect.extends)
+    first = _beside(runs, rounds[at].before, extended, given)
+    if first is None:
+        return None, []
+    others = [each for each in rounds[at].tried if each.names[-1] != fit.names[at]]
+    kept = [*rounds[:at], replace(rounds[at], tried=(first, *others)), *rounds[at + 1 :]]
+    return _with_the_later_ones(runs, first, fit, fit.names[at + 1 :], given), kept
 
 
 def _exchanged(

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.legs.counter_jumps import CounterJump, bridged
 from werrimbi_odom.inference.legs.even_stamps import with_even_stamps
 from werrimbi_odom.inference.legs.monotone_cubic import between_messages, interval_of, missed_at
 from werrimbi_odom.inference.legs.queued_messages import last_of_packets
+from werrimbi_odom.inference.legs.uneven_timer import with_uneven_timer
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder_online import EncoderLimits
@@ -186,6 +187,8 @@ def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float)
     sent = last_of_packets(ticks.time)
     stamps, counted = ticks.time[sent], (ticks.left[sent], ticks.right[sent])
     read = with_even_stamps(stamps, *counted, least=least)
+    if read is not stamps:
+        read = with_uneven_timer(read, *counted)
     steps = wheel_steps(robot, read, *counted, limits)
     if steps.first_row < 0 or steps.time.size == 0:
         raise InputError(f"{run.path}: fewer than two usable rows of ticks")

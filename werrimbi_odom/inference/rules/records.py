@@ -226,6 +226,16 @@ EVEN_MOST = 0.4
 """Largest correction of scan stamps (rms), as a share of a turn of the lidar. A delay that is
 uniform over a turn has 0.29; if scans are missing by the dozen, without a report, it is 0.45."""
 
+UNEVEN_SHARES = (0.005, 0.01, 0.02, 0.04, 0.08, 0.16)
+"""Standard deviations of an uneven timer that are tried, in its periods: a quarter of a millisecond
+to 8 ms of 50. Sleeps of a program are uneven by 1 or 2 ms; at more, an even timer is not found."""
+
+UNEVEN_NEXT, UNEVEN_REST, UNEVEN_STEPS = 0.5, 0.1, 8
+"""Deviation of an interval from the period up to which no reading is missing in between: half way
+to two periods. What a timer leaves of the roughness of counts at least: chosen, as one wheel alone
+can be made as smooth as one likes. And steps of iteratively reweighted least squares; more change
+nothing that shows."""
+
 FEW_COUNTS = 3.0
 """Counts at once, as a rule, up to which a counter is coarse: its steps show in what is worked out
 from message to message. Chosen: 20 to 60 counts in a turn, one or two at a time, made a late
