@@ -20,13 +20,20 @@ from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.inference.comparison.prepared_runs import for_fit
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.forward_selection import (
+    Round,
+    best_of_each,
     fit_calibration,
+    fitted_beside,
     refit_to_rest,
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.diagnosis.sequential_replacement import reconsidered
+from werrimbi_odom.inference.fitting.candidate import Candidate
+from werrimbi_odom.inference.fitting.candidate_starts import started_with
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
+from werrimbi_odom.inference.fitting.score_tests import candidates, scores
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, free, record, write_run
 from werrimbi_odom.simulation.robot import write_robot_file
@@ -134,6 +141,36 @@ def test_what_stood_in_for_another_is_dropped_when_that_is_found() -> None:
     (only,) = rounds
     assert only.before is before
     assert [tried.names for tried in only.tried] == [("castor_swing",)]
+
+
+@pytest.mark.evidence
+def test_of_an_effect_is_kept_what_is_needed_beside_those_found_after_it() -> None:
+    """Play made a late clock seem to drift, and the drift was named beside the play."""
+    truth = replace(PLAIN, effects=(find("right_backlash").using(travel=0.006),))
+    runs = [
+        replace(run, reference=replace(run.reference, time=run.reference.time + 0.01))
+        for run in runs_of(truth, (1, 2, 3), 45)
+        if run.reference is not None
+    ]
+    laid = concatenated(for_fit(begin(runs, (), PLAIN, EvaluationOptions()).judge.train, PLAIN))
+    before = fit_calibration(laid, PLAIN)
+    rounds, fit = [], before
+    for name in ("reference_clock_drift", "right_backlash"):
+        score = best_of_each(scores(laid, fit.point, (*CALIBRATION, *fit.numbers), one(name)))[0]
+        start = started_with(laid, fit.point, score)
+        found = fitted_beside(laid, fit, start, score, PLAIN)
+        rounds.append(Round(fit, (score,), (found,), (), 1))
+        fit = found
+    assert fit.names == ("reference_clock_drift", "right_backlash")
+    fit, rounds = reconsidered(laid, fit, rounds, PLAIN)
+    assert fit.names == ("reference_delay", "right_backlash")
+    delay, play = (held.values for held in fit.point.model.robot.effects)
+    assert delay["delay"] == pytest.approx(0.01, abs=1e-3)
+    assert play["travel"] == pytest.approx(0.006, rel=0.1)
+
+
+def one(name: str) -> list[Candidate]:
+    return candidates([find(name)], [], (), 3)
 
 
 @pytest.mark.evidence

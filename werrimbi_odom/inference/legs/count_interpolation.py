@@ -187,7 +187,7 @@ def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float)
     sent = last_of_packets(ticks.time)
     stamps, counted = ticks.time[sent], (ticks.left[sent], ticks.right[sent])
     read = with_even_stamps(stamps, *counted, least=least)
-    if read is not stamps:
+    if read is not stamps and not any(_steps_seen(side, rules.FEW_COUNTS) for side in counted):
         read = with_uneven_timer(read, *counted)
     steps = wheel_steps(robot, read, *counted, limits)
     if steps.first_row < 0 or steps.time.size == 0:

@@ -199,14 +199,19 @@ def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
 def _keeps_pace(off: Floats) -> bool:
     """Whether deviations from one pace, (n,), are those of single stamps, by analysis of variance.
 
-    The means of windows then scatter as chance has it. Two clocks that drift apart, a pause and a
-    computer that was busy for seconds show there.
+    The means of windows then scatter as chance has it: more where messages wait for one another
+    and neighbours are late together (variance inflation of a first-order autoregression). Two
+    clocks that drift apart, a pause and a computer that was busy for seconds show there.
     """
     count = off.size // rules.EVEN_WINDOW
     if count < rules.EVEN_WINDOWS:
         return False
     windows = off[: count * rules.EVEN_WINDOW].reshape(count, -1)
     within = float(np.mean(np.var(windows, axis=1, ddof=1)))
+    inner = windows - windows.mean(axis=1, keepdims=True)
+    lag = float(np.mean(inner[:, 1:] * inner[:, :-1])) / max(float(np.mean(inner**2)), 1e-30)
+    lag = max(lag + 1.0 / rules.EVEN_WINDOW, 0.0)
+    within *= (1.0 + lag) / (1.0 - lag)
     between = rules.EVEN_WINDOW * float(np.sum(windows.mean(axis=1) ** 2)) / (count - 2)
     spare = count * (rules.EVEN_WINDOW - 1)
     chance = fisher_survival(between / max(within, 1e-30), count - 2, spare)

@@ -51,10 +51,10 @@ def with_uneven_timer(time: Floats, left: Counts, right: Counts) -> Floats:
         for one, other in (wheels, wheels[::-1]):
             gains[number] += other.gain(one.moved(spread))
     best = gains[np.argmax(gains.sum(axis=1))]
-    enough = best.sum() - np.std(best) * np.sqrt(best.size)
-    spread = spreads[int(np.argmax(gains.sum(axis=1) >= enough))]
-    if spread == 0.0:
+    error = np.std(best) * np.sqrt(best.size)
+    if best.sum() <= rules.EVEN_SURE * error:
         return time
+    spread = spreads[int(np.argmax(gains.sum(axis=1) >= best.sum() - error))]
     tenth = 0.1 * period * np.arange(float(time.size))  # keeps readings in order
     moved = time + _Wheels(counts, rates, kept).moved(spread)
     return np.asarray(np.maximum.accumulate(moved - tenth) + tenth)
