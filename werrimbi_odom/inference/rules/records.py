@@ -230,11 +230,11 @@ UNEVEN_SHARES = (0.005, 0.01, 0.02, 0.04, 0.08, 0.16)
 """Standard deviations of an uneven timer that are tried, in its periods: a quarter of a millisecond
 to 8 ms of 50. Sleeps of a program are uneven by 1 or 2 ms; at more, an even timer is not found."""
 
-UNEVEN_NEXT, UNEVEN_REST, UNEVEN_STEPS = 0.5, 0.1, 8
+UNEVEN_NEXT, UNEVEN_REST, UNEVEN_STEPS = 0.5, 0.1, 4
 """Deviation of an interval from the period up to which no reading is missing in between: half way
 to two periods. What a timer leaves of the roughness of counts at least: chosen, as one wheel alone
-can be made as smooth as one likes. And steps of iteratively reweighted least squares; more change
-nothing that shows."""
+can be made as smooth as one likes. And steps of iteratively reweighted least squares: eight leave
+as much of 1, 2 and 4 ms, to a tenth."""
 
 FEW_COUNTS = 3.0
 """Counts at once, as a rule, up to which a counter is coarse: its steps show in what is worked out
