@@ -23,7 +23,7 @@ from werrimbi_odom.inference.legs.queued_messages import last_of_packets
 from werrimbi_odom.inference.legs.uneven_timer import with_uneven_timer
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
-from werrimbi_odom.model.encoder_online import EncoderLimits
+from werrimbi_odom.model.encoder_online import Counts, EncoderLimits
 from werrimbi_odom.model.encoder_recorded import wheel_steps
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -289,7 +289,7 @@ def _travel(robot: Robot, counts: Floats) -> Floats:
     return np.stack([left * robot.left_tick, right * robot.right_tick])
 
 
-def _steps_seen(counts: Floats, few: float) -> bool:
+def _steps_seen(counts: Counts, few: float) -> bool:
     """Whether so few counts come at once, as a rule."""
     change = np.abs(np.diff(counts))
     return bool(change.any()) and float(np.median(change[change > 0.0])) <= few
