@@ -99,7 +99,7 @@ def calibrate(
     )
     turned = [number for number in numbers if number.per_run or number in fit.free]
     found = dependences(laid, fit.point, turned)
-    misfit = tuple(item for item in found if item.p_value < rules.SURE)
+    misfit = tuple(item for item in found if item.p_value < rules.VERY_SURE)
     strange = _strange(fit, noises)
     names = [number.name for number in fit.free]
     usual = np.sqrt(np.diag(fit.covariance))

@@ -21,9 +21,6 @@ from werrimbi_odom.inference import rules
 from werrimbi_odom.model.encoder_online import Counts
 from werrimbi_odom.model.pose import Floats
 
-_THIRD = (-1.0, 3.0, -3.0, 1.0)
-"""Weights of a third difference, zero where counts are a parabola in time."""
-
 
 def with_uneven_timer(time: Floats, left: Counts, right: Counts) -> Floats:
     """Move the readings of a timer that is taken for even to when both wheels say they were made.
@@ -75,7 +72,7 @@ class _Wheels:
         slope = np.stack(
             [
                 weight * self.rates[:, first : first + size - 3]
-                for first, weight in enumerate(_THIRD)
+                for first, weight in enumerate(_third(np.eye(4))[:, 0])
             ]
         )
         least = rules.UNEVEN_REST * self._scale(told)

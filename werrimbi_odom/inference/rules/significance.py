@@ -6,13 +6,13 @@ from __future__ import annotations
 
 SURE = 1e-3
 """Significance level of a finding, with a Bonferroni correction for all candidates: one false name
-in a thousand sound robots. For effects, for what lasts from drive to drive, for what a calibration
-leaves, and for what is worth a draft."""
+in a thousand sound robots. For effects, for what lasts from drive to drive, and for what is worth a
+draft."""
 
 VERY_SURE = 1e-5
 """Significance level of a dependence on a measured variable, with a Bonferroni correction for all
 cells of the map. An effect is a law that was found true before; a dependence has no such support,
-so its level is a hundredth."""
+so its level is a hundredth, by what a calibration leaves as by what a diagnosis does."""
 
 SURE_WHEN_ASKED = 0.01
 """Significance level of a single question that was asked before the data answered it (does this
