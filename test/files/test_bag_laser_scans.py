@@ -203,9 +203,8 @@ def test_of_a_lidar_that_is_a_little_tilted_it_is_said_what_it_may_see(
 
 def test_a_floor_that_it_sees_is_told_and_left_out(tmp_path: Path, ros: Any, robot: Any) -> None:
     """Of a lidar that no transform tilts."""
-    seen, share = pitched(
-        early(scanned(path(), rooms.arena(7.0), LIDAR, 1)), tilted(4.0), aside=-0.7
-    )
+    whole = scanned(path(), rooms.arena(7.0), LIDAR, 1)
+    seen, share = pitched(early(whole), tilted(4.0), aside=-0.7)
     (told,) = read_run(ros.write(tmp_path / "run", entries(ros, seen)), robot()).damage
     echoes = np.isfinite(seen.ranges).mean()
     assert f"{100 * share / echoes:.0f} % of the echoes stay on a straight line" in told
