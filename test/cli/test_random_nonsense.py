@@ -134,7 +134,7 @@ HOW: dict[str, Any] = {
 
 
 @pytest.mark.usefixtures("few_effects")
-@settings(max_examples=4, **HOW)
+@settings(max_examples=2, **HOW)
 @MADE
 def test_no_command_tells_a_size_that_nothing_has(seed: int, wheels: str, seen: str) -> None:
     with tempfile.TemporaryDirectory() as name:

@@ -186,8 +186,10 @@ def test_an_oval_wheel_by_geometry(side: str) -> None:
     assert after[0] < before[0] / 3
 
 
-@pytest.mark.parametrize("thickness", [2e-3, -1.5e-3])
-@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize(
+    ("side", "thickness"),
+    [("left", 2e-3), ("right", -1.5e-3), in_evidence("left", -1.5e-3), in_evidence("right", 2e-3)],
+)
 def test_a_bump_under_a_soft_tread(side: str, thickness: float) -> None:
     """The engine's has edges as soft as the tread, and covers as much as the law's."""
     odd = TreadBump(side, thickness, math.pi / 3, 0.9)  # type: ignore[arg-type]

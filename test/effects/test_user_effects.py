@@ -14,6 +14,7 @@ import pytest
 
 from test.cli.commands import RECORDING
 from test.command_line import Werrimbi
+from test.evidence import in_evidence
 from werrimbi_odom.effects import LIBRARY, all_effects, find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, DriveOptions
@@ -75,7 +76,10 @@ def words(folder: Path, verb: str, *more: str) -> list[str]:
     return [*verb.split(), *given, "--effects", str(folder / "mine.py"), *more]
 
 
-@pytest.mark.parametrize("name", RAISED)
+@pytest.mark.parametrize(
+    "name",
+    [each if each in MADE or not n % 3 else in_evidence(each) for n, each in enumerate(RAISED)],
+)
 def test_any_exception_of_a_law_is_one_line(tmp_path: Path, name: str, werrimbi: Werrimbi) -> None:
     law = f"raise {name}({MADE.get(name, '')})"
     folder = place(tmp_path, law)

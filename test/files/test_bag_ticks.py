@@ -422,7 +422,7 @@ def test_the_window_that_takes_counts_apart_is_told(tmp_path: Path, ros: Any, ro
 
 @pytest.mark.parametrize("plugin", ["mcap", "sqlite3"])
 def test_damaged_bags(tmp_path: Path, ros: Any, robot: Any, plugin: str) -> None:
-    entries = joint_drive(ros) * 50
+    entries = joint_drive(ros) * 10
     bag = ros.write(tmp_path / "bag", entries, plugin)
     file = next(each for each in bag.iterdir() if each.suffix != ".yaml")
     whole = file.read_bytes()

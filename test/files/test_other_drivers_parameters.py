@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from test.evidence import in_evidence
 from werrimbi_odom.api.odom import odometry
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
@@ -126,7 +127,7 @@ def test_parameters_of_older_controllers_are_not_needed_either(tmp_path: Path) -
     assert ", ".join(older) in remark
 
 
-@pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT, NEWER_TURTLEBOT, OWN])
+@pytest.mark.parametrize("text", [CONTROLLERS, in_evidence(TURTLEBOT), NEWER_TURTLEBOT, OWN])
 def test_without_ticks_positions_in_radians_are_read_and_counts_refused(
     tmp_path: Path, text: str
 ) -> None:

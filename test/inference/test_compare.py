@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import run_by, swapped
 from test.model.drives import ROBOT
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
@@ -497,7 +498,7 @@ def test_a_floor_that_pulls_one_way_goes_with_the_heading(runs: tuple[Run, ...])
     assert re.search(r"(along the way|sideways error).* go(es)? with the heading", words)
 
 
-@pytest.mark.parametrize("headings", [0, 1])
+@pytest.mark.parametrize("headings", [in_evidence(0), 1])
 def test_positions_alone_have_no_increments(runs: tuple[Run, ...], headings: int) -> None:
     """Fits had no data, and diagnose said that nothing is missing where the base was 8 % off."""
     seen = runs[0].reference

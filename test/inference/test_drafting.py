@@ -90,7 +90,7 @@ assert DIRECTION is not None
 @pytest.mark.parametrize(
     ("seen", "amount"),
     [
-        pytest.param(seen, amount, marks=[pytest.mark.evidence] * ((row + column) % 4 > 0))
+        pytest.param(seen, amount, marks=[pytest.mark.evidence] * ((row + column) % 6 > 0))
         for row, seen in enumerate((SPEED, HEADING, TIME, PAYLOAD, ACCELERATION, DIRECTION))
         for column, amount in enumerate(AMOUNTS)
     ],

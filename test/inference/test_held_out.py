@@ -106,8 +106,8 @@ def test_only_the_drive_that_was_recorded_otherwise_is_left_out() -> None:
 def test_nothing_of_the_held_out_drives_moves_a_fit(runs: list[Run]) -> None:
     """The written robot is the same to the last digit whatever was held out."""
     effect = find("castor_kick")
-    one = add_effects([effect], runs[:3], GIVEN, holdout=runs[3:4])
-    other = add_effects([effect], runs[:3], GIVEN, holdout=[swapped(run) for run in runs[4:]])
+    one = add_effects([effect], runs[:2], GIVEN, holdout=runs[3:4])
+    other = add_effects([effect], runs[:2], GIVEN, holdout=[swapped(run) for run in runs[4:]])
     assert one.robot == other.robot
     assert other.set_up.findings == ()
     assert other.train.sides.after < other.train.sides.before

@@ -67,7 +67,7 @@ def wheel_and_clock() -> Loop:
     """The right wheel is 3 % larger, and the reference 60 ms late."""
     truth = replace(PLAIN, right_wheel_radius_multiplier=1.03)
     runs = [later(run, 0.06) for run in driven(truth, (1, 2, 3), seconds=60)]
-    return Loop(PLAIN, runs[:2], runs[2:], COMMON)
+    return Loop(PLAIN, runs[:2], runs[2:], (*COMMON[:3], find("reference_delay")))
 
 
 def test_a_wrong_wheel_and_a_late_clock_come_to_rest_at_the_truth(wheel_and_clock: Loop) -> None:

@@ -76,8 +76,14 @@ def test_a_spin_on_the_spot_takes_no_heading_away() -> None:
     assert np.max(size) < 6.0 * np.sqrt(2.0) * noise
 
 
-@pytest.mark.parametrize("kind", ["jump", "to and fro", "spike"])
-@pytest.mark.parametrize("size", [0.3, 3.0])
+@pytest.mark.parametrize(
+    ("kind", "size"),
+    [
+        pytest.param(kind, size, marks=[pytest.mark.evidence] * ((row + column) % 2 > 0))
+        for row, kind in enumerate(("jump", "to and fro", "spike"))
+        for column, size in enumerate((0.3, 3.0))
+    ],
+)
 def test_a_tracker_that_jumps_turns_no_robot(kind: str, size: float) -> None:
     """One jump of 30 cm, of positions alone, and all legs after it erred by 15 cm."""
     sound = parts(run_of(ROBOT, 4), "positions")

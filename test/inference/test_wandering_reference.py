@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from test.evidence import in_evidence
 from test.inference.driven import parts
 from test.inference.test_homogeneity import ROBOT, driven, nothing, wanders
 from test.inference.test_local_map_errors import MEMORY, TRUE, WALK, session
@@ -20,6 +22,7 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.advice import AdvisedDiagnosis
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.next_steps import NextSteps
 from werrimbi_odom.report.diagnosis.reference_remarks import wandering
@@ -29,9 +32,9 @@ NAMES = ("floor_slope", "anisotropic_floor", "reference_delay", "track_width", "
 EFFECTS = [find(name) for name in (*NAMES, "unequal_wheel_radii", "wheel_radius_scale")]
 
 
-def seen_by_a_localiser(robot: Robot) -> Diagnosis:
+def seen_by_a_localiser(robot: Robot, effects: Sequence[Effect] = EFFECTS) -> Diagnosis:
     return diagnose(
-        session(range(40, 43), jumps=0, seconds=45.0), robot, EFFECTS, EvaluationOptions()
+        session(range(40, 43), jumps=0, seconds=45.0), robot, effects, EvaluationOptions()
     )
 
 
@@ -97,8 +100,10 @@ def test_positions_of_satellites_are_no_law_of_the_floor() -> None:
     assert found.wander.place_in_a_second == pytest.approx(1.5 * math.sqrt(2.0 / 30.0), rel=0.3)
 
 
-def test_what_is_really_wrong_is_named_beside_it() -> None:
-    wide = seen_by_a_localiser(replace(TRUE.entered(), wheel_separation_multiplier=1.05))
+@pytest.mark.parametrize("effects", [EFFECTS[2:4], in_evidence(EFFECTS)])
+def test_what_is_really_wrong_is_named_beside_it(effects: Sequence[Effect]) -> None:
+    robot = replace(TRUE.entered(), wheel_separation_multiplier=1.05)
+    wide = seen_by_a_localiser(robot, effects)
     assert wide.wander is not None
     assert wide.found == ("track_width",)
 

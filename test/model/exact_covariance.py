@@ -27,6 +27,12 @@ Entries = list[mpf]
 
 def by_quadrature(motion: Sequence[float], noise: Sequence[float], yaw: float = 0.0) -> Entries:
     """Entries in the order of `ENTRIES`; motion is (along, sideways, turn), noise (a, b, c)."""
+    return turned([*_ahead(tuple(motion), tuple(noise), mp.prec)], mpf(yaw))
+
+
+@cache
+def _ahead(motion: Sequence[float], noise: Sequence[float], prec: int) -> Entries:
+    """The same of a piece that begins at yaw zero, by numbers of `prec` bits."""
     along, sideways, turn = (mpf(value) for value in motion)
     a, b, c = (mpf(value) for value in noise)
     travel = mp.mpc(along, sideways)
@@ -51,7 +57,7 @@ def by_quadrature(motion: Sequence[float], noise: Sequence[float], yaw: float = 
     period = 2 * mp.pi / abs(turn) if turns else mpf(0)
     one = integral(density, mpf(0), period) if turns else [mpf(0)] * 6
     rest = integral(density, turns * period, mpf(1))
-    return turned([turns * o + r for o, r in zip(one, rest, strict=True)], mpf(yaw))
+    return [turns * o + r for o, r in zip(one, rest, strict=True)]
 
 
 def by_model_page(motion: Sequence[float], noise: Sequence[float], yaw: float = 0.0) -> Entries:

@@ -19,6 +19,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from test.evidence import in_evidence
 from test.model.drives import ROBOT, random_drive
 from test.model.records import Record, records
 from test.model.test_odometer_and_trajectory import Live, assert_one_odometry, has_a_row
@@ -64,11 +65,7 @@ def assert_same_bits(one: Trajectory, other: Trajectory) -> None:
     assert list(one.pieces) == list(other.pieces)
 
 
-@settings(max_examples=30, deadline=None)
-@given(records(), st.sampled_from([1, 7, 8192]))
-def test_machine_code_says_what_its_lines_and_the_live_odometer_say_to_the_last_bit(
-    record: Record, together: int
-) -> None:
+def assert_machine_code_lines_and_live_odometer_alike(record: Record, together: int) -> None:
     robot, limits, ticks = record
     if not has_a_row(ticks):
         return
@@ -82,6 +79,15 @@ def test_machine_code_says_what_its_lines_and_the_live_odometer_say_to_the_last_
     live = Live(Odometer(robot, limits=limits), ticks)
     assert np.array_equal(live.pose, np.stack([machine.x, machine.y, machine.yaw], -1)[1:])
     assert np.array_equal(live.covariance, np.stack(machine.covariance, axis=-1)[1:])
+
+
+@pytest.mark.parametrize("examples", [10, in_evidence(100)])
+def test_machine_code_says_what_its_lines_and_the_live_odometer_say_to_the_last_bit(
+    examples: int,
+) -> None:
+    say = settings(max_examples=examples, deadline=None)
+    any_record = given(records(), st.sampled_from([1, 7, 8192]))
+    say(any_record(assert_machine_code_lines_and_live_odometer_alike))()
 
 
 @settings(max_examples=25, deadline=None)

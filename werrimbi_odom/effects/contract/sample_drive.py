@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
+from functools import cache, cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -52,6 +52,7 @@ class Rehearsal:
     """Index of the message that each step belongs to, if messages are split."""
 
     @classmethod
+    @cache
     def of(cls, channels: tuple[str, ...] = ()) -> Rehearsal:
         """The drive, with synthetic values in the channels of an effect."""
         random = np.random.default_rng(1)
@@ -108,10 +109,11 @@ class Rehearsal:
         dx, dy = displacement(motion, heading)
         return np.cumsum(dx) - dx, np.cumsum(dy) - dy
 
-    def steps(self) -> Iterator[Moment]:
+    @cached_property
+    def steps(self) -> tuple[Moment, ...]:
         """Step by step, with the causal memory of the node."""
         memory = DriveMemory(FLICKER, TRACK, *FIRST_ANGLES)
-        motion, heading = self.motion, 0.0
+        motion, heading, found = self.motion, 0.0, []
         measured, (x, y) = self.measured, self._places()
         for i, (duration, left, right) in enumerate(
             zip(self.duration.tolist(), self.left.tolist(), self.right.tolist(), strict=True)
@@ -121,8 +123,9 @@ class Rehearsal:
             now = {name: Span(float(s.start[i]), float(s.end[i])) for name, s in measured.items()}
             pose = Pose(float(x[i]), float(y[i]), heading)
             seen = memory.step(raw, pose, now).with_place(*pose[:2], displacement(one, heading))
-            yield Moment(WheelTravel(left, right), one, seen)
+            found.append(Moment(WheelTravel(left, right), one, seen))
             heading += one.turn
+        return tuple(found)
 
     def split(self, shares: tuple[float, ...]) -> Rehearsal:
         """The same drive with each step split, as by a pose between two messages."""

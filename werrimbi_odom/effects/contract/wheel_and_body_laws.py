@@ -81,7 +81,7 @@ def _is_row_local(effect: Effect, rehearsal: Rehearsal) -> None:
 
 def _is_finite(effect: Effect, rehearsal: Rehearsal) -> None:
     law = "it is finite at the bounds"
-    moments = list(rehearsal.steps())[::7]
+    moments = rehearsal.steps[::7]
     for values in corners(effect):
         after = _applied(effect, rehearsal, values)
         demand(
@@ -173,7 +173,7 @@ def _turns_gently_with_heading(effect: Effect, rehearsal: Rehearsal) -> None:
 
 def _live_equals_recorded(effect: Effect, rehearsal: Rehearsal) -> None:
     law = "step by step in floats is the same as all at once in arrays"
-    moments = list(rehearsal.steps())
+    moments = rehearsal.steps
     for values in settings(effect):
         recorded = np.array(_applied(effect, rehearsal, values)).T
         for i, moment in enumerate(moments):
