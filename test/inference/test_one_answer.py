@@ -26,7 +26,9 @@ from werrimbi_odom.files.evaluation_options import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference import rules
 from werrimbi_odom.inference.adding.adding import add_effects
+from werrimbi_odom.inference.calibration import any_driving
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
@@ -34,6 +36,7 @@ from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.prepared_runs import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.legs.cutting import match_for_fit
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -287,6 +290,21 @@ def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
     assert added["covariance"] == compared["verdict"]["covariance"] == "too small"
     assert "What remains is noise" not in said
     assert f"of the new file says of the held-out drives: {headline}" in said
+
+
+@pytest.mark.parametrize("share", [5.0, 0.2])
+def test_a_calibration_and_a_diagnosis_take_the_same_for_chance(
+    monkeypatch: pytest.MonkeyPatch, share: float
+) -> None:
+    """After *none*, the `calibrate fit` that it prints said that something else is missing."""
+    own = any_driving.dependences
+
+    def as_likely(*of: Any) -> list[Dependence]:
+        return [replace(cell, p_value=share * rules.VERY_SURE) for cell in own(*of)]
+
+    monkeypatch.setattr(any_driving, "dependences", as_likely)
+    found = calibrate(match_for_fit([run_of(ROBOT, 1, 20)], ROBOT, 1.0), ROBOT)
+    assert bool(found.misfit) == (share < 1.0)
 
 
 def test_calibrate_fit_fits_what_each_drive_has_of_its_own() -> None:

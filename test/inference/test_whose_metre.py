@@ -10,20 +10,22 @@ import pytest
 
 from test.inference.driven import COMMON, runs_of
 from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.report.diagnosis.reference_remarks import (
     moved_by_its_odometry,
+    or_its_axes,
     or_the_reference_s_scale,
 )
 
 
-def seen(runs: list[Run], scale: float) -> list[Run]:
-    """By a camera whose metre is off."""
+def seen(runs: list[Run], scale: float, across: float | None = None) -> list[Run]:
+    """By a camera whose metre is off, and perhaps another one across."""
     found = []
     for run in runs:
         assert run.reference is not None
-        places = {"x": scale * run.reference.x, "y": scale * run.reference.y}
+        places = {"x": scale * run.reference.x, "y": (across or scale) * run.reference.y}
         found.append(replace(run, reference=replace(run.reference, **places)))
     return found
 
@@ -38,6 +40,15 @@ def test_a_camera_s_wrong_metre_looks_like_base_and_radii_off_by_one_factor(
     assert said in told
     assert "reference_scale" in told
     assert "10 m beside a tape" in told
+
+
+def test_a_camera_whose_axes_differ_looks_like_a_floor_with_a_grain() -> None:
+    few = [find("anisotropic_floor"), *COMMON[:2]]
+    found = diagnose(seen(runs_of(ROBOT, (1, 2), 60), 1.02, 0.98), ROBOT, few)
+    assert found.found == ("anisotropic_floor",)
+    [told] = or_its_axes(found)
+    assert "too long by about 5 %" in told  # by the floor's law, which is not quite it
+    assert "mend the reference" in told
 
 
 def test_base_and_radii_that_are_off_by_two_factors_are_the_robot_s() -> None:

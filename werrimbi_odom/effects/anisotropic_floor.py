@@ -45,7 +45,8 @@ def anisotropic_floor(
                alike; turns are right
     Ruler      drive 5 m by the odometry beside a tape, along the boards and across them: the two
                differ by 10 m * sqrt(along_x^2 + diagonal^2). Turn the carpet: the error turns too
-    Alike      floor_slope, when driven one way only: it changes sign on the way back
+    Alike      floor_slope, when driven one way only: it changes sign on the way back; a camera
+               whose picture is longer along one axis: odometry and tape then agree along both
     """
     twice = Span(2.0 * drive.heading.start, 2.0 * drive.heading.end)
     share = along_x * mean_cos(twice) + diagonal * mean_sin(twice)

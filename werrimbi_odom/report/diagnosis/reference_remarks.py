@@ -226,6 +226,20 @@ def or_the_reference_s_scale(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
+def or_its_axes(diagnosis: Diagnosis) -> list[str]:
+    """That a reference whose axes differ in scale looks like a floor with a grain."""
+    if "anisotropic_floor" not in diagnosis.found:
+        return []
+    sizes = (item.value for item in values_of(diagnosis, "anisotropic_floor").values())
+    apart = f"about {200.0 * math.hypot(*sizes):.1g} %"
+    return [
+        f"A camera (tilted, its picture stretched) or a map that is too long by {apart} along one "
+        "direction, against the other, shows nearly the same. If the odometry agrees with the tape "
+        "along both, it is that: mend the reference, and do not add a grain, which would bend the "
+        "odometry."
+    ]
+
+
 def or_upside_down(diagnosis: Diagnosis) -> list[str]:
     """That scans are mirrored by a lidar that hangs upside down, which nobody need drive to see."""
     if not diagnosis.runs.own_axes or "reference_mirrored" not in diagnosis.rivals:

@@ -194,6 +194,7 @@ def _named(advised: AdvisedDiagnosis, steps: NextSteps) -> list[str]:
         *costs.whole(advised),
         *remarks.remainder(advised),
         *reference_remarks.or_the_reference_s_scale(diagnosis),
+        *reference_remarks.or_its_axes(diagnosis),
         *_add(diagnosis, it, steps),
         *reference_remarks.moved_by_its_odometry(diagnosis),
         *reference_remarks.transform_to_mend(diagnosis),
