@@ -298,7 +298,7 @@ def nearest(diagnosis: Diagnosis, law_told: bool) -> list[str]:
             "Yet parts of these drives do not agree on it, or chance could do as much: look there "
             "first, and drive more."
             if diagnosis.explained_by(best.effect)
-            else "The above explains far more than it does, so that is not all of it."
+            else "The above explains far more than it does, so that is not it, or not all of it."
             if law_told
             else "That is too little to name it."
         )
