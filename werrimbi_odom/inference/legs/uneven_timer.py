@@ -12,6 +12,7 @@ backlash were named where there were none.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,25 +66,29 @@ class _Wheels:
     rates: Floats
     kept: NDArray[np.bool_]
 
+    @cached_property
+    def rough(self) -> Floats:
+        """Third differences of the counts as they were told, (k, n - 3)."""
+        return _third(self.counts)
+
     def moved(self, spread: float) -> Floats:
         """Deviations of the readings from an even timer, (n,) [s], whose std is `spread` [s]."""
         size = self.counts.shape[1]
-        told = _third(self.counts)
         slope = np.stack(
             [
                 weight * self.rates[:, first : first + size - 3]
                 for first, weight in enumerate(_third(np.eye(4))[:, 0])
             ]
         )
-        least = rules.UNEVEN_REST * self._scale(told)
+        least = rules.UNEVEN_REST * self._scale(self.rough)
         moved = np.zeros(size)
         for _ in range(rules.UNEVEN_STEPS):
-            rest = told - _third(self.rates * moved)
+            rest = self.rough - _third(self.rates * moved)
             weight = self.kept / (np.maximum(self._scale(rest), least) ** 2 + rest**2)
             matrix, right = np.zeros((4, size)), np.zeros(size)
             matrix[3] = spread**-2.0
             for i in range(4):
-                right[i : i + size - 3] += (weight * slope[i] * told).sum(axis=0)
+                right[i : i + size - 3] += (weight * slope[i] * self.rough).sum(axis=0)
                 for j in range(i, 4):
                     both = (weight * slope[i] * slope[j]).sum(axis=0)
                     matrix[3 - (j - i), j : j + size - 3] += both
@@ -92,15 +97,14 @@ class _Wheels:
 
     def gain(self, moved: Floats) -> Floats:
         """Gain of log-likelihood of a wheel's third differences by deviations `moved`, (n,) [s]."""
-        rough = _third(self.counts)
-        left = rough - _third(self.rates * moved)
-        square = self._scale(rough) ** 2
-        gain = np.log1p(rough**2 / square) - np.log1p(left**2 / square)
+        left = self.rough - _third(self.rates * moved)
+        square = self._scale(self.rough) ** 2
+        gain = np.log1p(self.rough**2 / square) - np.log1p(left**2 / square)
         return np.asarray(gain[:, self.kept].sum(axis=0))
 
     def _scale(self, rest: Floats) -> Floats:
         """Typical size of what is left of the third differences of a wheel that turns, (k, 1)."""
-        turns = self.kept & (_third(self.counts) != 0.0)
+        turns = self.kept & (self.rough != 0.0)
         left = [np.abs(of_wheel[when]) for of_wheel, when in zip(rest, turns, strict=True)]
         return np.array([[np.median(size) if size.size else 1.0] for size in left])
 
